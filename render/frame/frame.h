@@ -1,0 +1,84 @@
+// What a picture is made of: plain data in, no GL and no engine types. World space, metres, right-handed, y
+// up. Colours are linear light (Rec. 709 primaries, 0..1 for surfaces) unless a name says srgb.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/frame/look.h"
+#include "render/frame/mesh.h"
+
+namespace shatterbox::render {
+
+// One body in the picture. Draws may share a mesh.
+struct Draw {
+  std::shared_ptr<const Mesh> mesh;  // never null
+  glm::mat4 world_from_body{1.0F};   // rotation and translation (a uniform scale is allowed)
+  std::vector<Look> looks{Look{}};   // by Mesh::parts; a part beyond the end takes the last
+  std::shared_ptr<const std::vector<float>>
+      scalars;                     // |V| or null; shown by Overlay::stress, in `Overlay` units
+  std::uint32_t colour_index = 0;  // Overlay::pieces: equal index, equal colour
+  bool casts_shadow = true;
+};
+
+struct Camera {
+  glm::vec3 position{0.0F, 0.3F, 1.0F};
+  glm::vec3 target{0.0F};
+  glm::vec3 up{0.0F, 1.0F, 0.0F};
+  float vertical_fov = 35.0F;  // degrees
+};
+
+// Sun, sky and two studio soft boxes that only glossy things reflect.
+struct Lights {
+  glm::vec3 sun_direction{0.45F, 0.8F, 0.4F};  // from the scene towards the sun; any length
+  glm::vec3 sun_colour{1.0F, 0.95F, 0.88F};
+  float sun_strength = 2.2F;                     // a white matt surface facing the sun gets this radiance
+  float sun_size = 3.0F;                         // degrees across; sets how soft shadows grow with distance
+  glm::vec3 sky_colour{0.78F, 0.86F, 1.0F};      // from above
+  glm::vec3 ground_colour{0.36F, 0.33F, 0.30F};  // from below
+  float sky_strength = 0.62F;
+  float softbox_strength = 1.0F;  // 0: no soft boxes
+  bool casts_shadow = true;       // false: the shadow pass does not exist
+};
+
+// The floor at a height, without an edge: it fades into the backdrop.
+struct Ground {
+  float height = 0.0F;  // m
+  glm::vec3 colour{0.60F, 0.58F, 0.56F};
+  float fade_from = 0.0F, fade_to = 0.0F;  // m from the camera's target; both 0: chosen from the distance
+  float checker = 0.0F;                    // m a square; 0: plain
+};
+
+// Shown linear behind everything: a vertical gradient with a soft glow in the middle.
+struct Backdrop {
+  glm::vec3 top{0.30F, 0.36F, 0.44F};
+  glm::vec3 bottom{0.60F, 0.61F, 0.62F};
+  float glow = 0.25F;      // brighter behind the target
+  float vignette = 0.25F;  // darker towards the corners; 0: exactly the gradient
+};
+
+enum class OverlayKind : std::uint8_t { none, stress, pieces };
+
+struct Overlay {
+  OverlayKind kind = OverlayKind::none;
+  float least = 0.0F, most = 1.0F;  // range of the colour scale, in the unit below
+  std::string title = "stress";     // drawn above the scale
+  std::string unit = "MPa";         // the numbers' unit; scalars are given in it
+};
+
+// Everything in one picture.
+struct Frame {
+  std::vector<Draw> draws;  // all that exists: meshes not listed leave the GPU
+  Camera camera;
+  Lights lights;
+  std::optional<Ground> ground = Ground{};
+  Backdrop backdrop;
+  Overlay overlay;
+  float exposure = 1.0F;
+  std::string caption;  // ASCII 32 to 126, '\n' starts a line; anything else is drawn as a box
+};
+
+}  // namespace shatterbox::render
