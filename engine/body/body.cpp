@@ -1,0 +1,33 @@
+#include "engine/body/body.h"
+
+#include <algorithm>
+
+namespace shatterbox::body {
+namespace {
+
+template <class Bodies>
+auto* find_in(Bodies& bodies, BodyId id) {
+  const auto place =
+      std::lower_bound(bodies.begin(), bodies.end(), id, [](const Body& b, BodyId i) { return b.id < i; });
+  return place != bodies.end() && place->id == id ? &*place : nullptr;
+}
+
+}  // namespace
+
+double kinetic_energy(const Body& body) {
+  if (!body.is_dynamic()) return 0.0;
+  const Vec3 spin_body = body.pose.rotation.conjugate() * body.angular_velocity;
+  return 0.5 * body.shape->mass * body.velocity.squaredNorm() + 0.5 * spin_body.dot(body.shape->inertia * spin_body);
+}
+
+Vec3 angular_momentum(const Body& body) {
+  if (!body.is_dynamic()) return Vec3::Zero();
+  const Vec3 spin_body = body.pose.rotation.conjugate() * body.angular_velocity;
+  return body.shape->mass * body.pose.translation.cross(body.velocity) +
+         body.pose.rotation * (body.shape->inertia * spin_body);
+}
+
+Body* find_body(std::vector<Body>& bodies, BodyId id) { return find_in(bodies, id); }
+const Body* find_body(const std::vector<Body>& bodies, BodyId id) { return find_in(bodies, id); }
+
+}  // namespace shatterbox::body

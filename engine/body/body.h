@@ -1,0 +1,63 @@
+// Rigid bodies: what changes every step (pose, velocities, rest) together with what contact needs to know of a body.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/body/shape.h"
+#include "engine/core/vec.h"
+
+namespace shatterbox::body {
+
+/// Bodies are numbered in the order of their birth; a number is never used again. Zero is no body.
+using BodyId = std::uint32_t;
+
+enum class Motion : std::uint8_t { fixed, scripted, dynamic };
+
+struct Body {
+  BodyId id = 0;
+  std::string name;
+  Motion motion = Motion::dynamic;
+  std::shared_ptr<const Shape> shape;
+
+  Pose pose;                               // of the centre of mass, world from body
+  Vec3 velocity = Vec3::Zero();            // of the centre of mass, m/s
+  Vec3 angular_velocity = Vec3::Zero();    // rad/s, world
+  double inverse_mass = 0.0;               // 1/kg; 0 unless dynamic
+  Mat3 inverse_inertia = Mat3::Zero();     // body space, 1/(kg m2); 0 unless dynamic
+
+  double friction = 0.5;
+  double rolling_friction = 0.0;  // m
+  double restitution = 0.3;
+  double young = 70e9;   // Pa, for the contact's own compliance
+  double poisson = 0.22;
+  int group = -1;        // bodies of one group >= 0 do not collide with each other
+  int material = 0;      // number in the world's list of materials
+
+  bool is_awake = true;
+  double quiet_time = 0.0;  // s for which the body has hardly moved
+
+  bool is_dynamic() const { return inverse_mass > 0.0; }
+  Mat3 inverse_inertia_world() const {
+    const Mat3 r = pose.rotation.toRotationMatrix();
+    return r * inverse_inertia * r.transpose();
+  }
+  Vec3 velocity_at(const Vec3& point_world) const {
+    return velocity + angular_velocity.cross(point_world - pose.translation);
+  }
+};
+
+/// Kinetic energy, J; 0 for bodies that are not dynamic.
+double kinetic_energy(const Body& body);
+
+/// Angular momentum about the world's origin, kg m2/s; 0 for bodies that are not dynamic.
+Vec3 angular_momentum(const Body& body);
+
+/// The body with that id in `bodies` (ascending ids), or nothing. Pointers are good until the list changes.
+Body* find_body(std::vector<Body>& bodies, BodyId id);
+const Body* find_body(const std::vector<Body>& bodies, BodyId id);
+
+}  // namespace shatterbox::body

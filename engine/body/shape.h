@@ -1,0 +1,45 @@
+// The immutable form of a body, shared by its copies. Body space: origin at the centre of mass, axes of the mesh.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/geometry/edge_topology.h"
+#include "engine/geometry/shell_mesh.h"
+#include "engine/geometry/triangle_mesh.h"
+
+namespace shatterbox::body {
+
+enum class ShapeKind : std::uint8_t {
+  plane,   // the half space y <= 0 of body space is solid; always static
+  box,     // half_extent about the origin
+  sphere,  // radius about the origin
+  shell,   // an infinitely thin triangle mesh; open or closed
+};
+
+struct Shape {
+  ShapeKind kind = ShapeKind::sphere;
+  Vec3 half_extent = Vec3::Zero();  // box, m
+  double radius = 0.0;              // sphere, m
+
+  // Shell: the one surface for contact, pictures, audit and export.
+  geometry::TriangleMesh surface;         // body space
+  geometry::EdgeTopology topology;        // of the surface
+  std::vector<std::uint8_t> crack_edges;  // per edge of the surface: 1 on a crack face
+  std::vector<int> triangle_grains;       // per triangle: number of the grain, -1 without
+  std::vector<int> triangle_cells;        // per triangle: cell of `shell` it belongs to
+  double thickness = 0.0;                 // m
+
+  // What breaks: cells in material space; x_material = x_body + material_from_body.
+  std::shared_ptr<const geometry::ShellMesh> shell;
+  Vec3 material_from_body = Vec3::Zero();  // m
+
+  double mass = 0.0;             // kg; 0 for planes
+  Mat3 inertia = Mat3::Zero();   // about the centre of mass, body space, kg m2
+  double bounding_radius = 0.0;  // about the origin, m; infinite shapes have 0
+  double least_gap = 0.0;        // m: this surface was born this close to another one; contact never opens it wider
+};
+
+}  // namespace shatterbox::body

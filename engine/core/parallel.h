@@ -1,0 +1,29 @@
+// Parallel loops whose result does not depend on the number of threads: fixed chunks, disjoint outputs, no reduction.
+// Two back-ends: oneTBB, or std::jthread for the thread sanitizer (which cannot see into Debian's TBB).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace shatterbox::core {
+
+/// Calls body(begin, end) on chunks of at most `grain` indices that cover [0, count); chunk borders depend on count
+/// and grain only. The chunks run in any order, possibly at once: each must write only what is its own.
+void parallel_chunks(std::size_t count, std::size_t grain,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls body(i) for each i in [0, count), `grain` indices to a task.
+template <class Body>
+void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_chunks(count, grain, [&body](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Sets the number of threads for all loops of the process; 0 means one a core. Results never depend on it.
+void set_thread_count(int count);
+
+/// The number of threads in use.
+int thread_count();
+
+}  // namespace shatterbox::core

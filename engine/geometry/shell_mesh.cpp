@@ -1,0 +1,228 @@
+#include "engine/geometry/shell_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace shatterbox::geometry {
+namespace {
+
+using Size = std::size_t;
+
+Size at(int i) { return static_cast<Size>(i); }
+
+/// Disjoint sets whose representative is the smallest member, so that the order of unions does not matter.
+class DisjointSets {
+ public:
+  explicit DisjointSets(Size count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+  void unite(int i, int j) {
+    i = find(i);
+    j = find(j);
+    if (i != j) parent_[at(std::max(i, j))] = std::min(i, j);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// A side of a cell that lies on an element's edge: the stretch of the edge, from its lower-numbered vertex.
+struct Stretch {
+  int edge;
+  double begin, end;
+  int cell, side;
+};
+
+double along_edge(const ShellElements& elements, int element, int local_edge, const Vec2& barycentric) {
+  const Triangle& triangle = elements.mesh.triangles[at(element)];
+  const std::array<double, 3> weights{1.0 - barycentric.x() - barycentric.y(), barycentric.x(), barycentric.y()};
+  const Size i = at(local_edge);
+  const Size j = (i + 1) % 3;
+  // The weight of the edge's higher-numbered vertex is the parameter along the edge.
+  return triangle[i] < triangle[j] ? weights[j] : weights[i];
+}
+
+std::vector<Stretch> collect_stretches(const ShellMesh& mesh) {
+  std::vector<Stretch> stretches;
+  const ShellElements& elements = *mesh.elements;
+  for (Size c = 0; c < mesh.cells.size(); ++c) {
+    const ShellCell& cell = mesh.cells[c];
+    for (int s = 0; s < cell.corner_count; ++s) {
+      const ShellCorner& corner = mesh.corners[at(cell.first_corner + s)];
+      if (corner.side != SideKind::element_edge) continue;
+      const ShellCorner& next = mesh.corners[at(cell.first_corner + (s + 1) % cell.corner_count)];
+      const double p = along_edge(elements, cell.element, corner.side_id, corner.barycentric);
+      const double q = along_edge(elements, cell.element, corner.side_id, next.barycentric);
+      const int edge = elements.topology.triangle_edges[at(cell.element)][at(corner.side_id)];
+      stretches.push_back({edge, std::min(p, q), std::max(p, q), static_cast<int>(c), s});
+    }
+  }
+  std::sort(stretches.begin(), stretches.end(), [](const Stretch& a, const Stretch& b) {
+    return std::array{a.edge, a.cell, a.side} < std::array{b.edge, b.cell, b.side};
+  });
+  return stretches;
+}
+
+double edge_length(const ShellElements& elements, int edge) {
+  const auto& ends = elements.topology.edges[at(edge)];
+  return (elements.mesh.positions[at(ends[1])] - elements.mesh.positions[at(ends[0])]).norm();
+}
+
+void add_edge_contacts(const ShellMesh& mesh, double tolerance, std::vector<CellContact>& contacts) {
+  const std::vector<Stretch> stretches = collect_stretches(mesh);
+  for (Size first = 0; first < stretches.size();) {
+    Size last = first;
+    while (last < stretches.size() && stretches[last].edge == stretches[first].edge) ++last;
+    const double length = edge_length(*mesh.elements, stretches[first].edge);
+    for (Size i = first; i < last; ++i)
+      for (Size j = i + 1; j < last; ++j) {
+        const Stretch& a = stretches[i];
+        const Stretch& b = stretches[j];
+        if (mesh.cells[at(a.cell)].element == mesh.cells[at(b.cell)].element) continue;
+        const double overlap = std::min(a.end, b.end) - std::max(a.begin, b.begin);
+        if (overlap > tolerance) contacts.push_back({a.cell, b.cell, a.side, b.side, overlap * length});
+      }
+    first = last;
+  }
+}
+
+void add_grain_contacts(const ShellMesh& mesh, std::vector<CellContact>& contacts) {
+  struct Facet {
+    int element, id, cell, side;
+  };
+  std::vector<Facet> facets;
+  for (Size c = 0; c < mesh.cells.size(); ++c)
+    for (int s = 0; s < mesh.cells[c].corner_count; ++s) {
+      const ShellCorner& corner = mesh.corners[at(mesh.cells[c].first_corner + s)];
+      if (corner.side == SideKind::grain)
+        facets.push_back({mesh.cells[c].element, corner.side_id, static_cast<int>(c), s});
+    }
+  std::sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
+    return std::array{a.element, a.id, a.cell, a.side} < std::array{b.element, b.id, b.cell, b.side};
+  });
+  for (Size i = 0; i + 1 < facets.size(); ++i) {
+    const Facet& a = facets[i];
+    const Facet& b = facets[i + 1];
+    if (a.element != b.element || a.id != b.id || a.cell == b.cell) continue;
+    const ShellCell& cell = mesh.cells[at(a.cell)];
+    const ShellCorner& p = mesh.corners[at(cell.first_corner + a.side)];
+    const ShellCorner& q = mesh.corners[at(cell.first_corner + (a.side + 1) % cell.corner_count)];
+    const double length = (position_in_element(*mesh.elements, a.element, p.barycentric) -
+                           position_in_element(*mesh.elements, a.element, q.barycentric))
+                              .norm();
+    contacts.push_back({a.cell, b.cell, a.side, b.side, length});
+  }
+}
+
+}  // namespace
+
+Mat3 facet_frame(const ShellElements& elements, int element) {
+  const Triangle& t = elements.mesh.triangles[at(element)];
+  const Vec3& a = elements.mesh.positions[at(t[0])];
+  const Vec3 ab = elements.mesh.positions[at(t[1])] - a;
+  const Vec3 ac = elements.mesh.positions[at(t[2])] - a;
+  Mat3 frame;
+  frame.col(0) = ab.normalized();
+  frame.col(2) = ab.cross(ac).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+double element_area(const ShellElements& elements, int element) {
+  const Triangle& t = elements.mesh.triangles[at(element)];
+  const Vec3& a = elements.mesh.positions[at(t[0])];
+  return 0.5 * (elements.mesh.positions[at(t[1])] - a).cross(elements.mesh.positions[at(t[2])] - a).norm();
+}
+
+Vec3 position_in_element(const ShellElements& elements, int element, const Vec2& barycentric) {
+  const Triangle& t = elements.mesh.triangles[at(element)];
+  const Vec3& a = elements.mesh.positions[at(t[0])];
+  return a + barycentric.x() * (elements.mesh.positions[at(t[1])] - a) +
+         barycentric.y() * (elements.mesh.positions[at(t[2])] - a);
+}
+
+ShellMesh make_shell_mesh(std::shared_ptr<const ShellElements> elements) {
+  ShellMesh mesh;
+  mesh.elements = std::move(elements);
+  const Size count = mesh.elements->mesh.triangles.size();
+  const std::array<Vec2, 3> barycentric{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
+  for (Size t = 0; t < count; ++t) {
+    ShellCell cell;
+    cell.element = static_cast<int>(t);
+    cell.vertices = mesh.elements->mesh.triangles[t];
+    cell.edges = mesh.elements->topology.triangle_edges[t];
+    cell.area = element_area(*mesh.elements, cell.element);
+    cell.first_corner = static_cast<int>(mesh.corners.size());
+    cell.corner_count = 3;
+    for (int i = 0; i < 3; ++i) mesh.corners.push_back({barycentric[at(i)], SideKind::element_edge, i});
+    mesh.cells.push_back(cell);
+  }
+  mesh.vertex_source.resize(mesh.elements->mesh.positions.size());
+  std::iota(mesh.vertex_source.begin(), mesh.vertex_source.end(), 0);
+  mesh.edge_source.resize(mesh.elements->topology.edges.size());
+  std::iota(mesh.edge_source.begin(), mesh.edge_source.end(), 0);
+  return mesh;
+}
+
+std::vector<CellContact> find_cell_contacts(const ShellMesh& mesh, double tolerance) {
+  std::vector<CellContact> contacts;
+  add_edge_contacts(mesh, tolerance, contacts);
+  add_grain_contacts(mesh, contacts);
+  std::sort(contacts.begin(), contacts.end(), [](const CellContact& a, const CellContact& b) {
+    return std::array{a.cell_a, a.cell_b, a.side_a, a.side_b} <
+           std::array{b.cell_a, b.cell_b, b.side_a, b.side_b};
+  });
+  return contacts;
+}
+
+void assign_degrees_of_freedom(ShellMesh& mesh, const std::vector<CellContact>& contacts) {
+  DisjointSets vertices(3 * mesh.cells.size());
+  DisjointSets edges(3 * mesh.cells.size());
+  const ShellElements& elements = *mesh.elements;
+  for (const CellContact& contact : contacts) {
+    const int element_a = mesh.cells[at(contact.cell_a)].element;
+    const int element_b = mesh.cells[at(contact.cell_b)].element;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        // On a shared edge its two ends and its rotation are common; inside one element everything is.
+        const auto& topology = elements.topology;
+        const bool is_inside = element_a == element_b;
+        const int shared_edge =
+            is_inside ? -1
+                      : topology.triangle_edges[at(element_a)][at(
+                            mesh.corners[at(mesh.cells[at(contact.cell_a)].first_corner + contact.side_a)].side_id)];
+        const int va = elements.mesh.triangles[at(element_a)][at(i)];
+        const int vb = elements.mesh.triangles[at(element_b)][at(j)];
+        const bool is_end = is_inside || topology.edges[at(shared_edge)][0] == va ||
+                            topology.edges[at(shared_edge)][1] == va;
+        if (va == vb && is_end) vertices.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
+        const int ea = topology.triangle_edges[at(element_a)][at(i)];
+        const int eb = topology.triangle_edges[at(element_b)][at(j)];
+        if (ea == eb && (is_inside || ea == shared_edge)) edges.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
+      }
+  }
+  mesh.vertex_source.clear();
+  mesh.edge_source.clear();
+  std::vector<int> vertex_number(3 * mesh.cells.size(), -1);
+  std::vector<int> edge_number(3 * mesh.cells.size(), -1);
+  for (Size c = 0; c < mesh.cells.size(); ++c)
+    for (Size i = 0; i < 3; ++i) {
+      ShellCell& cell = mesh.cells[c];
+      int& vertex = vertex_number[at(vertices.find(static_cast<int>(3 * c + i)))];
+      if (vertex < 0) {
+        vertex = static_cast<int>(mesh.vertex_source.size());
+        mesh.vertex_source.push_back(elements.mesh.triangles[at(cell.element)][i]);
+      }
+      cell.vertices[i] = vertex;
+      int& edge = edge_number[at(edges.find(static_cast<int>(3 * c + i)))];
+      if (edge < 0) {
+        edge = static_cast<int>(mesh.edge_source.size());
+        mesh.edge_source.push_back(elements.topology.triangle_edges[at(cell.element)][i]);
+      }
+      cell.edges[i] = edge;
+    }
+}
+
+}  // namespace shatterbox::geometry
