@@ -17,7 +17,8 @@ auto* find_in(Bodies& bodies, BodyId id) {
 double kinetic_energy(const Body& body) {
   if (!body.is_dynamic()) return 0.0;
   const Vec3 spin_body = body.pose.rotation.conjugate() * body.angular_velocity;
-  return 0.5 * body.shape->mass * body.velocity.squaredNorm() + 0.5 * spin_body.dot(body.shape->inertia * spin_body);
+  return 0.5 * body.shape->mass * body.velocity.squaredNorm() +
+         0.5 * spin_body.dot(body.shape->inertia * spin_body);
 }
 
 Vec3 angular_momentum(const Body& body) {
@@ -27,7 +28,11 @@ Vec3 angular_momentum(const Body& body) {
          body.pose.rotation * (body.shape->inertia * spin_body);
 }
 
-Body* find_body(std::vector<Body>& bodies, BodyId id) { return find_in(bodies, id); }
-const Body* find_body(const std::vector<Body>& bodies, BodyId id) { return find_in(bodies, id); }
+Body* find_body(std::vector<Body>& bodies, BodyId id) {
+  return find_in(bodies, id);
+}
+const Body* find_body(const std::vector<Body>& bodies, BodyId id) {
+  return find_in(bodies, id);
+}
 
 }  // namespace shatterbox::body

@@ -1,4 +1,5 @@
-// Rigid bodies: what changes every step (pose, velocities, rest) together with what contact needs to know of a body.
+// Rigid bodies: what changes every step (pose, velocities, rest) together with what contact needs to know of
+// a body.
 #pragma once
 
 #include <cstdint>
@@ -23,19 +24,19 @@ struct Body {
   Motion motion = Motion::dynamic;
   std::shared_ptr<const Shape> shape;
 
-  Pose pose;                               // of the centre of mass, world from body
-  Vec3 velocity = Vec3::Zero();            // of the centre of mass, m/s
-  Vec3 angular_velocity = Vec3::Zero();    // rad/s, world
-  double inverse_mass = 0.0;               // 1/kg; 0 unless dynamic
-  Mat3 inverse_inertia = Mat3::Zero();     // body space, 1/(kg m2); 0 unless dynamic
+  Pose pose;                             // of the centre of mass, world from body
+  Vec3 velocity = Vec3::Zero();          // of the centre of mass, m/s
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
+  double inverse_mass = 0.0;             // 1/kg; 0 unless dynamic
+  Mat3 inverse_inertia = Mat3::Zero();   // body space, 1/(kg m2); 0 unless dynamic
 
   double friction = 0.5;
   double rolling_friction = 0.0;  // m
   double restitution = 0.3;
-  double young = 70e9;   // Pa, for the contact's own compliance
+  double young = 70e9;  // Pa, for the contact's own compliance
   double poisson = 0.22;
-  int group = -1;        // bodies of one group >= 0 do not collide with each other
-  int material = 0;      // number in the world's list of materials
+  int group = -1;    // bodies of one group >= 0 do not collide with each other
+  int material = 0;  // number in the world's list of materials
 
   bool is_awake = true;
   double quiet_time = 0.0;  // s for which the body has hardly moved

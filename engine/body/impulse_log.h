@@ -19,12 +19,12 @@ enum class ImpulseKind : std::uint8_t {
 struct LoggedImpulse {
   ImpulseKind kind = ImpulseKind::contact;
   BodyId body_a = 0;
-  BodyId body_b = 0;                      // body_a gets `impulse`, body_b gets minus it
-  Vec3 point_world = Vec3::Zero();        // m
-  Vec3 normal_world = Vec3::Zero();       // unit, from b towards a
-  Vec3 impulse_world = Vec3::Zero();      // N s, normal and friction together
-  double closing_speed = 0.0;             // m/s along the normal before the collision; 0 for contact
-  double effective_mass = 0.0;            // kg along the normal, from both full inverse masses
+  BodyId body_b = 0;                  // body_a gets `impulse`, body_b gets minus it
+  Vec3 point_world = Vec3::Zero();    // m
+  Vec3 normal_world = Vec3::Zero();   // unit, from b towards a
+  Vec3 impulse_world = Vec3::Zero();  // N s, normal and friction together
+  double closing_speed = 0.0;         // m/s along the normal before the collision; 0 for contact
+  double effective_mass = 0.0;        // kg along the normal, from both full inverse masses
 };
 
 using ImpulseLog = std::vector<LoggedImpulse>;

@@ -1,4 +1,5 @@
-// The immutable form of a body, shared by its copies. Body space: origin at the centre of mass, axes of the mesh.
+// The immutable form of a body, shared by its copies. Body space: origin at the centre of mass, axes of the
+// mesh.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +40,7 @@ struct Shape {
   double mass = 0.0;             // kg; 0 for planes
   Mat3 inertia = Mat3::Zero();   // about the centre of mass, body space, kg m2
   double bounding_radius = 0.0;  // about the origin, m; infinite shapes have 0
-  double least_gap = 0.0;        // m: this surface was born this close to another one; contact never opens it wider
+  double least_gap = 0.0;  // m: this surface was born this close to another one; contact never opens it wider
 };
 
 }  // namespace shatterbox::body

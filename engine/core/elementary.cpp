@@ -72,7 +72,9 @@ double atan_positive(double x) {  // 0 <= x <= 1: halve the angle twice
 
 }  // namespace
 
-double sqrt(double x) { return std::sqrt(x); }
+double sqrt(double x) {
+  return std::sqrt(x);
+}
 
 double sin(double x) {
   const Reduced r = reduce(x);
@@ -140,6 +142,8 @@ double acos(double x) {
   return atan2(sqrt((1.0 - x) * (1.0 + x)), x);
 }
 
-double asin(double x) { return 0.5 * kPi - acos(x); }
+double asin(double x) {
+  return 0.5 * kPi - acos(x);
+}
 
 }  // namespace shatterbox::core

@@ -1,5 +1,6 @@
 // sin, cos, exp, log, pow, atan2, acos that give the same bits on every CPU and compiler, as libm's do not.
-// Accurate to a few units in the last place over the ranges the engine uses (tests/engine/core/elementary.cpp).
+// Accurate to a few units in the last place over the ranges the engine uses
+// (tests/engine/core/elementary.cpp).
 #pragma once
 
 namespace shatterbox::core {

@@ -1,4 +1,5 @@
-// A 64-bit hash of numbers, for the state hash that pins a run to its bits (DESIGN: the same scene, the same bits).
+// A 64-bit hash of numbers, for the state hash that pins a run to its bits (DESIGN: the same scene, the same
+// bits).
 #pragma once
 
 #include <bit>

@@ -18,7 +18,9 @@ namespace {
 
 std::atomic<int> wanted_threads{0};
 
-int cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+int cores() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 }  // namespace
 
@@ -56,7 +58,9 @@ void parallel_chunks(std::size_t count, std::size_t grain,
 
 #else
 
-void set_thread_count(int count) { wanted_threads = count; }
+void set_thread_count(int count) {
+  wanted_threads = count;
+}
 
 void parallel_chunks(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {

@@ -1,5 +1,6 @@
-// Parallel loops whose result does not depend on the number of threads: fixed chunks, disjoint outputs, no reduction.
-// Two back-ends: oneTBB, or std::jthread for the thread sanitizer (which cannot see into Debian's TBB).
+// Parallel loops whose result does not depend on the number of threads: fixed chunks, disjoint outputs, no
+// reduction. Two back-ends: oneTBB, or std::jthread for the thread sanitizer (which cannot see into Debian's
+// TBB).
 #pragma once
 
 #include <cstddef>
@@ -7,8 +8,8 @@
 
 namespace shatterbox::core {
 
-/// Calls body(begin, end) on chunks of at most `grain` indices that cover [0, count); chunk borders depend on count
-/// and grain only. The chunks run in any order, possibly at once: each must write only what is its own.
+/// Calls body(begin, end) on chunks of at most `grain` indices that cover [0, count); chunk borders depend on
+/// count and grain only. The chunks run in any order, possibly at once: each must write only what is its own.
 void parallel_chunks(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -1,5 +1,5 @@
-// Counter-based random numbers: the n-th draw of a stream depends on (seed, stream, n) only, so that a stream can be
-// copied, saved and resumed, and draws for one body never shift those for another.
+// Counter-based random numbers: the n-th draw of a stream depends on (seed, stream, n) only, so that a stream
+// can be copied, saved and resumed, and draws for one body never shift those for another.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,57 @@
+// What a new body is, in the caller's words: its form, place, motion and how it is held.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/triangle_mesh.h"
+
+namespace shatterbox::world {
+
+/// An infinitely thin triangle mesh with a thickness for mass and stress. The mesh must have passed
+/// geometry::diagnose.
+struct ShellDescription {
+  geometry::TriangleMesh mesh;      // in the mesh's own frame, m
+  std::vector<std::uint8_t> parts;  // per triangle: number of the look; empty for all 0
+  double thickness = 1e-3;          // m
+  std::vector<int> clamped;         // vertices held by the world (a frame, a foot); empty: a free body
+  bool is_breakable = true;
+};
+
+struct BoxDescription {
+  Vec3 half_extent = Vec3::Constant(0.5);  // m
+};
+
+struct SphereDescription {
+  double radius = 0.5;  // m
+};
+
+/// The half space y <= 0 of the body's own frame is solid. Always fixed.
+struct PlaneDescription {};
+
+struct BodyDescription {
+  std::string name;
+  std::variant<PlaneDescription, BoxDescription, SphereDescription, ShellDescription> form;
+  int material = 0;                             // from World::add_material
+  body::Motion motion = body::Motion::dynamic;  // a breakable shell that is clamped is always fixed
+  Pose pose;                                    // of the mesh's (or the analytic form's) own frame
+  Vec3 velocity = Vec3::Zero();                 // of the centre of mass, m/s
+  Vec3 angular_velocity = Vec3::Zero();         // rad/s, world
+  int group = -1;                               // bodies of one group >= 0 do not collide
+  std::optional<double> density;                // kg/m3, instead of the material's
+  std::optional<double> contact_duration;       // s, of every impact on this body
+};
+
+/// Friction and restitution of two materials, instead of the geometric mean and the lesser of theirs.
+struct PairOverride {
+  int material_a = 0, material_b = 0;
+  std::optional<double> friction;
+  std::optional<double> restitution;
+};
+
+}  // namespace shatterbox::world

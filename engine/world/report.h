@@ -1,0 +1,94 @@
+// What a run did, in numbers with units: impacts with their verdicts, breaks with their errors, contact,
+// conservation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/core/stage_timer.h"
+#include "engine/core/vec.h"
+
+namespace shatterbox::world {
+
+/// One impact whose stress was evaluated (or could not be).
+struct ImpactRow {
+  double time = 0.0;  // s
+  std::string body;
+  body::BodyId id = 0;
+  double impulse = 0.0;       // N s
+  double duration = 0.0;      // s
+  double stress = 0.0;        // Pa, greatest principal, the pulse's peak
+  double strength = 0.0;      // Pa, there
+  double ratio = 0.0;         // stress / strength
+  std::string verdict;        // "broke", "held: 0.62 of its strength", "not evaluated: ..."
+  Vec3 place = Vec3::Zero();  // m, world, at that time
+};
+
+/// One body that came apart.
+struct BreakRow {
+  double time = 0.0;  // s
+  std::string body;
+  body::BodyId id = 0;
+  int pieces = 0;
+  double new_area = 0.0;                // m2: crack length times thickness
+  double grain_share = 0.0;             // of new area on grain boundaries
+  double fracture_energy = 0.0;         // J, used by cracks
+  double elastic_energy = 0.0;          // J, available
+  double mass_error = 0.0;              // relative, by sum over the pieces
+  double momentum_error = 0.0;          // relative
+  double angular_momentum_error = 0.0;  // relative, about the parent's centre
+  double energy_gain = 0.0;             // kinetic, after / before - 1, at the birth
+  int generation = 0;                   // within its impact event, 0 for the first break
+  int crack_generations = 0;            // solves of the cracking body
+  bool energy_guard_active = false;
+  bool generation_bound_active = false;
+  int merged = 0;  // pieces too small to resolve that joined a neighbour
+  double merged_mass_share = 0.0;
+  Vec3 place = Vec3::Zero();  // m, world: where the hit was
+  /// Cracks as segments in the parent's material space (x, y, z of both ends), for studies of their
+  /// orientation.
+  std::vector<std::array<Vec3, 2>> cracks;
+  Vec3 place_material = Vec3::Zero();  // m
+};
+
+struct ContactFigures {
+  int contacts = 0;  // with a gap below twice the kept one, last step
+  int most_contacts = 0;
+  double least_gap = 0.0;  // m, over the run
+  long failsafe_steps = 0;
+  double frozen_share = 0.0;  // of body-steps
+  double residual = 0.0;      // m/s, worst normal velocity left by the solver, last step
+};
+
+struct ConservationFigures {
+  Vec3 momentum = Vec3::Zero();       // kg m/s, of all dynamic bodies
+  double kinetic_energy = 0.0;        // J
+  double potential_energy = 0.0;      // J, against the world's origin
+  double greatest_energy_rise = 0.0;  // J, of the total energy from one step to the next, commands apart
+  double momentum_error =
+      0.0;  // kg m/s: greatest step's change that the impulse log and gravity do not explain
+};
+
+struct SolverFigures {
+  double worst_residual = 0.0;  // relative, of the stress solves
+  long solves = 0;
+  long skipped = 0;  // impacts that a bound showed to be harmless
+  long factorisations = 0;
+};
+
+struct WorldReport {
+  std::vector<ImpactRow> impacts;
+  std::vector<BreakRow> breaks;
+  ContactFigures contact;
+  ConservationFigures conservation;
+  SolverFigures solver;
+  core::StageTimer stages;
+  long steps = 0;
+  int bodies_start = 0;
+  long triangles_start = 0, triangles_most = 0;
+};
+
+}  // namespace shatterbox::world

@@ -1,0 +1,79 @@
+// The door of the engine: make a world, add bodies, step, read poses, pieces and impacts.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/core/result.h"
+#include "engine/material/material.h"
+#include "engine/world/description.h"
+#include "engine/world/report.h"
+#include "engine/world/settings.h"
+
+namespace shatterbox::world {
+
+/// The last evaluated stress of a shell, for pictures: greatest principal stress over both faces and the
+/// event, Pa.
+struct StressPicture {
+  std::vector<double> triangle_stress;  // per triangle of the shape's surface, Pa; empty: never evaluated
+  double strength = 0.0;                // Pa
+};
+
+/// Where a body came from.
+struct Ancestry {
+  body::BodyId parent = 0;    // 0: not born of a break
+  body::BodyId original = 0;  // the body of the scene that it is, or was, a part of
+  double birth_time = 0.0;    // s
+};
+
+class World {
+ public:
+  explicit World(const WorldSettings& settings);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  /// Adds a material and returns its number. Reasons for refusal: a value out of its range.
+  core::Result<int> add_material(const material::Material& material);
+  void add_pair(const PairOverride& pair);
+
+  /// Adds a body now: before the first step, or between two steps (the script's drop and projectile). Reasons
+  /// for refusal: an unknown material, a form without extent, a mesh that was not mended.
+  core::Result<body::BodyId> add_body(const BodyDescription& description);
+
+  /// Removes a body; false if there is none of that id.
+  bool remove_body(body::BodyId id);
+
+  /// Gives an impulse (N s) at a point (m, world) and wakes the body; false if it is not there or not
+  /// dynamic.
+  bool push_body(body::BodyId id, const Vec3& impulse, const Vec3& point);
+
+  /// Factors and flaws of all breakable shapes, which would otherwise be made at the first hit. Optional.
+  void prepare();
+
+  /// Advances by one step of 1 / steps_per_second seconds.
+  void step();
+
+  std::span<const body::Body> bodies() const;
+  const material::Material& material(int number) const;
+  Ancestry ancestry(body::BodyId id) const;
+  StressPicture stress_picture(body::BodyId id) const;
+  const WorldReport& report() const;
+  const WorldSettings& settings() const;
+
+  double time() const;  // s
+  long steps() const;
+
+  /// Chained over all steps; equal for equal scenes whatever the number of threads.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace shatterbox::world
