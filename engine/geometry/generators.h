@@ -1,0 +1,86 @@
+// Meshes of shells by their sizes: sphere, ornament, bowl, pane, and any surface of revolution. Triangles are
+// near-equilateral, of one size, and without directions that cracks could follow; vertices lie on the exact
+// surface, so that a finer mesh is the same shape. y is up. The same numbers give the same mesh to the bit.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/triangle_mesh.h"
+
+namespace shatterbox::geometry {
+
+/// How fine, and how irregular.
+struct Meshing {
+  double edge_length = 0.003;  // typical edge, m
+  double jitter = 0.3;  // greatest random step of a vertex along the surface, share of the edge; 0: regular
+  std::uint64_t seed = 1;
+};
+
+/// Which part of a thing a triangle is on, for its look and its material.
+enum class Part : std::uint8_t { body, neck, cap, loop };
+
+struct PartedMesh {
+  TriangleMesh mesh;
+  std::vector<Part> parts;  // |T|
+};
+
+/// All generators: an error sentence if a size makes no sense or more than kMostTriangles would come out.
+inline constexpr int kMostTriangles = 4'000'000;
+
+/// Sphere about the origin: a geodesic icosahedron of 20 f^2 triangles, f = round(1.1 radius / edge_length).
+core::Result<TriangleMesh> make_sphere(double radius, const Meshing& meshing);
+
+/// A glass bauble: sphere about the origin, its top cut off where a cylindrical neck of `neck_radius` rises
+/// by `neck_height`. Open at the neck's end, or, with `has_cap`, closed there by a cap joined to the neck
+/// (Part::cap: its own look, the same shell).
+struct OrnamentSizes {
+  double radius = 0.04;        // m
+  double neck_radius = 0.009;  // m
+  double neck_height = 0.008;  // m
+  bool has_cap = false;
+};
+core::Result<PartedMesh> make_ornament(const OrnamentSizes& sizes, const Meshing& meshing);
+
+/// The ornament's metal cap as a mesh of its own, in the ornament's coordinates: a cup over the neck that
+/// keeps `clearance` from it, and a wire loop on top (Part::loop; a loose part: allow it when mending).
+core::Result<PartedMesh> make_ornament_cap(const OrnamentSizes& sizes, double clearance,
+                                           const Meshing& meshing);
+
+/// A pot: raised floor, foot ring at y = 0, curved wall, open rim at y = height. One sheet; thickness is a
+/// number.
+struct BowlSizes {
+  double rim_radius = 0.08;    // m
+  double foot_radius = 0.035;  // m, of the ring it stands on
+  double foot_height = 0.006;  // m, of the floor above the foot; 0: flat
+  double height = 0.07;        // m
+};
+core::Result<TriangleMesh> make_bowl(const BowlSizes& sizes, const Meshing& meshing);
+
+/// Rectangle in the plane z = 0 about the origin, normal +z; width along x, height along y. Its border is
+/// straight to the bit.
+core::Result<TriangleMesh> make_pane(double width, double height, const Meshing& meshing);
+
+/// A piece of a profile in the half plane (r >= 0, y): a straight line, an arc of a circle or a parabola.
+struct ProfileSegment {
+  enum class Kind : std::uint8_t { line, arc, parabola };
+  Kind kind = Kind::line;
+  Vec2 from = Vec2::Zero();
+  Vec2 to = Vec2::Zero();
+  Vec2 centre =
+      Vec2::Zero();  // arc: the circle's centre (the shorter way round); parabola: the control point
+  Part part = Part::body;
+};
+
+/// Turns a profile about the y axis. Segments follow each other; only the ends of the whole may touch the
+/// axis. The rings where segments meet are kept as edges. Faces look to the right of the profile's direction:
+/// a profile that goes up has its faces outside.
+core::Result<PartedMesh> make_surface_of_revolution(const std::vector<ProfileSegment>& profile,
+                                                    const Meshing& meshing);
+
+/// Least angle of any triangle, radians: the measure of how well-shaped a mesh is. 0 without triangles.
+double least_angle(const TriangleMesh& mesh);
+
+}  // namespace shatterbox::geometry
