@@ -1,0 +1,88 @@
+// How long an impact lasts and how hard it presses: Hertz's contact (K. L. Johnson, Contact Mechanics, 1985,
+// ch. 4, 11) in series with the body's own compliance. Hertz alone makes the stress of thin things many times
+// too high.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace shatterbox::stress {
+
+/// Greatest force over mean force of a half-sine pulse, pi / 2.
+inline constexpr double kPeakOverMeanHalfSine = 1.5707963267948966;
+/// The same of Hertz's elastic pulse, (5/8) 2.9432...
+inline constexpr double kPeakOverMeanHertz = 1.8395469902029404;
+
+/// Elasticity and curvature of one of the two surfaces that meet.
+struct ContactSurface {
+  double youngs_modulus = 70e9;  // Pa; 0 means rigid
+  double poisson_ratio = 0.22;
+  double radius = 0.0;  // m, of curvature; 0 means a plane
+};
+
+struct HertzContact {
+  double modulus = 0.0;  // Pa, E*: 1/E* = sum (1 - nu^2)/E
+  double radius = 0.0;   // m, R*: 1/R* = sum 1/R
+};
+
+/// Two spheres, or a sphere and a plane. Two planes get `largest_radius` (m, the size of the smaller body): a
+/// flat contact is a blunt one. Two rigid surfaces get the modulus 1e13 Pa. Radii are clamped to
+/// [least_radius, largest_radius].
+HertzContact make_hertz_contact(const ContactSurface& a, const ContactSurface& b, double least_radius,
+                                double largest_radius);
+
+/// F = stiffness * depth^(3/2): (4/3) E* sqrt(R*), N m^-1.5.
+double hertz_stiffness(const HertzContact& contact);
+
+/// Duration of an elastic impact by Hertz alone, s: 2.868... (m^2 / (R E*^2 v))^(1/5). mass: effective, kg;
+/// speed > 0, m/s.
+double hertz_duration(const HertzContact& contact, double mass, double speed);
+
+/// Peak force (N) of an impact of `mass` (effective, kg) at `speed` (m/s): all kinetic energy goes into
+/// Hertz's contact and a linear spring of `body_compliance` (m/N) in series.
+double peak_force(const HertzContact& contact, double mass, double speed, double body_compliance = 0.0);
+
+/// Depth over force at the given peak force, m/N: Hertz's spring made linear there.
+double hertz_compliance(const HertzContact& contact, double force);
+
+/// Radius of the circle of contact at a force, m: (3 F R / 4 E*)^(1/3).
+double hertz_patch_radius(const HertzContact& contact, double force);
+
+/// pi sqrt(mass (contact_compliance + body_compliance)), s.
+double series_duration(double mass, double contact_compliance, double body_compliance);
+
+/// What a solve under a unit force at the contact tells, m/N.
+struct BodyCompliance {
+  double total = 0.0;    // f . u: with the inertia of the body in a screened solve
+  double elastic = 0.0;  // u . K u
+};
+
+struct DurationProblem {
+  HertzContact contact;
+  double mass = 0.0;          // kg, effective, at the contact, rotation included
+  double speed = 0.0;         // m/s, closing
+  double first_period = 0.0;  // s, of the body: ShellSystem::first_period
+  /// A ball on a body whose motion the ball feels: the total compliance counts; a body that falls on a floor:
+  /// the elastic one, its own motion is what is being stopped (it is in `mass`).
+  bool counts_inertia = false;
+  double given_duration = 0.0;  // s; > 0: the scene's own, nothing is searched
+};
+
+struct ImpactDuration {
+  double duration = 0.0;            // s
+  double peak_force = 0.0;          // N
+  double contact_compliance = 0.0;  // m/N, Hertz's at that force
+  BodyCompliance body;              // at the chosen screening
+  bool is_screened = false;         // false: the balanced (or supported) solve holds
+  int screening_exponent = 0;       // s = 2^exponent, if screened
+  int solve_count = 0;
+};
+
+/// Fixed point of duration and compliance, over screenings that are powers of two (so that factors are kept):
+/// starts from the balanced solve and stays there if the duration is at least half the first period; at most
+/// 6 steps, stops when an exponent comes again. `compliance(is_screened, exponent)` solves for a unit force
+/// at the contact.
+ImpactDuration find_duration(const DurationProblem& problem,
+                             const std::function<BodyCompliance(bool is_screened, int exponent)>& compliance);
+
+}  // namespace shatterbox::stress

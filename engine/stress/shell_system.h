@@ -1,0 +1,80 @@
+// The linear system of a shell, K + s^2 M, with its Cholesky factor kept: made once, then any number of loads
+// from any number of threads. Balanced (s = 0, free bodies: inertia relief), supported (s = 0, clamped) or
+// screened (s > 0: the displacement averaged over a window of 1 / s, exact for the waves that can run in it).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/shell_mesh.h"
+#include "engine/stress/shell_stiffness.h"
+
+namespace shatterbox::stress {
+
+/// Virtual vertices (all three displacements) and virtual edges (rotation) that are clamped; ascending.
+/// Empty: free.
+struct ShellSupport {
+  std::vector<int> vertices;
+  std::vector<int> edges;
+  bool empty() const { return vertices.empty() && edges.empty(); }
+};
+
+/// The support of a cut mesh, from the clamped vertices and edges of its uncut elements (|V| and |E| flags):
+/// a copy is clamped only where its own material reaches the clamped vertex or edge. Two clamped vertices
+/// clamp the line between them if it is an edge; the rotation about it stays free unless the edge is clamped
+/// too.
+ShellSupport find_support(const geometry::ShellMesh& mesh, const std::vector<char>& is_vertex_clamped,
+                          const std::vector<char>& is_edge_clamped);
+
+/// Answer to one load, SI units. If the load is an impulse (N s) read every unit times a second.
+struct ShellSolution {
+  VecX displacement;        // |dof|, m at vertices, rad at edges; free balanced parts: without rigid motion
+  double compliance = 0.0;  // load . displacement, J (for a unit force: m/N)
+  double elastic_compliance = 0.0;  // displacement . K displacement, J: twice the elastic energy
+  double residual = 0.0;            // |b - A u| / |b| in the shell's units; the check that the answer is one
+  /// False if the load moves a mechanism (an open membrane-only shell, a hinge): the stress is then
+  /// meaningless.
+  bool is_evaluated() const { return residual < 1e-4; }
+};
+
+class ShellSystem {
+ public:
+  /// Orders, analyses and factors. `screening` is s in 1/s; 0 for the balanced or supported system. Fails,
+  /// with a sentence, if no factor exists (not seen for elements with area).
+  static core::Result<std::shared_ptr<const ShellSystem>> make(
+      std::shared_ptr<const ShellStiffness> stiffness, const geometry::ShellMesh& mesh,
+      double screening = 0.0, const ShellSupport& support = {});
+  ~ShellSystem();
+  ShellSystem(const ShellSystem&) = delete;
+  ShellSystem& operator=(const ShellSystem&) = delete;
+
+  /// Solves for each load (|dof|: N at vertices, N m at edges). With s = 0 every connected part of the mesh
+  /// is first relieved of the rigid motion that its load causes and that its support allows, weighted by
+  /// mass: b = J - M R R^T J. With s > 0 the raw load is used. Same bits whatever the number of loads or
+  /// threads.
+  std::vector<ShellSolution> solve(const std::vector<VecX>& loads) const;
+  ShellSolution solve(const VecX& load) const;
+
+  /// Longest period of free (or supported) vibration, s, to about 1 %; computed at the first call, then kept.
+  /// Only of use with s = 0.
+  double first_period() const;
+
+  double screening() const;  // s, 1/s
+  int dof_count() const;
+  int part_count() const;        // connected parts of the mesh
+  int rigid_mode_count() const;  // over all parts: 6 for each free one, fewer where supported
+  const ShellStiffness& stiffness() const;
+
+  /// Entries of the factor, and multiplications and additions that it took, in millions: for benches.
+  double factor_entries() const;
+  double factor_megaflops() const;
+
+ private:
+  struct State;
+  explicit ShellSystem(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace shatterbox::stress

@@ -1,0 +1,53 @@
+// The factors of one shape, made when first asked for and shared by all copies of the body: one for s = 0 and
+// one for each power of two of the screening s.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "engine/core/result.h"
+#include "engine/stress/shell_system.h"
+
+namespace shatterbox::stress {
+
+/// Nearest power of two of a screening s > 0 (in the logarithm): its exponent.
+int quantise_screening(double screening);
+/// 2^exponent, 1/s.
+double screening_of(int exponent);
+
+class ShellSystemCache {
+ public:
+  ShellSystemCache(std::shared_ptr<const ShellStiffness> stiffness,
+                   std::shared_ptr<const geometry::ShellMesh> mesh, ShellSupport support = {});
+
+  using System = core::Result<std::shared_ptr<const ShellSystem>>;
+
+  /// The system with s = 0 (balanced where free, clamped where supported). Any thread; made once.
+  const System& unscreened();
+  /// The system with s = 2^exponent. Any thread; made once.
+  const System& screened(int exponent);
+
+  const geometry::ShellMesh& mesh() const { return *mesh_; }
+  const ShellStiffness& stiffness() const { return *stiffness_; }
+  const std::shared_ptr<const ShellStiffness>& shared_stiffness() const { return stiffness_; }
+  const ShellSupport& support() const { return support_; }
+  /// Number of systems made so far.
+  int count() const;
+
+ private:
+  struct Slot {
+    std::once_flag is_made;
+    std::optional<System> system;
+  };
+  const System& get(int key, double screening);
+
+  std::shared_ptr<const ShellStiffness> stiffness_;
+  std::shared_ptr<const geometry::ShellMesh> mesh_;
+  ShellSupport support_;
+  mutable std::mutex mutex_;                    // guards slots_, never held while a system is made
+  std::map<int, std::unique_ptr<Slot>> slots_;  // by exponent
+};
+
+}  // namespace shatterbox::stress
