@@ -1,0 +1,124 @@
+// Decide, for shells: does this impact break this body, and along which cracks? Pure: nothing is changed, the
+// answer is the cracked mesh. Rankine's criterion on flaws [BHTF07 VII-A], cracks traced through the
+// elements, the body solved again after each generation of cracks with the force that its new compliance
+// allows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/fracture/flaws.h"
+#include "engine/fracture/grains.h"
+#include "engine/geometry/shell_mesh.h"
+#include "engine/material/material.h"
+#include "engine/stress/shell_system.h"
+
+namespace shatterbox::fracture {
+
+/// A push on the body at one place. Collisions make their force from the closing speed and the compliances;
+/// contact (closing_speed = 0) and impacts of a given duration from `impulse`.
+struct ShellLoad {
+  Vec3 point_material = Vec3::Zero();  // m
+  Vec3 direction = Vec3::UnitX();      // unit; of the force on this body, material space
+  double impulse = 0.0;         // N s, sum of the event: (1 + restitution) x effective mass x closing speed
+  double closing_speed = 0.0;   // m/s; 0: not a collision, the impulse is averaged over `contact_average`
+  double effective_mass = 0.0;  // kg, of both bodies along the direction
+  double other_inverse_mass = 0.0;  // 1/kg, of the other body there; 0 for a floor
+  double hertz_compliance = 0.0;    // m/N, of the contact itself
+  double hertz_radius = 0.0;        // m, of the contact at its peak
+};
+
+struct ShellImpact {
+  std::vector<ShellLoad> loads;          // all loads of the event and of resting contact
+  Vec3 spin_material = Vec3::Zero();     // rad/s
+  std::optional<double> given_duration;  // s; replaces the computed one
+  double contact_average = 1.0 / 60.0;   // s
+};
+
+/// A place where a crack stopped inside the material; it can run on in a later generation or impact.
+struct CrackTip {
+  int crack = 0;
+  int edge = 0;                 // of the element mesh
+  double parameter = 0.0;       // along the edge, from its lower-numbered vertex
+  int element = 0;              // to be entered next
+  Vec3 heading = Vec3::Zero();  // unit, in the plane of the element it came through
+  double length = 0.0;          // m, of the crack behind it
+};
+
+/// The body: what it is made of, how it is held, what has happened to it so far.
+struct ShellSubject {
+  std::shared_ptr<const geometry::ShellMesh> mesh;
+  std::shared_ptr<const stress::ShellSystem>
+      system;  // kept factor of the intact mesh; may be null (made then)
+  material::Material material;
+  double thickness = 0.0;                    // m
+  std::vector<int> clamped_vertices;         // of the element mesh, ascending; empty: a free body
+  std::shared_ptr<const FlawField> flaws;    // of the first parent; null: drawn from the seed
+  std::shared_ptr<const GrainField> grains;  // null: no grains
+  std::vector<CrackTip> tips;                // open tips, as the last decision left them
+  std::uint64_t seed = 1;
+};
+
+struct FractureSettings {
+  int most_generations = 4;   // solves of the cracking body; 2 for speed
+  double waviness = 0.2;      // rad, of crack paths
+  double core_spacing = 3.5;  // crushed core: cell size at the hit, in thicknesses; 0: no core
+  double least_width = 0.0;   // m, what contact can resolve; cracks keep wider pieces than that
+  bool has_energy_guard = true;
+  double patch_radius = 0.0;  // m; 0: max(Hertz radius, thickness, 1.5 element sizes)
+};
+
+enum class Outcome : std::uint8_t { held, broke, not_evaluated };
+
+struct Verdict {
+  Outcome outcome = Outcome::not_evaluated;
+  std::string reason;         // why not evaluated, or how it was settled ("bound")
+  double duration = 0.0;      // s, of the impact
+  double impulse = 0.0;       // N s, greatest of the loads
+  double force = 0.0;         // N, peak, of the same load
+  double stress = 0.0;        // Pa, greatest ratio's principal stress, at the pulse's peak
+  double strength = 0.0;      // Pa, there
+  double ratio = 0.0;         // stress / strength; below 1 the body holds
+  Vec3 place = Vec3::Zero();  // m, material space
+};
+
+/// One straight stretch of a crack in one cell.
+struct CrackSegment {
+  int crack = 0;
+  int side_id = 0;  // of both faces, in ShellCorner
+  int generation = 0;
+  bool is_on_grain = false;  // along a grain boundary
+  std::array<Vec3, 2> ends;  // material space, m
+};
+
+struct Decision {
+  Verdict verdict;
+  std::shared_ptr<const geometry::ShellMesh> mesh;  // cracked; null unless it broke
+  std::vector<CrackTip> tips;                       // that stopped inside the material
+  std::vector<CrackSegment> segments;
+  std::vector<double>
+      element_stress;  // |T| of the element mesh: greatest principal stress at the peak, first solve, Pa
+  int cracks = 0;
+  int core_cells = 0;
+  double new_area = 0.0;         // m2, crack length x thickness (one face)
+  double grain_area = 0.0;       // m2 of it, along grain boundaries
+  double fracture_energy = 0.0;  // J, used
+  double elastic_energy = 0.0;   // J, that was there to be used
+  int generations = 0;           // solves
+  int factorisations = 0;
+  double residual = 0.0;  // worst relative residual of the solves
+  bool energy_guard_active = false;
+  bool generation_bound_active = false;  // cracks still grew when the generations were spent
+  double factor_ms = 0.0, solve_ms = 0.0, trace_ms = 0.0;  // wall time; enters no state
+};
+
+/// The verdict, and the cracked mesh where it breaks.
+Decision decide_shell(const ShellSubject& subject, const ShellImpact& impact,
+                      const FractureSettings& settings = {});
+
+}  // namespace shatterbox::fracture

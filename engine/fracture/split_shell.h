@@ -1,0 +1,26 @@
+// Split: one cut mesh into its connected pieces, none dropped. Flood fill over the contacts of cells.
+#pragma once
+
+#include <vector>
+
+#include "engine/geometry/shell_mesh.h"
+
+namespace shatterbox::fracture {
+
+struct SplitSettings {
+  double least_width =
+      0.0;  // m: pieces narrower than this on average (2 area / perimeter) join their neighbour
+};
+
+struct ShellSplit {
+  std::vector<geometry::ShellMesh> pieces;  // by descending area; degrees of freedom are the piece's own
+  int merged_count = 0;      // pieces that joined a neighbour because nothing could resolve them
+  double merged_area = 0.0;  // m2
+};
+
+/// The pieces of a mesh. Their areas sum to the mesh's. A piece below the least width is joined, before the
+/// split, to the neighbour with the longest common crack: that crack becomes closed material again. Pieces
+/// without any neighbour stay as they are.
+ShellSplit split_shell(const geometry::ShellMesh& mesh, const SplitSettings& settings = {});
+
+}  // namespace shatterbox::fracture
