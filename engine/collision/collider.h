@@ -1,0 +1,37 @@
+// What collision needs of a shape, built once: features (vertices, edges, triangles), who is whose neighbour,
+// and the triangle tree. Shells, boxes and spheres are all seen as features: a sphere is one vertex with a
+// radius.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "engine/body/shape.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/bvh.h"
+#include "engine/geometry/triangle_mesh.h"
+
+namespace shatterbox::collision {
+
+struct Collider {
+  body::ShapeKind kind = body::ShapeKind::shell;
+  std::vector<Vec3> vertices;                 // |V| x 3, body space, m
+  std::vector<geometry::Triangle> triangles;  // |T| x 3; a sphere has one that is its centre thrice
+  std::vector<std::array<int, 2>> edges;      // |E| x 2
+  std::vector<int> neighbour_begin;           // |V| + 1
+  std::vector<int> neighbours;                // vertices that share an edge with a vertex
+  std::vector<int> opposite_begin;            // |E| + 1
+  std::vector<int> opposites;                 // the third vertices of an edge's triangles
+  // Every vertex and edge is owned by one of its triangles, so that each feature pair is met once.
+  std::vector<int> owned_vertex_begin, owned_vertices;  // |T| + 1
+  std::vector<int> owned_edge_begin, owned_edges;       // |T| + 1
+  geometry::TriangleTree tree;
+  double radius = 0.0;           // of a sphere's one vertex, m
+  double bounding_radius = 0.0;  // about the origin, m, radius included
+};
+
+/// Builds the collider of a shape; a plane has no features.
+std::shared_ptr<const Collider> make_collider(const body::Shape& shape);
+
+}  // namespace shatterbox::collision

@@ -1,0 +1,60 @@
+// What contact remembers from step to step: a value that is copied for the snapshot and put back to go back
+// in time. Impulses and ages are state and are hashed; feature lists are caches that change no result and are
+// not.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/collision/collider.h"
+#include "engine/collision/feature_list.h"
+#include "engine/core/hash.h"
+#include "engine/core/vec.h"
+
+namespace shatterbox::dynamics {
+
+/// What is kept of one contact: enough to find it again and to start the solver from its last impulse.
+struct RememberedContact {
+  std::uint64_t feature_key = 0;         // kind and numbers of both features
+  double normal_impulse = 0.0;           // N s, of one substep
+  Vec3 friction_impulse = Vec3::Zero();  // N s, of one substep, world, on body a
+  double arrival_speed = 0.0;            // m/s: closing speed of an impact that has not bounced yet
+  bool was_loaded = false;               // carried an impulse in the last step
+};
+
+/// One pair of bodies that were near each other in the last step.
+struct PairState {
+  body::BodyId body_a = 0, body_b = 0;  // body_a < body_b
+  double kept_gap = 0.0;     // m: min(usual, least gap seen so far): never pushes newborn pieces apart
+  bool is_touching = false;  // holds an island together
+  int trouble_age = 1000;    // steps since the continuous pass last had to act here
+  std::vector<RememberedContact> contacts;
+
+  // Caches.
+  double odometer = 0.0;  // m: how far the bodies may have come closer since the pair was first seen
+  double odometer_at_list = 0.0;
+  double list_margin = -1.0;  // m: the list holds all features that were this close; negative: no list
+  std::shared_ptr<const collision::FeatureList> features;
+};
+
+/// One body's own memory.
+struct BodyState {
+  body::BodyId id = 0;
+  std::shared_ptr<const body::Shape> shape;
+  std::shared_ptr<const collision::Collider> collider;  // of `shape`; shared between copies of the body
+};
+
+struct ContactState {
+  std::vector<PairState> pairs;   // ascending (body_a, body_b)
+  std::vector<BodyState> bodies;  // ascending id
+
+  PairState* find_pair(body::BodyId a, body::BodyId b);
+  const PairState* find_pair(body::BodyId a, body::BodyId b) const;
+};
+
+/// Adds all that decides later steps to the hash; caches stay out.
+void add_to_hash(const ContactState& state, core::Hash& hash);
+
+}  // namespace shatterbox::dynamics

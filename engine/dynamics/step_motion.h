@@ -1,0 +1,65 @@
+// The motion of rigid bodies through one step, as named stages that can each be called alone.
+//
+// [GBF03]'s order is collide, velocity, contact, position. Here the step is divided into substeps and in each
+// of them the four are done in turn: half a kick of gravity, contact with what arrives (velocity, contact),
+// drift (position), half a kick, contact, and the bounce of what has now arrived (collide). So `solve_motion`
+// groups resolve collisions, integrate velocities, resolve contacts and advance positions; a body in free
+// flight takes the whole step at once. A body is seen to touch before it bounces: contacts ahead of it only
+// make it arrive.
+#pragma once
+
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/body/impulse_log.h"
+#include "engine/dynamics/contact_settings.h"
+#include "engine/dynamics/contact_state.h"
+
+namespace shatterbox::dynamics {
+
+struct ContactReport {
+  int contacts = 0;           // with a gap below twice the kept gap at the step's end
+  int solver_contacts = 0;    // all that the solver was given, speculative ones included
+  double least_gap = 1e300;   // m, over these contacts at the step's start; 1e300 without contacts
+  int hits = 0;               // pairs in which the continuous pass had to act
+  int rounds = 0;             // rounds of the continuous pass
+  int failsafe_steps = 0;     // bodies whose step was cut short
+  double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
+  double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
+  int awake_bodies = 0;
+};
+
+/// Scratch of one step, handed from stage to stage. Holds no state: a new one gives the same results.
+class MotionWork;
+
+/// Stage: wakes bodies whose support vanished or moves, or that were given a velocity; floods through
+/// touching pairs.
+void wake_bodies(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state);
+
+/// The whole motion in the order of the stages below. `bodies` ascend by id; they may have grown, shrunk or
+/// been replaced since the last call. Appends to `log` one entry a contact that gave an impulse.
+ContactReport step_motion(std::vector<body::Body>& bodies, const ContactSettings& settings,
+                          ContactState& state, body::ImpulseLog& log);
+
+/// Stage: brings `state` in line with `bodies`, finds pairs by their swept bounds, and their contacts at this
+/// pose.
+void find_candidate_pairs(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                          ContactState& state, MotionWork& work);
+
+/// Stage: collisions, velocities, contacts and positions by substeps (see the head of this file). Ends with
+/// end poses in `work`; `bodies` are not changed yet.
+void solve_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, MotionWork& work);
+
+/// Stage: no vertex path may cross another surface; hits are opened again in position and tested again, at
+/// last by cutting steps short.
+void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
+                  MotionWork& work, ContactReport& report);
+
+/// Stage: writes end poses and velocities to `bodies`, impulses to `log`, warm start to `state`.
+void finish_motion(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
+                   MotionWork& work, body::ImpulseLog& log, ContactReport& report);
+
+/// Stage: islands that have been quiet for `sleep_time` fall asleep.
+void put_to_sleep(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state);
+
+}  // namespace shatterbox::dynamics
