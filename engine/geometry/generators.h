@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/core/result.h"
@@ -30,7 +32,10 @@ struct PartedMesh {
 /// All generators: an error sentence if a size makes no sense or more than kMostTriangles would come out.
 inline constexpr int kMostTriangles = 4'000'000;
 
-/// Sphere about the origin: a geodesic icosahedron of 20 f^2 triangles, f = round(1.1 radius / edge_length).
+/// A sentence that says what is wrong with `meshing` for a thing of `extent` m, or nothing.
+std::optional<std::string> find_fault(const Meshing& meshing, double extent);
+
+/// Sphere about the origin: a geodesic icosahedron of 20 f^2 triangles, f = round(1.2 radius / edge_length).
 core::Result<TriangleMesh> make_sphere(double radius, const Meshing& meshing);
 
 /// A glass bauble: sphere about the origin, its top cut off where a cylindrical neck of `neck_radius` rises
@@ -79,6 +84,10 @@ struct ProfileSegment {
 /// a profile that goes up has its faces outside.
 core::Result<PartedMesh> make_surface_of_revolution(const std::vector<ProfileSegment>& profile,
                                                     const Meshing& meshing);
+
+/// Torus about the y axis in the plane y = 0: a wire of `wire_radius` bent to a ring of `ring_radius` (>
+/// wire_radius).
+core::Result<TriangleMesh> make_torus(double ring_radius, double wire_radius, const Meshing& meshing);
 
 /// Least angle of any triangle, radians: the measure of how well-shaped a mesh is. 0 without triangles.
 double least_angle(const TriangleMesh& mesh);
