@@ -1,0 +1,207 @@
+#include "sandbox/scene/build_mesh.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "engine/core/elementary.h"
+#include "engine/geometry/edge_topology.h"
+#include "engine/geometry/mass_properties.h"
+#include "engine/geometry/mesh_diagnosis.h"
+#include "sandbox/scene/mesh_file.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+constexpr double kUsualTriangles = 5000.0;
+
+geometry::PartedMesh one_part(geometry::TriangleMesh mesh) {
+  geometry::PartedMesh parted{std::move(mesh), {}};
+  parted.parts.assign(parted.mesh.triangles.size(), geometry::Part::body);
+  return parted;
+}
+
+core::Result<geometry::PartedMesh> with_parts(core::Result<geometry::TriangleMesh> mesh) {
+  if (!mesh) return core::Error{mesh.error()};
+  return one_part(std::move(mesh.value()));
+}
+
+struct Generate {
+  geometry::Meshing meshing;
+
+  core::Result<geometry::PartedMesh> operator()(const geometry::OrnamentSizes& sizes) const {
+    return geometry::make_ornament(sizes, meshing);
+  }
+  core::Result<geometry::PartedMesh> operator()(const SphereShape& sizes) const {
+    return with_parts(geometry::make_sphere(sizes.radius, meshing));
+  }
+  core::Result<geometry::PartedMesh> operator()(const geometry::BowlSizes& sizes) const {
+    return with_parts(geometry::make_bowl(sizes, meshing));
+  }
+  core::Result<geometry::PartedMesh> operator()(const PaneShape& sizes) const {
+    return with_parts(geometry::make_pane(sizes.width, sizes.height, meshing));
+  }
+  core::Result<geometry::PartedMesh> operator()(const MeshFileShape&) const {
+    return core::Error{"not a generated shape"};
+  }
+};
+
+/// A length that the shape is large against: the first, coarse mesh only tells its area.
+double coarse_edge(const ShellShape& shape) {
+  if (const auto* ornament = std::get_if<geometry::OrnamentSizes>(&shape)) return 0.2 * ornament->radius;
+  if (const auto* sphere = std::get_if<SphereShape>(&shape)) return 0.2 * sphere->radius;
+  if (const auto* bowl = std::get_if<geometry::BowlSizes>(&shape)) return 0.2 * bowl->rim_radius;
+  const auto& pane = std::get<PaneShape>(shape);
+  return 0.1 * std::min(pane.width, pane.height);
+}
+
+core::Result<geometry::PartedMesh> generate(const ShellForm& form) {
+  Generate generator;
+  if (form.edge_length) {
+    generator.meshing.edge_length = *form.edge_length;
+    return std::visit(generator, form.shape);
+  }
+  generator.meshing.edge_length = coarse_edge(form.shape);
+  auto coarse = std::visit(generator, form.shape);
+  if (!coarse) return coarse;
+  const double area = geometry::surface_area(coarse.value().mesh);
+  const double triangle_area = area / kUsualTriangles;
+  generator.meshing.edge_length = core::sqrt(triangle_area * 4.0 / core::sqrt(3.0));
+  return std::visit(generator, form.shape);
+}
+
+void append(geometry::TriangleMesh& whole, const geometry::TriangleMesh& part) {
+  const int first = static_cast<int>(whole.positions.size());
+  whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
+  for (const geometry::Triangle& t : part.triangles) {
+    whole.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+}
+
+std::optional<geometry::PartedMesh> read_files(const MeshFileShape& shape, const Place& place,
+                                               Problems& problems, std::vector<std::string>& notes) {
+  geometry::TriangleMesh whole;
+  std::string names;
+  for (const std::string& file : shape.files) {
+    auto mesh = read_mesh(file, &notes);
+    if (!mesh) {
+      problems.push_back({place, mesh.error(), ""});
+      return std::nullopt;
+    }
+    append(whole, mesh.value());
+    names += (names.empty() ? "" : ", ") + file;
+  }
+  geometry::MendOptions options;
+  options.allow_loose_parts = true;
+  geometry::MendedMesh mended = geometry::mend(whole, options);
+  if (mended.diagnosis.refused()) {
+    problems.push_back({place, fmt::format("the mesh {} cannot be used", names),
+                        mended.diagnosis.sentences(geometry::Severity::refused)});
+    return std::nullopt;
+  }
+  for (const geometry::MeshFinding& finding : mended.diagnosis.findings) {
+    notes.push_back(fmt::format("{}: {}", names, finding.sentence));
+  }
+  return one_part(std::move(mended.mesh));
+}
+
+struct Bounds {
+  Vec3 least = Vec3::Zero(), most = Vec3::Zero();
+};
+
+Bounds bounds_of(const std::vector<Vec3>& positions) {
+  Bounds bounds{positions.front(), positions.front()};
+  for (const Vec3& p : positions) {
+    bounds.least = bounds.least.cwiseMin(p);
+    bounds.most = bounds.most.cwiseMax(p);
+  }
+  return bounds;
+}
+
+/// Turns, then stretches to a size (about the origin) or by a scale. False with a problem if a flat side
+/// cannot be stretched to the size asked for.
+bool fit(geometry::TriangleMesh& mesh, const ShellForm& form, const Place& place, Problems& problems) {
+  if (form.up_is_z) {
+    for (Vec3& p : mesh.positions) p = Vec3(p.x(), p.z(), -p.y());
+  }
+  Vec3 scale = form.scale;
+  if (form.size) {
+    const Bounds bounds = bounds_of(mesh.positions);
+    const Vec3 extent = bounds.most - bounds.least;
+    const double longest = extent.maxCoeff();
+    for (int axis = 0; axis < 3; ++axis) {
+      scale[axis] = extent[axis] > 1e-9 * longest ? (*form.size)[axis] / extent[axis] : 1.0;
+    }
+  }
+  for (Vec3& p : mesh.positions) p = p.cwiseProduct(scale);
+  const Bounds bounds = bounds_of(mesh.positions);
+  const double extent = (bounds.most - bounds.least).maxCoeff();
+  if (extent >= 1e-4 && extent <= 1e4) return true;
+  problems.push_back({place, fmt::format("the mesh is {:g} m across", extent),
+                      "bodies are from 1e-4 to 1e4 m; if the file is in millimetres, write scale = 0.001"});
+  return false;
+}
+
+}  // namespace
+
+std::optional<BuiltMesh> build_mesh(const ShellForm& form, const Place& place, Problems& problems,
+                                    std::vector<std::string>& notes) {
+  std::optional<geometry::PartedMesh> parted;
+  if (const auto* files = std::get_if<MeshFileShape>(&form.shape)) {
+    parted = read_files(*files, place, problems, notes);
+    if (!parted) return std::nullopt;
+  } else {
+    auto generated = generate(form);
+    if (!generated) {
+      problems.push_back({place, generated.error(), ""});
+      return std::nullopt;
+    }
+    parted = std::move(generated.value());
+  }
+  BuiltMesh built{std::move(parted->mesh), {}};
+  for (const geometry::Part part : parted->parts) built.parts.push_back(static_cast<std::uint8_t>(part));
+  if (!fit(built.mesh, form, place, problems)) return std::nullopt;
+  return built;
+}
+
+std::vector<int> find_clamped(const geometry::TriangleMesh& mesh, const Quat& rotation,
+                              const Support& support, const Place& place, Problems& problems) {
+  std::vector<bool> is_clamped(mesh.positions.size(), false);
+  std::string fault, hint;
+  if (std::holds_alternative<EdgeSupport>(support)) {
+    const geometry::EdgeTopology topology = geometry::build_edge_topology(mesh.triangles);
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+      if (!topology.is_boundary(static_cast<int>(e))) continue;
+      for (const int v : topology.edges[e]) is_clamped[static_cast<std::size_t>(v)] = true;
+    }
+    fault = "support = \"edge\", but the mesh has no open border";
+    hint = "use \"foot\" or {box = [[x, y, z], [x, y, z]]}";
+  } else if (std::holds_alternative<FootSupport>(support)) {
+    std::vector<Vec3> turned;
+    for (const Vec3& p : mesh.positions) turned.push_back(rotation * p);
+    const Bounds bounds = bounds_of(turned);
+    const double top = bounds.least.y() + 0.02 * (bounds.most.y() - bounds.least.y());
+    for (std::size_t v = 0; v < turned.size(); ++v) is_clamped[v] = turned[v].y() <= top;
+  } else if (const auto* box = std::get_if<BoxSupport>(&support)) {
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3& p = mesh.positions[v];
+      is_clamped[v] = (p.array() >= box->least.array()).all() && (p.array() <= box->most.array()).all();
+    }
+    const Bounds bounds = bounds_of(mesh.positions);
+    fault = "no vertex of the mesh is in the support's box";
+    hint = fmt::format(
+        "the box is in the mesh's own frame, where the mesh reaches from [{:g}, {:g}, {:g}] to "
+        "[{:g}, {:g}, {:g}]",
+        bounds.least.x(), bounds.least.y(), bounds.least.z(), bounds.most.x(), bounds.most.y(),
+        bounds.most.z());
+  }
+  std::vector<int> clamped;
+  for (std::size_t v = 0; v < is_clamped.size(); ++v) {
+    if (is_clamped[v]) clamped.push_back(static_cast<int>(v));
+  }
+  if (clamped.empty() && !fault.empty()) problems.push_back({place, fault, hint});
+  return clamped;
+}
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,30 @@
+// The mesh of a shell: generated or read, mended, turned and stretched as the scene says; and what its
+// support clamps.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/triangle_mesh.h"
+#include "sandbox/scene/scene_description.h"
+
+namespace shatterbox::sandbox::scene {
+
+struct BuiltMesh {
+  geometry::TriangleMesh mesh;      // the mesh's own frame after scale, size and up, m
+  std::vector<std::uint8_t> parts;  // per triangle: geometry::Part
+};
+
+/// Builds the mesh of `form`. Nothing if it cannot be had, with problems at `place`; what was mended goes to
+/// `notes`.
+std::optional<BuiltMesh> build_mesh(const ShellForm& form, const Place& place, Problems& problems,
+                                    std::vector<std::string>& notes);
+
+/// The vertices that `support` holds, ascending; `rotation` turns the mesh into the scene (the foot is what
+/// is lowest there). Empty with a problem if it holds none.
+std::vector<int> find_clamped(const geometry::TriangleMesh& mesh, const Quat& rotation,
+                              const Support& support, const Place& place, Problems& problems);
+
+}  // namespace shatterbox::sandbox::scene

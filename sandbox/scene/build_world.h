@@ -1,0 +1,45 @@
+// SceneDescription -> World: meshes are built, copies placed, and every body of the scene is kept in the
+// engine's words, so that events can throw it later.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/world/world.h"
+#include "sandbox/scene/scene_description.h"
+
+namespace shatterbox::sandbox::scene {
+
+/// One [[body]], ready to be added at its own place.
+struct BodyPlan {
+  world::BodyDescription description;
+  std::vector<std::uint8_t> parts;  // of shells, per triangle: geometry::Part
+  double bounding_radius = 0.0;     // m, about the frame's origin; 0 for planes
+};
+
+struct ScenePlan {
+  std::vector<BodyPlan> bodies;    // by the numbers of SceneDescription::bodies
+  std::vector<std::string> notes;  // what was mended in meshes
+};
+
+struct BuiltScene {
+  world::World world;
+  ScenePlan plan;
+  std::map<body::BodyId, int> entries;  // which [[body]] an original body came from; the script adds to it
+};
+
+/// Reads and mends meshes, finds supports: all that can go wrong before a world exists. Nothing if `problems`
+/// got any.
+std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& problems);
+
+/// Makes the world with all bodies that no event holds back. Nothing if `problems` got any.
+std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems);
+
+/// The places of the copies of a body: x fastest, then y, then z; jitter depends on (seed, number of the
+/// body) only.
+std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uint64_t body_number);
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,70 @@
+#include "sandbox/scene/find_scene.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "sandbox/scene/nearest_name.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::vector<fs::path> scene_folders() {
+  std::vector<fs::path> folders;
+  for (const fs::path& folder : {fs::path("scenes"), fs::path(SHATTERBOX_SCENES_DIR)}) {
+    std::error_code code;
+    if (fs::is_directory(folder, code)) folders.push_back(folder);
+  }
+  return folders;
+}
+
+std::string first_comment(std::string_view text) {
+  std::string_view line = text.substr(0, text.find('\n'));
+  if (line.empty() || line.front() != '#') return {};
+  line.remove_prefix(1);
+  while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
+  while (!line.empty() && (line.back() == ' ' || line.back() == '\r')) line.remove_suffix(1);
+  return std::string(line);
+}
+
+std::vector<KnownScene> known_scenes() {
+  std::vector<KnownScene> scenes;
+  for (const fs::path& folder : scene_folders()) {
+    std::error_code code;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+      if (entry.path().extension() != ".toml") continue;
+      const std::string name = entry.path().stem().string();
+      const bool is_known = std::any_of(scenes.begin(), scenes.end(),
+                                        [&name](const KnownScene& scene) { return scene.name == name; });
+      if (is_known) continue;
+      std::ifstream stream(entry.path());
+      std::string line;
+      std::getline(stream, line);
+      scenes.push_back({name, entry.path(), first_comment(line)});
+    }
+  }
+  std::sort(scenes.begin(), scenes.end(),
+            [](const KnownScene& a, const KnownScene& b) { return a.name < b.name; });
+  return scenes;
+}
+
+std::string find_scene(const std::string& scene, Problems& problems) {
+  std::error_code code;
+  if (fs::is_regular_file(scene, code)) return scene;
+  std::vector<std::string> names;
+  for (const KnownScene& known : known_scenes()) {
+    if (known.name == scene) return known.path.string();
+    names.push_back(known.name);
+  }
+  const std::string stem = fs::path(scene).stem().string();
+  problems.push_back({{scene, 0, 0},
+                      "there is no such scene: neither a file nor a name",
+                      hint_for_name(stem, names, "scenes")});
+  return {};
+}
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,122 @@
+#include "sandbox/scene/overrides.h"
+
+#include <algorithm>
+
+#include "sandbox/scene/nearest_name.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+constexpr const char* kForm = "write --set NAME.key=value, for example --set ball.speed=12";
+
+std::vector<std::string> split_at_dots(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == '.') {
+      parts.emplace_back();
+    } else if (c != ' ') {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+void move_to(TomlValue& value, const Place& place) {
+  value.place = value.key_place = place;
+  for (TomlValue& item : value.items) move_to(item, place);
+  for (auto& [key, entry] : value.entries) move_to(entry, place);
+}
+
+/// The value behind the equals sign, or nothing after adding a problem.
+const TomlValue* parse_value(const std::string& text, const Place& place, TomlValue& storage,
+                             Problems& problems) {
+  Problems faults;
+  storage = parse_toml("value = " + text, place.file, faults);
+  if (!faults.empty() || storage.entries.size() != 1) {
+    std::string hint = "values are TOML: 1.5, true, [0, 1, 0], and texts in quotes";
+    const bool is_word = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/' || c == '.';
+    });
+    if (is_word) hint = "if you mean a text, quote it twice, for the shell and for TOML: '\"" + text + "\"'";
+    problems.push_back({place, "\"" + text + "\" is not a value", hint});
+    return nullptr;
+  }
+  move_to(storage, place);
+  return &storage.entries.front().second;
+}
+
+TomlValue* find_named(TomlValue& scene, const std::string& name, std::vector<std::string>& known) {
+  for (const char* table : {"scene", "camera", "light", "render"}) {
+    known.emplace_back(table);
+    if (name != table) continue;
+    if (scene.find(table) == nullptr) {
+      TomlValue empty;
+      empty.place = empty.key_place = scene.place;
+      scene.entries.emplace_back(table, empty);
+    }
+    return scene.find(table);
+  }
+  for (const char* list_name : {"body", "material", "event"}) {
+    TomlValue* list = scene.find(list_name);
+    if (list == nullptr || !list->is_array()) continue;
+    for (std::size_t i = 0; i < list->items.size(); ++i) {
+      known.push_back(name_or_number(list->items[i], list_name, i));
+      if (known.back() == name) return &list->items[i];
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string name_or_number(const TomlValue& table, const std::string& kind, std::size_t index) {
+  const TomlValue* name = table.find("name");
+  if (name != nullptr && name->is_text() && !name->text.empty()) return name->text;
+  return kind + std::to_string(index + 1);
+}
+
+void apply_override(TomlValue& scene, const std::string& change, Problems& problems) {
+  const Place place{"--set " + change, 0, 0};
+  const std::size_t equals = change.find('=');
+  const std::vector<std::string> path = split_at_dots(change.substr(0, equals));
+  const bool has_hole =
+      std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); });
+  if (equals == std::string::npos || path.size() < 2 || has_hole) {
+    problems.push_back({place, "is not NAME.key=value", kForm});
+    return;
+  }
+  TomlValue storage;
+  const TomlValue* value = parse_value(change.substr(equals + 1), place, storage, problems);
+  if (value == nullptr) return;
+
+  std::vector<std::string> known;
+  TomlValue* table = find_named(scene, path.front(), known);
+  if (table == nullptr) {
+    problems.push_back({place, "nothing is named \"" + path.front() + "\"",
+                        hint_for_name(path.front(), known, "names in this scene")});
+    return;
+  }
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+    if (!table->is_table()) break;
+    if (table->find(path[i]) == nullptr) {
+      TomlValue empty;
+      empty.place = empty.key_place = place;
+      table->entries.emplace_back(path[i], empty);
+    }
+    table = table->find(path[i]);
+  }
+  if (!table->is_table()) {
+    problems.push_back({place,
+                        "\"" + path[path.size() - 2] + "\" is " + kind_in_words(*table) + ", not a table",
+                        "set it as a whole"});
+    return;
+  }
+  if (TomlValue* old = table->find(path.back())) {
+    *old = *value;
+  } else {
+    table->entries.emplace_back(path.back(), *value);
+  }
+}
+
+}  // namespace shatterbox::sandbox::scene

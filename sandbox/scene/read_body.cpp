@@ -1,0 +1,372 @@
+#include "sandbox/scene/read_body.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "engine/core/elementary.h"
+#include "sandbox/scene/nearest_name.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+const std::vector<std::string> kKinds{"shell", "plane", "box", "sphere"};
+const std::vector<std::string> kLaterKinds{"solid", "capsule"};
+const std::vector<std::string> kShapes{"ornament", "sphere", "bowl", "pane"};
+const std::vector<std::string> kLaterShapes{"vase", "bottle", "egg", "boat", "slab", "bricks"};
+const std::vector<std::string> kShellKeys{"mesh",      "shape",     "scale",  "up",
+                                          "thickness", "breakable", "support"};
+const std::vector<std::string> kShapeKeys{"radius", "neck_radius", "neck_height",
+                                          "cap",    "foot_radius", "foot_height",
+                                          "height", "width",       "edge_length"};
+
+std::optional<Vec3> number_or_vector(TableReader& reader, const std::string& key, const Range& range) {
+  const TomlValue* value = reader.value(key);
+  if (value == nullptr) return std::nullopt;
+  if (value->is_array()) return reader.as_vector(*value, key, range);
+  if (const auto number = reader.as_number(*value, key, range)) return Vec3::Constant(*number);
+  return std::nullopt;
+}
+
+/// Where a mesh file named in a scene lies: as it is, or beside the scene.
+std::string find_mesh_file(const std::string& file, const std::string& scene_file) {
+  namespace fs = std::filesystem;
+  const fs::path path(file);
+  if (path.is_absolute()) return file;
+  return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
+}
+
+std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDescription& scene) {
+  const TomlValue* value = reader.value("mesh");
+  MeshFileShape shape;
+  std::vector<const TomlValue*> names;
+  if (value->is_array()) {
+    for (const TomlValue& item : value->items) names.push_back(&item);
+  } else {
+    names.push_back(value);
+  }
+  for (const TomlValue* name : names) {
+    if (!name->is_text()) {
+      reader.add_problem(name->place,
+                         fmt::format("mesh must be the name of a file, but is {}", kind_in_words(*name)),
+                         "write mesh = \"file.obj\", or a list of files that are one body");
+      return std::nullopt;
+    }
+    shape.files.push_back(find_mesh_file(name->text, scene.file));
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(shape.files.back(), code)) {
+      reader.add_problem(name->place, fmt::format("there is no mesh file {}", shape.files.back()),
+                         "files are looked for beside the scene; .obj, .ply and .stl are read");
+    }
+  }
+  if (names.empty()) reader.add_problem_at("mesh", "mesh names no file");
+  return shape;
+}
+
+ShellShape read_shape(TableReader& reader, const std::string& shape) {
+  const auto set = [&reader](const char* key, double& target, const Range& range) {
+    target = reader.number(key, range).value_or(target);
+  };
+  if (shape == "ornament") {
+    geometry::OrnamentSizes sizes;
+    sizes.has_cap = true;
+    set("radius", sizes.radius, positive("m"));
+    sizes.neck_radius = 0.225 * sizes.radius;
+    sizes.neck_height = 0.2 * sizes.radius;
+    set("neck_radius", sizes.neck_radius, positive("m"));
+    set("neck_height", sizes.neck_height, positive("m"));
+    sizes.has_cap = reader.truth("cap").value_or(sizes.has_cap);
+    return sizes;
+  }
+  if (shape == "bowl") {
+    geometry::BowlSizes sizes;
+    set("radius", sizes.rim_radius, positive("m"));
+    sizes.foot_radius = 0.44 * sizes.rim_radius;
+    sizes.foot_height = 0.075 * sizes.rim_radius;
+    sizes.height = 0.875 * sizes.rim_radius;
+    set("foot_radius", sizes.foot_radius, positive("m"));
+    set("foot_height", sizes.foot_height, not_negative("m"));
+    set("height", sizes.height, positive("m"));
+    return sizes;
+  }
+  if (shape == "pane") {
+    PaneShape sizes;
+    set("width", sizes.width, positive("m"));
+    set("height", sizes.height, positive("m"));
+    return sizes;
+  }
+  SphereShape sizes;
+  set("radius", sizes.radius, positive("m"));
+  return sizes;
+}
+
+ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
+  ShellForm form;
+  if (reader.has("mesh") && reader.has("shape")) {
+    reader.add_problem_at("shape", "a body has either a mesh or a shape, not both", "remove one of them");
+  }
+  if (reader.has("mesh")) {
+    if (auto files = read_mesh_files(reader, scene)) form.shape = std::move(*files);
+    reader.foreign(kShapeKeys, "sizes belong to a shape; a mesh takes scale or size = [x, y, z]");
+    form.size = reader.vector("size", positive("m"));
+    reader.value("shape");
+  } else {
+    const auto shape = reader.choice("shape", kShapes, kLaterShapes);
+    if (!reader.has("shape")) {
+      reader.add_problem(reader.table().place,
+                         fmt::format("{} has neither a mesh nor a shape", reader.what()),
+                         fmt::format("add mesh = \"file.obj\", or shape = one of {}", quoted_list(kShapes)));
+    }
+    reader.value("mesh");
+    form.shape = read_shape(reader, shape.value_or("sphere"));
+    form.edge_length = reader.number("edge_length", positive("m"));
+    if (shape) {
+      reader.foreign(kShapeKeys, fmt::format("it is no size of shape \"{}\"", *shape));
+    } else {
+      for (const std::string& key : kShapeKeys) reader.value(key);  // one fault is enough
+    }
+    form.size = reader.vector("size", positive("m"));
+  }
+  form.scale = number_or_vector(reader, "scale", positive()).value_or(form.scale);
+  if (form.size && reader.has("scale")) {
+    reader.add_problem_at("size", "a body has either a scale or a size, not both", "remove one of them");
+  }
+  form.up_is_z = reader.choice("up", {"y", "z"}).value_or("y") == "z";
+  form.thickness = reader.number("thickness", positive("m"));
+  form.is_breakable = reader.truth("breakable").value_or(true);
+  return form;
+}
+
+Support read_support(TableReader& reader) {
+  const TomlValue* value = reader.value("support");
+  if (value == nullptr) return {};
+  const std::string hint =
+      "write support = \"edge\" (the open border), \"foot\" (the lowest part) or {box = [[x, y, z], [x, y, "
+      "z]]}";
+  if (value->is_text()) {
+    if (value->text == "edge") return EdgeSupport{};
+    if (value->text == "foot") return FootSupport{};
+    reader.add_problem(value->place, fmt::format("unknown support \"{}\"", value->text), hint);
+    return {};
+  }
+  const TomlValue* box = value->is_table() ? value->find("box") : nullptr;
+  if (box == nullptr || value->entries.size() != 1 || !box->is_array() || box->items.size() != 2) {
+    reader.add_problem(value->place, fmt::format("support cannot be {}", kind_in_words(*value)), hint);
+    return {};
+  }
+  const auto least = reader.as_vector(box->items[0], "the first corner of the box", any_number("m"));
+  const auto most = reader.as_vector(box->items[1], "the second corner of the box", any_number("m"));
+  if (!least || !most) return {};
+  return BoxSupport{least->cwiseMin(*most), least->cwiseMax(*most)};
+}
+
+Quat turn(double degrees, const Vec3& axis) {
+  const double half = degrees * core::kPi / 360.0;
+  const Vec3 v = core::sin(half) * axis;
+  return {core::cos(half), v.x(), v.y(), v.z()};
+}
+
+Quat read_rotation(TableReader& reader) {
+  const auto angles = reader.vector("rotation", between(-360000.0, 360000.0, "degrees"));
+  const TomlValue* orientation = reader.value("orientation");
+  if (orientation == nullptr) {
+    if (!angles) return Quat::Identity();
+    return turn(angles->z(), Vec3::UnitZ()) * turn(angles->y(), Vec3::UnitY()) *
+           turn(angles->x(), Vec3::UnitX());
+  }
+  if (reader.has("rotation")) {
+    reader.add_problem(orientation->place, "a body has either a rotation or an orientation, not both",
+                       "remove one of them");
+    return Quat::Identity();
+  }
+  if (!orientation->is_array() || orientation->items.size() != 4) {
+    reader.add_problem(
+        orientation->place,
+        fmt::format("orientation must be four numbers, but is {}", kind_in_words(*orientation)),
+        "write [w, x, y, z], or rotation = [x, y, z] in degrees");
+    return Quat::Identity();
+  }
+  std::array<double, 4> q{};
+  double squared = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto number = reader.as_number(orientation->items[i], "a part of orientation", between(-1e6, 1e6));
+    if (!number) return Quat::Identity();
+    q[i] = *number;
+    squared += *number * *number;
+  }
+  if (squared < 1e-12) {
+    reader.add_problem(orientation->place, "orientation is zero and points nowhere",
+                       "no turn is [1, 0, 0, 0]");
+    return Quat::Identity();
+  }
+  const double length = core::sqrt(squared);
+  return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
+}
+
+Repeat read_repeat(TableReader& reader) {
+  Repeat repeat;
+  const TomlValue* value = reader.value("repeat");
+  if (value == nullptr) return repeat;
+  if (!value->is_table()) {
+    reader.add_problem(value->place, fmt::format("repeat must be a table, but is {}", kind_in_words(*value)),
+                       "write repeat = {count = 10, spacing = [0.1, 0, 0]}");
+    return repeat;
+  }
+  TableReader inner(*value, reader.what() + ".repeat", reader.problems());
+  if (const TomlValue* count = inner.value("count"); count != nullptr && count->is_array()) {
+    repeat.is_row = false;
+    if (count->items.size() != 3) inner.add_problem(count->place, "count must be one whole number or three");
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, count->items.size()); ++i) {
+      const TomlValue& item = count->items[i];
+      if (item.kind == TomlKind::whole && item.whole >= 1 && item.whole <= 100000) {
+        repeat.count[i] = static_cast<int>(item.whole);
+      } else {
+        inner.add_problem(item.place,
+                          fmt::format("count must be from 1 to 100000, but is {}", kind_in_words(item)));
+      }
+    }
+  } else if (const auto whole = inner.whole_number("count", 1, 100000)) {
+    repeat.count[0] = static_cast<int>(*whole);
+  } else if (count == nullptr) {
+    inner.add_problem(value->place, "repeat needs a count",
+                      "write repeat = {count = 10, spacing = [0.1, 0, 0]}");
+  }
+  if (static_cast<double>(repeat.count[0]) * repeat.count[1] * repeat.count[2] > 100000.0) {
+    inner.add_problem_at("count", "more than 100000 copies");
+    repeat.count = {1, 1, 1};
+  }
+  repeat.spacing = number_or_vector(inner, "spacing", any_number("m")).value_or(repeat.spacing);
+  if (inner.has("jitter"))
+    repeat.jitter = number_or_vector(inner, "jitter", not_negative("m")).value_or(repeat.jitter);
+  repeat.rotation_jitter = inner.number("rotation_jitter", between(0.0, 180.0, "degrees")).value_or(0.0);
+  inner.later({"bond", "every"}, "available: count, spacing, jitter, rotation_jitter");
+  inner.finish();
+  return repeat;
+}
+
+std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> read_form(TableReader& reader,
+                                                                  const std::string& kind,
+                                                                  const SceneDescription& scene) {
+  if (kind == "shell") return read_shell(reader, scene);
+  reader.foreign(kShellKeys, fmt::format("it is for kind = \"shell\"; this is a {}", kind));
+  if (kind == "sphere") {
+    SphereForm form;
+    form.radius = reader.number("radius", positive("m")).value_or(form.radius);
+    reader.foreign(kShapeKeys, "a sphere has a radius only");
+    reader.foreign({"size"}, "a sphere has a radius only");
+    return form;
+  }
+  if (kind == "box") {
+    BoxForm form;
+    form.size = number_or_vector(reader, "size", positive("m")).value_or(form.size);
+    if (!reader.has("size")) {
+      reader.add_problem(reader.table().place, fmt::format("{} has no size", reader.what()),
+                         "add size = [x, y, z] in metres");
+    }
+    reader.foreign(kShapeKeys, "a box has size = [x, y, z] only");
+    return form;
+  }
+  reader.foreign(kShapeKeys, "a plane has no end and no sizes");
+  reader.foreign({"size"}, "a plane has no end and no sizes");
+  return PlaneForm{};
+}
+
+void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body) {
+  const bool is_plane = kind == "plane";
+  const auto motion = reader.choice("motion", {"dynamic", "static"}, {"scripted"});
+  const bool is_held = !std::holds_alternative<std::monostate>(body.support);
+  body.motion = motion.value_or(is_plane || is_held ? "static" : "dynamic") == "static"
+                    ? body::Motion::fixed
+                    : body::Motion::dynamic;
+  if (is_plane && body.motion == body::Motion::dynamic) {
+    reader.add_problem_at("motion", "a plane cannot move", "write motion = \"static\", or take a box");
+  }
+  if (is_held && body.motion == body::Motion::dynamic) {
+    reader.add_problem_at("motion", "a body with a support is held by the world and cannot move as a whole",
+                          "remove motion or support; its pieces move once they break off");
+  }
+  if (body.motion == body::Motion::fixed) {
+    reader.foreign({"velocity", "angular_velocity"}, "a static body does not move");
+  } else {
+    body.velocity = reader.vector("velocity", between(-1e4, 1e4, "m/s")).value_or(body.velocity);
+    body.angular_velocity =
+        reader.vector("angular_velocity", between(-1e5, 1e5, "rad/s")).value_or(body.angular_velocity);
+  }
+  if (reader.has("keyframes"))
+    reader.later({"keyframes"}, "scripted bodies come later; use dynamic or static ones");
+  reader.later({"fixed"}, "a body that cannot move at all is motion = \"static\"");
+  reader.later({"force", "torque"}, "give it a velocity, or throw something at it");
+}
+
+}  // namespace
+
+std::optional<Vec3> read_colour(TableReader& reader, const std::string& key) {
+  const TomlValue* value = reader.value(key);
+  if (value == nullptr) return std::nullopt;
+  if (!value->is_text()) return reader.as_vector(*value, key, between(0.0, 1.0));
+  const std::string& text = value->text;
+  const bool is_hex =
+      text.size() == 7 && text[0] == '#' &&
+      std::all_of(text.begin() + 1, text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
+  if (!is_hex) {
+    reader.add_problem(value->place, fmt::format("\"{}\" is no colour", text),
+                       "write \"#b3202c\" or [0.7, 0.13, 0.17]");
+    return std::nullopt;
+  }
+  const auto channel = [&text](std::size_t i) { return std::stoi(text.substr(i, 2), nullptr, 16) / 255.0; };
+  return Vec3(channel(1), channel(3), channel(5));
+}
+
+int find_body(const SceneDescription& scene, const std::string& name) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void read_body(const TomlValue& table, const std::string& name, bool is_held_back, SceneDescription& scene,
+               Problems& problems) {
+  TableReader reader(table, fmt::format("body \"{}\"", name), problems);
+  BodyEntry body;
+  body.place = table.place;
+  body.name = reader.text("name").value_or(name);
+  body.is_held_back = is_held_back;
+  const bool looks_like_shell = !reader.has("kind") && (reader.has("mesh") || reader.has("shape"));
+  const auto kind = reader.choice("kind", kKinds, kLaterKinds);
+  if (!reader.has("kind") && !looks_like_shell) {
+    reader.add_problem(table.place, fmt::format("{} has no kind", reader.what()),
+                       fmt::format("add kind = one of {}", quoted_list(kKinds)));
+  }
+  if (!kind && !looks_like_shell) {  // what else belongs here depends on the kind
+    scene.bodies.push_back(body);
+    return;
+  }
+  const std::string form_kind = kind.value_or("shell");
+  body.form = read_form(reader, form_kind, scene);
+  if (form_kind == "shell") body.support = read_support(reader);
+  if (const auto* shell = std::get_if<ShellForm>(&body.form)) {
+    if (!shell->is_breakable && !std::holds_alternative<std::monostate>(body.support)) {
+      reader.add_problem_at("support", "only a breakable body has a support", "use motion = \"static\"");
+    }
+  }
+  const std::string fallback = form_kind == "shell" ? "glass" : form_kind == "plane" ? "concrete" : "steel";
+  const std::string material = reader.text("material").value_or(fallback);
+  const TomlValue* material_value = table.find("material");
+  body.material = find_material(material, material_value != nullptr ? material_value->place : table.place,
+                                scene, problems);
+  body.density = reader.number("density", positive("kg/m3"));
+  body.position = reader.vector("position", between(-1e6, 1e6, "m")).value_or(body.position);
+  body.rotation = read_rotation(reader);
+  read_motion(reader, form_kind, body);
+  body.group = reader.text("group").value_or("");
+  body.contact_duration = reader.number("contact_duration", positive("s"));
+  body.repeat = read_repeat(reader);
+  body.look.name = reader.choice("look", kLookNames).value_or("");
+  body.look.colour = read_colour(reader, "colour");
+  reader.finish();
+  scene.bodies.push_back(std::move(body));
+}
+
+}  // namespace shatterbox::sandbox::scene

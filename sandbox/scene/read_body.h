@@ -1,0 +1,33 @@
+// The tables [[material]], [[pair]], [[body]] and [[event]] of a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sandbox/scene/scene_description.h"
+#include "sandbox/scene/table_reader.h"
+
+namespace shatterbox::sandbox::scene {
+
+/// The number of the material of that name in `scene`, taking presets in as they are used; -1 with a problem
+/// at `place` if there is none.
+int find_material(const std::string& name, const Place& place, SceneDescription& scene, Problems& problems);
+
+/// The number of the body of that name; -1 if there is none.
+int find_body(const SceneDescription& scene, const std::string& name);
+
+void read_material(const TomlValue& table, std::size_t index, SceneDescription& scene, Problems& problems);
+void read_pair(const TomlValue& table, SceneDescription& scene, Problems& problems);
+
+/// Adds a body. `name` is the one to use where the table gives none. An inline body of an event is
+/// `is_held_back`.
+void read_body(const TomlValue& table, const std::string& name, bool is_held_back, SceneDescription& scene,
+               Problems& problems);
+
+/// After all bodies: events refer to them.
+void read_event(const TomlValue& table, std::size_t index, SceneDescription& scene, Problems& problems);
+
+/// A colour, "#rrggbb" or [r, g, b] from 0 to 1 (sRGB).
+std::optional<Vec3> read_colour(TableReader& reader, const std::string& key);
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include "sandbox/scene/nearest_name.h"
+#include "sandbox/scene/overrides.h"
+#include "sandbox/scene/read_body.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+const std::vector<std::string> kLaterVerbs{"push",    "explosion", "grab",   "release", "remove",
+                                           "gravity", "speed",     "camera", "overlay", "caption"};
+
+std::vector<std::string> body_names(const SceneDescription& scene) {
+  std::vector<std::string> names;
+  for (const BodyEntry& body : scene.bodies) names.push_back(body.name);
+  return names;
+}
+
+/// The number of the body that an event brings in: a named one (held back from now on), an inline table, or,
+/// for projectiles, a steel ball of 30 mm radius.
+int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
+                     SceneDescription& scene) {
+  const TomlValue* value = reader.value("body");
+  if (value == nullptr && has_default) {
+    BodyEntry ball;
+    ball.place = reader.table().place;
+    ball.name = event_name + " ball";
+    ball.form = SphereForm{0.03};
+    ball.material = find_material("steel", ball.place, scene, reader.problems());
+    ball.is_held_back = true;
+    scene.bodies.push_back(ball);
+    return static_cast<int>(scene.bodies.size()) - 1;
+  }
+  if (value == nullptr) {
+    reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
+                       "add body = \"name\" or body = {kind = \"sphere\", radius = 0.05}");
+    return -1;
+  }
+  if (value->is_table()) {
+    read_body(*value, event_name + " body", true, scene, reader.problems());
+    return static_cast<int>(scene.bodies.size()) - 1;
+  }
+  if (!value->is_text()) {
+    reader.add_problem(value->place,
+                       fmt::format("body must be a name or a table, but is {}", kind_in_words(*value)));
+    return -1;
+  }
+  const int found = find_body(scene, value->text);
+  if (found < 0) {
+    reader.add_problem(value->place, fmt::format("there is no body \"{}\"", value->text),
+                       hint_for_name(value->text, body_names(scene), "bodies"));
+    return -1;
+  }
+  BodyEntry& body = scene.bodies[static_cast<std::size_t>(found)];
+  if (body.motion != body::Motion::dynamic) {
+    reader.add_problem(value->place, fmt::format("body \"{}\" is static and cannot be thrown", value->text),
+                       "give it motion = \"dynamic\"");
+  }
+  body.is_held_back = true;
+  return found;
+}
+
+Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
+  Projectile projectile;
+  if (const auto from = reader.vector("from", between(-1e6, 1e6, "m"))) {
+    projectile.from = *from;
+  } else if (!reader.has("from")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"from\"", reader.what()),
+                       "add from = [x, y, z]: where it starts");
+  }
+  if (const auto speed = reader.number("speed", between(1e-3, 1e4, "m/s"))) {
+    projectile.speed = *speed;
+  } else if (!reader.has("speed")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"speed\"", reader.what()),
+                       "add speed = 10 (m/s)");
+  }
+  projectile.spin = reader.vector("spin", between(-1e5, 1e5, "rad/s")).value_or(projectile.spin);
+  const auto point = reader.vector("at_point", between(-1e6, 1e6, "m"));
+  const auto body = reader.text("at_body");
+  if (reader.has("at_point") == reader.has("at_body")) {
+    reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
+                       "give either at_point = [x, y, z] or at_body = \"name\"");
+  } else if (body) {
+    const int found = find_body(scene, *body);
+    if (found < 0) {
+      reader.add_problem_at("at_body", fmt::format("there is no body \"{}\"", *body),
+                            hint_for_name(*body, body_names(scene), "bodies"));
+    }
+    projectile.target = found;
+  } else if (point) {
+    projectile.target = *point;
+    if ((*point - projectile.from).norm() < 1e-9) {
+      reader.add_problem_at("at_point", "the target is where the projectile starts", "move from or at_point");
+    }
+  }
+  return projectile;
+}
+
+}  // namespace
+
+void read_event(const TomlValue& table, std::size_t index, SceneDescription& scene, Problems& problems) {
+  EventEntry event;
+  event.name = name_or_number(table, "event", index);
+  event.place = table.place;
+  TableReader reader(table, fmt::format("event \"{}\"", event.name), problems);
+  reader.text("name");
+  reader.later({"when"}, "give the time instead: at = 0.5 (s)");
+  if (const auto at = reader.number("at", between(0.0, 1e6, "s"))) {
+    event.at = *at;
+  } else if (!reader.has("at") && !reader.has("when")) {
+    reader.add_problem(table.place, fmt::format("{} has no time", reader.what()), "add at = 0.5 (s)");
+  }
+  const auto verb = reader.choice("do", kEventVerbs, kLaterVerbs);
+  if (!reader.has("do")) {
+    reader.add_problem(table.place, fmt::format("{} does nothing", reader.what()),
+                       fmt::format("add do = one of {}", quoted_list(kEventVerbs)));
+  }
+  if (!verb) return;
+  const bool is_projectile = *verb == "projectile";
+  event.body = read_thrown_body(reader, event.name, is_projectile, scene);
+  if (is_projectile) {
+    event.action = read_projectile(reader, scene);
+    reader.foreign({"position"}, "a projectile starts at \"from\"");
+  } else {
+    event.action = Drop{reader.vector("position", between(-1e6, 1e6, "m"))};
+    reader.foreign({"from", "at_point", "at_body", "speed", "spin"}, "it is for do = \"projectile\"");
+  }
+  reader.finish();
+  scene.events.push_back(std::move(event));
+}
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,178 @@
+// A scene as plain data: what the TOML says, checked, with defaults filled in, before any mesh is read or
+// body made. Lengths in metres, SI units throughout, right-handed, y up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/generators.h"
+#include "engine/material/material.h"
+#include "engine/world/settings.h"
+#include "sandbox/scene/problem.h"
+
+namespace shatterbox::sandbox::scene {
+
+struct MaterialEntry {
+  Place place;
+  std::string preset;  // the preset that its `like` chain ends at; empty without one
+  material::Material material;
+};
+
+struct PairEntry {
+  Place place;
+  std::array<int, 2> materials{};  // numbers in SceneDescription::materials
+  std::optional<double> friction, restitution;
+};
+
+// Shapes of shells.
+struct MeshFileShape {
+  std::vector<std::string> files;  // as found from the scene's folder; several are one body
+};
+struct SphereShape {
+  double radius = 0.05;
+};
+struct PaneShape {
+  double width = 1.0, height = 1.0;
+};
+using ShellShape =
+    std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes, PaneShape>;
+
+// Kinds of bodies.
+struct PlaneForm {};
+struct BoxForm {
+  Vec3 size = Vec3::Ones();
+};
+struct SphereForm {
+  double radius = 0.1;
+};
+struct ShellForm {
+  ShellShape shape;
+  std::optional<double> edge_length;  // m, of generated meshes; nothing: about 5000 triangles
+  std::optional<double> thickness;    // m; nothing: the material's
+  Vec3 scale = Vec3::Ones();
+  std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
+  bool up_is_z = false;      // the mesh's z axis points up in the scene
+  bool is_breakable = true;
+};
+
+// What holds a body to the world. A box is in the mesh's own frame, after scale, size and up.
+struct EdgeSupport {};
+struct FootSupport {};
+struct BoxSupport {
+  Vec3 least = Vec3::Zero(), most = Vec3::Zero();
+};
+using Support = std::variant<std::monostate, EdgeSupport, FootSupport, BoxSupport>;
+
+struct Repeat {
+  bool is_row = true;  // one count: copies follow each other by `spacing`; else a grid along the axes
+  std::array<int, 3> count{1, 1, 1};  // along x, y, z
+  Vec3 spacing = Vec3::Zero();        // m
+  Vec3 jitter = Vec3::Zero();         // m: greatest random offset along each axis
+  double rotation_jitter = 0.0;       // degrees: greatest random turn, about a random axis
+  int total() const { return count[0] * count[1] * count[2]; }
+};
+
+struct LookEntry {
+  std::string name;            // of kLookNames; empty: by the material
+  std::optional<Vec3> colour;  // sRGB, 0..1
+};
+
+struct BodyEntry {
+  Place place;
+  std::string name;
+  std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> form;
+  int material = 0;  // number in SceneDescription::materials
+  std::optional<double> density;
+  Vec3 position = Vec3::Zero();
+  Quat rotation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+  body::Motion motion = body::Motion::dynamic;
+  Support support;
+  std::string group;  // empty: none
+  std::optional<double> contact_duration;
+  Repeat repeat;
+  LookEntry look;
+  bool is_held_back = false;  // an event brings it in; until then it is not in the world
+};
+
+struct Projectile {
+  Vec3 from = Vec3::Zero();
+  std::variant<Vec3, int> target = Vec3(Vec3::Zero());  // a point, or the number of a body
+  double speed = 0.0;
+  Vec3 spin = Vec3::Zero();
+};
+struct Drop {
+  std::optional<Vec3> position;  // nothing: the body's own
+};
+
+struct EventEntry {
+  Place place;
+  std::string name;
+  double at = 0.0;  // s
+  int body = -1;    // number in SceneDescription::bodies
+  std::variant<Projectile, Drop> action;
+};
+
+struct CameraKey {
+  double at = 0.0;  // s
+  Vec3 position = Vec3::Zero(), target = Vec3::Zero();
+  double fov = 35.0;  // degrees, vertical
+};
+struct CameraEntry {
+  std::optional<Vec3> position, target;  // nothing: chosen so that everything breakable is seen
+  Vec3 up = Vec3::UnitY();
+  double fov = 35.0;            // degrees, vertical
+  std::vector<CameraKey> path;  // ascending in time; overrides the above
+};
+
+struct LightEntry {
+  std::optional<Vec3> sun_direction, sun_colour;  // towards the sun; sRGB
+  std::optional<double> sun_strength, sun_size;   // radiance of a white matt surface; degrees
+  std::optional<double> sky;                      // strength
+  bool casts_shadow = true;
+};
+
+struct RenderEntry {
+  std::string look;    // of bodies without their own; empty: by their material
+  std::string ground;  // of kGroundNames; empty: "plain" where there is a level plane
+  std::optional<Vec3> ground_colour;
+  double checker = 0.0;  // m a square; 0: plain
+  std::string backdrop = "studio";
+  std::string overlay = "none";
+  std::optional<double> overlay_most;  // MPa, top of the stress scale
+  double exposure = 1.0;
+  bool has_caption = false;
+};
+
+struct SceneDescription {
+  std::string file, name;
+  std::string goal;  // the first line of the file without its #: what must be seen
+  double seconds = 4.0;
+  world::WorldSettings world;
+  std::vector<MaterialEntry> materials;
+  std::vector<PairEntry> pairs;
+  std::vector<BodyEntry> bodies;
+  std::vector<EventEntry> events;  // by time, then in the order of the text
+  CameraEntry camera;
+  LightEntry light;
+  RenderEntry render;
+  std::vector<std::string> warnings;
+};
+
+// Names that mean something to sandbox/view.
+inline const std::vector<std::string> kLookNames{"ornament", "glass",    "ceramic", "porcelain", "steel",
+                                                 "wood",     "concrete", "brick",   "plaster",   "ice",
+                                                 "eggshell", "matt",     "glossy"};
+inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
+inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
+inline const std::vector<std::string> kOverlayNames{"none", "stress", "pieces"};
+inline const std::vector<std::string> kEventVerbs{"projectile", "drop"};
+
+}  // namespace shatterbox::sandbox::scene

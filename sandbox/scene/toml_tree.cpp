@@ -1,0 +1,135 @@
+#include "sandbox/scene/toml_tree.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#define TOML_ENABLE_FORMATTERS 0
+#include <toml++/toml.h>
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+Place place_of(const toml::source_region& region, const std::string& file) {
+  return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+bool comes_before(const Place& a, const Place& b) {
+  return a.line != b.line ? a.line < b.line : a.column < b.column;
+}
+
+TomlValue convert(const toml::node& node, const std::string& file) {
+  TomlValue value;
+  value.place = place_of(node.source(), file);
+  value.key_place = value.place;
+  switch (node.type()) {
+    case toml::node_type::table:
+      for (const auto& [key, entry] : *node.as_table()) {
+        TomlValue child = convert(entry, file);
+        child.key_place = place_of(key.source(), file);
+        value.entries.emplace_back(std::string(key.str()), std::move(child));
+      }
+      // toml++ sorts by key; people read in the order of the text.
+      std::stable_sort(value.entries.begin(), value.entries.end(), [](const auto& a, const auto& b) {
+        return comes_before(a.second.key_place, b.second.key_place);
+      });
+      break;
+    case toml::node_type::array:
+      value.kind = TomlKind::array;
+      for (const toml::node& item : *node.as_array()) value.items.push_back(convert(item, file));
+      break;
+    case toml::node_type::string:
+      value.kind = TomlKind::text;
+      value.text = node.as_string()->get();
+      break;
+    case toml::node_type::integer:
+      value.kind = TomlKind::whole;
+      value.whole = node.as_integer()->get();
+      value.real = static_cast<double>(value.whole);
+      break;
+    case toml::node_type::floating_point:
+      value.kind = TomlKind::real;
+      value.real = node.as_floating_point()->get();
+      break;
+    case toml::node_type::boolean:
+      value.kind = TomlKind::truth;
+      value.truth = node.as_boolean()->get();
+      break;
+    default:
+      value.kind = TomlKind::date;
+  }
+  return value;
+}
+
+}  // namespace
+
+const TomlValue* TomlValue::find(std::string_view key) const {
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [key](const auto& entry) { return entry.first == key; });
+  return found == entries.end() ? nullptr : &found->second;
+}
+
+TomlValue* TomlValue::find(std::string_view key) {
+  return const_cast<TomlValue*>(std::as_const(*this).find(key));
+}
+
+std::string kind_in_words(const TomlValue& value) {
+  switch (value.kind) {
+    case TomlKind::table:
+      return "a table";
+    case TomlKind::array:
+      return "a list of " + std::to_string(value.items.size());
+    case TomlKind::text:
+      return "the text \"" + value.text + "\"";
+    case TomlKind::whole:
+      return "the number " + std::to_string(value.whole);
+    case TomlKind::real: {
+      std::ostringstream text;
+      text << "the number " << value.real;
+      return text.str();
+    }
+    case TomlKind::truth:
+      return value.truth ? "true" : "false";
+    case TomlKind::date:
+      break;
+  }
+  return "a date";
+}
+
+TomlValue parse_toml(std::string_view text, const std::string& file, Problems& problems) {
+  try {
+    const toml::table table = toml::parse(text, file);
+    TomlValue value = convert(table, file);
+    value.place = {file, 1, 1};
+    return value;
+  } catch (const toml::parse_error& error) {
+    problems.push_back({place_of(error.source(), file), std::string(error.description()),
+                        "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}"});
+    TomlValue empty;
+    empty.place = {file, 0, 0};
+    return empty;
+  }
+}
+
+std::optional<std::string> read_text_file(const std::string& path, Problems& problems) {
+  const Place place{path, 0, 0};
+  std::error_code code;
+  if (std::filesystem::is_directory(path, code)) {
+    problems.push_back({place, "is a folder, not a file", "name a .toml file in it"});
+    return std::nullopt;
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    problems.push_back({place, std::string("cannot be read: ") + std::strerror(errno), ""});
+    return std::nullopt;
+  }
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+}  // namespace shatterbox::sandbox::scene
