@@ -1,6 +1,7 @@
 #include "engine/geometry/shell_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace shatterbox::geometry {
@@ -8,7 +9,9 @@ namespace {
 
 using Size = std::size_t;
 
-Size at(int i) { return static_cast<Size>(i); }
+Size at(int i) {
+  return static_cast<Size>(i);
+}
 
 /// Disjoint sets whose representative is the smallest member, so that the order of unions does not matter.
 class DisjointSets {
@@ -35,15 +38,6 @@ struct Stretch {
   int cell, side;
 };
 
-double along_edge(const ShellElements& elements, int element, int local_edge, const Vec2& barycentric) {
-  const Triangle& triangle = elements.mesh.triangles[at(element)];
-  const std::array<double, 3> weights{1.0 - barycentric.x() - barycentric.y(), barycentric.x(), barycentric.y()};
-  const Size i = at(local_edge);
-  const Size j = (i + 1) % 3;
-  // The weight of the edge's higher-numbered vertex is the parameter along the edge.
-  return triangle[i] < triangle[j] ? weights[j] : weights[i];
-}
-
 std::vector<Stretch> collect_stretches(const ShellMesh& mesh) {
   std::vector<Stretch> stretches;
   const ShellElements& elements = *mesh.elements;
@@ -53,8 +47,8 @@ std::vector<Stretch> collect_stretches(const ShellMesh& mesh) {
       const ShellCorner& corner = mesh.corners[at(cell.first_corner + s)];
       if (corner.side != SideKind::element_edge) continue;
       const ShellCorner& next = mesh.corners[at(cell.first_corner + (s + 1) % cell.corner_count)];
-      const double p = along_edge(elements, cell.element, corner.side_id, corner.barycentric);
-      const double q = along_edge(elements, cell.element, corner.side_id, next.barycentric);
+      const double p = edge_parameter(elements, cell.element, corner.side_id, corner.barycentric);
+      const double q = edge_parameter(elements, cell.element, corner.side_id, next.barycentric);
       const int edge = elements.topology.triangle_edges[at(cell.element)][at(corner.side_id)];
       stretches.push_back({edge, std::min(p, q), std::max(p, q), static_cast<int>(c), s});
     }
@@ -88,32 +82,41 @@ void add_edge_contacts(const ShellMesh& mesh, double tolerance, std::vector<Cell
   }
 }
 
-void add_grain_contacts(const ShellMesh& mesh, std::vector<CellContact>& contacts) {
+/// Closed facets inside an element: sides of one number that run against each other. One cell's side may face
+/// parts of several others, where a crack has crossed it.
+void add_facet_contacts(const ShellMesh& mesh, double tolerance, std::vector<CellContact>& contacts) {
   struct Facet {
     int element, id, cell, side;
+    Vec3 begin, end;
   };
   std::vector<Facet> facets;
-  for (Size c = 0; c < mesh.cells.size(); ++c)
-    for (int s = 0; s < mesh.cells[c].corner_count; ++s) {
-      const ShellCorner& corner = mesh.corners[at(mesh.cells[c].first_corner + s)];
-      if (corner.side == SideKind::grain)
-        facets.push_back({mesh.cells[c].element, corner.side_id, static_cast<int>(c), s});
+  for (Size c = 0; c < mesh.cells.size(); ++c) {
+    const ShellCell& cell = mesh.cells[c];
+    for (int s = 0; s < cell.corner_count; ++s) {
+      const ShellCorner& corner = mesh.corners[at(cell.first_corner + s)];
+      if (corner.side != SideKind::grain) continue;
+      const ShellCorner& next = mesh.corners[at(cell.first_corner + (s + 1) % cell.corner_count)];
+      facets.push_back({cell.element, corner.side_id, static_cast<int>(c), s,
+                        position_in_element(*mesh.elements, cell.element, corner.barycentric),
+                        position_in_element(*mesh.elements, cell.element, next.barycentric)});
     }
+  }
   std::sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
     return std::array{a.element, a.id, a.cell, a.side} < std::array{b.element, b.id, b.cell, b.side};
   });
-  for (Size i = 0; i + 1 < facets.size(); ++i) {
-    const Facet& a = facets[i];
-    const Facet& b = facets[i + 1];
-    if (a.element != b.element || a.id != b.id || a.cell == b.cell) continue;
-    const ShellCell& cell = mesh.cells[at(a.cell)];
-    const ShellCorner& p = mesh.corners[at(cell.first_corner + a.side)];
-    const ShellCorner& q = mesh.corners[at(cell.first_corner + (a.side + 1) % cell.corner_count)];
-    const double length = (position_in_element(*mesh.elements, a.element, p.barycentric) -
-                           position_in_element(*mesh.elements, a.element, q.barycentric))
-                              .norm();
-    contacts.push_back({a.cell, b.cell, a.side, b.side, length});
-  }
+  for (Size i = 0; i < facets.size(); ++i)
+    for (Size j = i + 1; j < facets.size(); ++j) {
+      const Facet& a = facets[i];
+      const Facet& b = facets[j];
+      if (a.element != b.element || a.id != b.id) break;
+      if (a.cell == b.cell) continue;
+      const Vec3 along = a.end - a.begin;
+      const double length = along.norm();
+      if (!(length > 0.0) || along.dot(b.end - b.begin) >= 0.0) continue;
+      const double from = std::max(0.0, along.dot(b.end - a.begin) / length);
+      const double to = std::min(length, along.dot(b.begin - a.begin) / length);
+      if (to - from > tolerance * length) contacts.push_back({a.cell, b.cell, a.side, b.side, to - from});
+    }
 }
 
 }  // namespace
@@ -143,6 +146,47 @@ Vec3 position_in_element(const ShellElements& elements, int element, const Vec2&
          barycentric.y() * (elements.mesh.positions[at(t[2])] - a);
 }
 
+double edge_parameter(const ShellElements& elements, int element, int local_edge, const Vec2& barycentric) {
+  const Triangle& triangle = elements.mesh.triangles[at(element)];
+  const std::array<double, 3> weights{1.0 - barycentric.x() - barycentric.y(), barycentric.x(),
+                                      barycentric.y()};
+  const Size i = at(local_edge);
+  const Size j = (i + 1) % 3;
+  // The weight of the edge's higher-numbered vertex is the parameter along the edge.
+  return triangle[i] < triangle[j] ? weights[j] : weights[i];
+}
+
+Vec2 barycentric_on_edge(const ShellElements& elements, int element, int local_edge, double parameter) {
+  const Triangle& triangle = elements.mesh.triangles[at(element)];
+  const Size i = at(local_edge);
+  const Size j = (i + 1) % 3;
+  std::array<double, 3> weights{};
+  weights[triangle[i] < triangle[j] ? j : i] = parameter;
+  weights[triangle[i] < triangle[j] ? i : j] = 1.0 - parameter;
+  return {weights[1], weights[2]};
+}
+
+double round_edge_parameter(double parameter) {
+  return std::floor(parameter * 0x1.0p40 + 0.5) * 0x1.0p-40;
+}
+
+double area_fraction(const ShellMesh& mesh, const ShellCell& cell) {
+  double twice = 0.0;
+  const Vec2& origin = mesh.corners[at(cell.first_corner)].barycentric;
+  for (int i = 1; i + 1 < cell.corner_count; ++i) {
+    const Vec2 a = mesh.corners[at(cell.first_corner + i)].barycentric - origin;
+    const Vec2 b = mesh.corners[at(cell.first_corner + i + 1)].barycentric - origin;
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice;  // the reference triangle has the area one half
+}
+
+double total_area(const ShellMesh& mesh) {
+  double area = 0.0;
+  for (const ShellCell& cell : mesh.cells) area += cell.area;
+  return area;
+}
+
 ShellMesh make_shell_mesh(std::shared_ptr<const ShellElements> elements) {
   ShellMesh mesh;
   mesh.elements = std::move(elements);
@@ -169,7 +213,7 @@ ShellMesh make_shell_mesh(std::shared_ptr<const ShellElements> elements) {
 std::vector<CellContact> find_cell_contacts(const ShellMesh& mesh, double tolerance) {
   std::vector<CellContact> contacts;
   add_edge_contacts(mesh, tolerance, contacts);
-  add_grain_contacts(mesh, contacts);
+  add_facet_contacts(mesh, tolerance, contacts);
   std::sort(contacts.begin(), contacts.end(), [](const CellContact& a, const CellContact& b) {
     return std::array{a.cell_a, a.cell_b, a.side_a, a.side_b} <
            std::array{b.cell_a, b.cell_b, b.side_a, b.side_b};
@@ -192,15 +236,17 @@ void assign_degrees_of_freedom(ShellMesh& mesh, const std::vector<CellContact>& 
         const int shared_edge =
             is_inside ? -1
                       : topology.triangle_edges[at(element_a)][at(
-                            mesh.corners[at(mesh.cells[at(contact.cell_a)].first_corner + contact.side_a)].side_id)];
+                            mesh.corners[at(mesh.cells[at(contact.cell_a)].first_corner + contact.side_a)]
+                                .side_id)];
         const int va = elements.mesh.triangles[at(element_a)][at(i)];
         const int vb = elements.mesh.triangles[at(element_b)][at(j)];
-        const bool is_end = is_inside || topology.edges[at(shared_edge)][0] == va ||
-                            topology.edges[at(shared_edge)][1] == va;
+        const bool is_end =
+            is_inside || topology.edges[at(shared_edge)][0] == va || topology.edges[at(shared_edge)][1] == va;
         if (va == vb && is_end) vertices.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
         const int ea = topology.triangle_edges[at(element_a)][at(i)];
         const int eb = topology.triangle_edges[at(element_b)][at(j)];
-        if (ea == eb && (is_inside || ea == shared_edge)) edges.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
+        if (ea == eb && (is_inside || ea == shared_edge))
+          edges.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
       }
   }
   mesh.vertex_source.clear();

@@ -1,0 +1,477 @@
+#include "engine/geometry/shell_surface.h"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+namespace shatterbox::geometry {
+namespace {
+
+using Size = std::size_t;
+Size at(int i) {
+  return static_cast<Size>(i);
+}
+
+constexpr double kTouch = 1e-6;          // share of an edge that counts as contact, as in find_cell_contacts
+constexpr double kMitreSoftness = 0.02;  // bounds how far a sharp corner retreats along its bisector
+constexpr double kLeastAreaKept = 0.4;   // of a triangle, after the kerf
+constexpr int kPropagations = 3;         // rounds in which vertices near a crack move along with it
+constexpr int kHalvings = 10;            // rounds in which a kerf that is still too wide is halved
+
+/// A point on the border of a cell's polygon: a corner, or a place where a neighbour has a corner.
+struct BorderPoint {
+  Vec2 barycentric;
+  int side;    // that leaves it
+  double key;  // along the side, for the order of points on it
+};
+
+/// A polygon's side on an element's edge, or on a closed facet (then `edge` is -1 and positions are
+/// compared).
+struct Stretch {
+  int edge, cell, side;
+  double begin, end;  // parameters along the edge
+  bool is_forward;    // the side runs from begin to end
+};
+
+/// Two nodes that are one vertex of the surface.
+class Welds {
+ public:
+  explicit Welds(Size count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+    return i;
+  }
+  void unite(int i, int j) {
+    i = find(i);
+    j = find(j);
+    if (i != j) parent_[at(std::max(i, j))] = std::min(i, j);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// What the border of a surface vertex asks of its kerf.
+struct BorderNormal {
+  int vertex;
+  Vec3 inward;    // unit, in the cell's plane
+  bool is_crack;  // false: the rim of the whole shell, along which the vertex slides
+  int element, side_id;
+};
+
+double cross2(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+class SurfaceBuilder {
+ public:
+  explicit SurfaceBuilder(const ShellMesh& mesh) : mesh_(mesh), elements_(*mesh.elements) {}
+
+  ShellSurface build(double kerf) {
+    collect_stretches();
+    insert_neighbours_corners();
+    number_nodes();
+    weld();
+    triangulate();
+    place_vertices();
+    stand_back(kerf);
+    return std::move(surface_);
+  }
+
+ private:
+  const ShellCorner& corner(const ShellCell& cell, int i) const {
+    return mesh_.corners[at(cell.first_corner + (i % cell.corner_count))];
+  }
+
+  void collect_stretches() {
+    for (Size c = 0; c < mesh_.cells.size(); ++c) {
+      const ShellCell& cell = mesh_.cells[c];
+      for (int s = 0; s < cell.corner_count; ++s) {
+        const ShellCorner& from = corner(cell, s);
+        if (from.side == SideKind::grain) facets_.push_back({-1, static_cast<int>(c), s, 0.0, 1.0, true});
+        if (from.side != SideKind::element_edge) continue;
+        const double p = edge_parameter(elements_, cell.element, from.side_id, from.barycentric);
+        const double q =
+            edge_parameter(elements_, cell.element, from.side_id, corner(cell, s + 1).barycentric);
+        const int edge = elements_.topology.triangle_edges[at(cell.element)][at(from.side_id)];
+        stretches_.push_back({edge, static_cast<int>(c), s, std::min(p, q), std::max(p, q), p < q});
+      }
+    }
+    std::sort(stretches_.begin(), stretches_.end(), [](const Stretch& a, const Stretch& b) {
+      return std::array{a.edge, a.cell, a.side} < std::array{b.edge, b.cell, b.side};
+    });
+    const auto id = [this](const Stretch& s) {
+      const ShellCell& cell = mesh_.cells[at(s.cell)];
+      return std::array{cell.element, corner(cell, s.side).side_id, s.cell, s.side};
+    };
+    std::sort(facets_.begin(), facets_.end(),
+              [&id](const Stretch& a, const Stretch& b) { return id(a) < id(b); });
+  }
+
+  /// Calls `action(i, j)` for every ordered pair of different stretches on one edge.
+  template <class Action>
+  void for_neighbours(const Action& action) const {
+    for (Size first = 0; first < stretches_.size();) {
+      Size last = first;
+      while (last < stretches_.size() && stretches_[last].edge == stretches_[first].edge) ++last;
+      for (Size i = first; i < last; ++i)
+        for (Size j = first; j < last; ++j)
+          if (i != j &&
+              mesh_.cells[at(stretches_[i].cell)].element != mesh_.cells[at(stretches_[j].cell)].element)
+            action(i, j);
+      first = last;
+    }
+  }
+
+  template <class Action>
+  void for_facet_pairs(const Action& action) const {
+    for (Size i = 0; i < facets_.size(); ++i) {
+      const ShellCell& a = mesh_.cells[at(facets_[i].cell)];
+      const int id = corner(a, facets_[i].side).side_id;
+      for (Size j = i + 1; j < facets_.size(); ++j) {
+        const ShellCell& b = mesh_.cells[at(facets_[j].cell)];
+        if (b.element != a.element || corner(b, facets_[j].side).side_id != id) break;
+        if (facets_[i].cell != facets_[j].cell) action(facets_[i], facets_[j]);
+      }
+    }
+  }
+
+  /// Parameter of a point along a polygon's side, 0 at its begin and 1 at its end.
+  double along_side(const ShellCell& cell, int side, const Vec2& point) const {
+    const Vec2 from = corner(cell, side).barycentric;
+    const Vec2 along = corner(cell, side + 1).barycentric - from;
+    const double squared = along.squaredNorm();
+    return squared > 0.0 ? along.dot(point - from) / squared : 0.0;
+  }
+
+  void insert_neighbours_corners() {
+    added_.resize(mesh_.cells.size());
+    for_neighbours([this](Size i, Size j) {
+      const Stretch& a = stretches_[i];
+      const Stretch& b = stretches_[j];
+      for (const double q : {b.begin, b.end})
+        if (q > a.begin && q < a.end) {
+          const ShellCell& cell = mesh_.cells[at(a.cell)];
+          const int local_edge = corner(cell, a.side).side_id;
+          const double key = a.is_forward ? q - a.begin : a.end - q;
+          added_[at(a.cell)].push_back(
+              {barycentric_on_edge(elements_, cell.element, local_edge, q), a.side, key});
+        }
+    });
+    const auto insert = [this](const Stretch& a, const Stretch& b) {
+      const ShellCell& cell = mesh_.cells[at(a.cell)];
+      const ShellCell& other = mesh_.cells[at(b.cell)];
+      for (int end = 0; end < 2; ++end) {
+        const Vec2& point = corner(other, b.side + end).barycentric;
+        const double t = along_side(cell, a.side, point);
+        if (t > 1e-9 && t < 1.0 - 1e-9) added_[at(a.cell)].push_back({point, a.side, t});
+      }
+    };
+    for_facet_pairs([&insert](const Stretch& a, const Stretch& b) {
+      insert(a, b);
+      insert(b, a);
+    });
+  }
+
+  void number_nodes() {
+    first_node_.push_back(0);
+    for (Size c = 0; c < mesh_.cells.size(); ++c) {
+      const ShellCell& cell = mesh_.cells[c];
+      std::vector<BorderPoint>& added = added_[c];
+      std::sort(added.begin(), added.end(), [](const BorderPoint& a, const BorderPoint& b) {
+        return a.side != b.side ? a.side < b.side : a.key < b.key;
+      });
+      Size next = 0;
+      for (int s = 0; s < cell.corner_count; ++s) {
+        nodes_.push_back({corner(cell, s).barycentric, s, 0.0});
+        for (; next < added.size() && added[next].side == s; ++next)
+          if (added[next].barycentric != nodes_.back().barycentric) nodes_.push_back(added[next]);
+      }
+      first_node_.push_back(static_cast<int>(nodes_.size()));
+    }
+  }
+
+  /// Nodes of one side, its end corner included.
+  std::vector<int> side_nodes(int cell, int side) const {
+    std::vector<int> found;
+    const int begin = first_node_[at(cell)];
+    const int end = first_node_[at(cell) + 1];
+    for (int n = begin; n < end; ++n)
+      if (nodes_[at(n)].side == side) found.push_back(n);
+    const int after = found.back() + 1;
+    found.push_back(after < end ? after : begin);
+    return found;
+  }
+
+  void weld() {
+    welds_ = std::make_unique<Welds>(nodes_.size());
+    touches_.assign(stretches_.size(), 0);
+    for_neighbours([this](Size i, Size j) {
+      if (i > j) return;
+      const Stretch& a = stretches_[i];
+      const Stretch& b = stretches_[j];
+      const double from = std::max(a.begin, b.begin);
+      const double to = std::min(a.end, b.end);
+      if (to - from <= kTouch) return;
+      touches_[i] = touches_[j] = 1;
+      const auto parameter = [this](const Stretch& s, int node) {
+        const ShellCell& cell = mesh_.cells[at(s.cell)];
+        return edge_parameter(elements_, cell.element, corner(cell, s.side).side_id,
+                              nodes_[at(node)].barycentric);
+      };
+      const std::vector<int> nodes_b = side_nodes(b.cell, b.side);
+      for (const int n : side_nodes(a.cell, a.side))
+        for (const int m : nodes_b)
+          if (parameter(a, n) == parameter(b, m)) welds_->unite(n, m);
+    });
+    for_facet_pairs([this](const Stretch& a, const Stretch& b) {
+      const std::vector<int> nodes_b = side_nodes(b.cell, b.side);
+      for (const int n : side_nodes(a.cell, a.side))
+        for (const int m : nodes_b)
+          if ((nodes_[at(n)].barycentric - nodes_[at(m)].barycentric).cwiseAbs().maxCoeff() < 1e-9)
+            welds_->unite(n, m);
+    });
+  }
+
+  void triangulate() {
+    vertex_of_node_.assign(nodes_.size(), -1);
+    std::vector<int> number(nodes_.size(), -1);
+    for (Size n = 0; n < nodes_.size(); ++n) {
+      int& vertex = number[at(welds_->find(static_cast<int>(n)))];
+      if (vertex < 0) vertex = vertex_count_++;
+      vertex_of_node_[n] = vertex;
+    }
+    for (Size c = 0; c < mesh_.cells.size(); ++c) triangulate_cell(static_cast<int>(c));
+  }
+
+  /// Clips the best-shaped ear again and again; never one that leaves only a line behind.
+  void triangulate_cell(int c) {
+    const ShellCell& cell = mesh_.cells[at(c)];
+    const Triangle& element = elements_.mesh.triangles[at(cell.element)];
+    const Mat3 frame = facet_frame(elements_, cell.element);
+    const Vec3& origin = elements_.mesh.positions[at(element[0])];
+    std::vector<int> ring;
+    std::vector<Vec2> flat;
+    for (int n = first_node_[at(c)]; n < first_node_[at(c) + 1]; ++n) {
+      const Vec3 p = position_in_element(elements_, cell.element, nodes_[at(n)].barycentric) - origin;
+      ring.push_back(n);
+      flat.emplace_back(frame.col(0).dot(p), frame.col(1).dot(p));
+    }
+    double left = 0.0;
+    for (Size i = 2; i < flat.size(); ++i) left += cross2(flat[i - 1] - flat[0], flat[i] - flat[0]);
+    const double least = 1e-12 * left;
+    while (ring.size() >= 3) {
+      Size best = ring.size();
+      double best_quality = 0.0;
+      double best_area = 0.0;
+      for (Size i = 0; i < ring.size(); ++i) {
+        const Vec2& p = flat[(i + ring.size() - 1) % ring.size()];
+        const Vec2& q = flat[i];
+        const Vec2& r = flat[(i + 1) % ring.size()];
+        const double area = cross2(q - p, r - p);
+        if (!(area > least) || (ring.size() > 3 && !(left - area > least))) continue;
+        const double quality = area / ((q - p).squaredNorm() + (r - q).squaredNorm() + (p - r).squaredNorm());
+        if (quality > best_quality) {
+          best = i;
+          best_quality = quality;
+          best_area = area;
+        }
+      }
+      if (best == ring.size()) return;  // what is left has no area
+      const Size before = (best + ring.size() - 1) % ring.size();
+      const Size after = (best + 1) % ring.size();
+      add_triangle(c, {ring[before], ring[best], ring[after]});
+      left -= best_area;
+      ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(best));
+      flat.erase(flat.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+  }
+
+  /// The polygon's side that the straight line between two nodes lies on, -1 for a line through the inside.
+  int side_between(int c, int n, int m) const {
+    const int begin = first_node_[at(c)];
+    const int end = first_node_[at(c) + 1];
+    const int next = n + 1 < end ? n + 1 : begin;
+    return m == next ? nodes_[at(n)].side : -1;
+  }
+
+  void add_triangle(int c, const std::array<int, 3>& nodes) {
+    const ShellCell& cell = mesh_.cells[at(c)];
+    surface_.mesh.triangles.push_back(
+        {vertex_of_node_[at(nodes[0])], vertex_of_node_[at(nodes[1])], vertex_of_node_[at(nodes[2])]});
+    surface_.triangle_cells.push_back(c);
+    surface_.triangle_grains.push_back(cell.grain);
+    for (Size i = 0; i < 3; ++i) {
+      const int side = side_between(c, nodes[i], nodes[(i + 1) % 3]);
+      surface_.is_crack_side.push_back(side >= 0 && corner(cell, side).side == SideKind::crack);
+    }
+  }
+
+  void place_vertices() {
+    surface_.mesh.positions.assign(at(vertex_count_), Vec3::Zero());
+    std::vector<char> is_placed(at(vertex_count_), 0);
+    for (Size c = 0; c < mesh_.cells.size(); ++c)
+      for (int n = first_node_[c]; n < first_node_[c + 1]; ++n) {
+        const int v = vertex_of_node_[at(n)];
+        if (is_placed[at(v)]) continue;
+        is_placed[at(v)] = 1;
+        surface_.mesh.positions[at(v)] =
+            position_in_element(elements_, mesh_.cells[c].element, nodes_[at(n)].barycentric);
+      }
+  }
+
+  void add_normals(int c, int side, bool is_crack, std::vector<BorderNormal>& normals) const {
+    const ShellCell& cell = mesh_.cells[at(c)];
+    const std::vector<int> ends = side_nodes(c, side);
+    const Vec3 a = position_in_element(elements_, cell.element, corner(cell, side).barycentric);
+    const Vec3 b = position_in_element(elements_, cell.element, corner(cell, side + 1).barycentric);
+    const Vec3 normal = facet_frame(elements_, cell.element).col(2);
+    const double length = (b - a).norm();
+    if (!(length > 0.0)) return;
+    const Vec3 inward = normal.cross(b - a) / length;
+    const int id = corner(cell, side).side_id;
+    for (const int n : {ends.front(), ends.back()})
+      normals.push_back({vertex_of_node_[at(n)], inward, is_crack, cell.element, id});
+  }
+
+  std::vector<BorderNormal> collect_normals() const {
+    std::vector<BorderNormal> normals;
+    for (Size c = 0; c < mesh_.cells.size(); ++c)
+      for (int s = 0; s < mesh_.cells[c].corner_count; ++s)
+        if (corner(mesh_.cells[c], s).side == SideKind::crack)
+          add_normals(static_cast<int>(c), s, true, normals);
+    for (Size i = 0; i < stretches_.size(); ++i)
+      if (!touches_[i]) add_normals(stretches_[i].cell, stretches_[i].side, false, normals);
+    std::stable_sort(normals.begin(), normals.end(),
+                     [](const BorderNormal& a, const BorderNormal& b) { return a.vertex < b.vertex; });
+    return normals;
+  }
+
+  /// The retreat of one vertex from all its crack faces, along the rim where it lies on one; zero at a tip.
+  static Vec3 retreat(const BorderNormal* first, const BorderNormal* last, double kerf) {
+    Mat3 matrix = kMitreSoftness * Mat3::Identity();
+    Vec3 right = Vec3::Zero();
+    for (const BorderNormal* n = first; n != last; ++n) {
+      for (const BorderNormal* m = n + 1; m != last; ++m)
+        if (n->is_crack && m->is_crack && n->element == m->element && n->side_id == m->side_id &&
+            n->inward.dot(m->inward) < -0.5)
+          return Vec3::Zero();  // both lips of one cut meet here
+      matrix += n->inward * n->inward.transpose();
+      if (n->is_crack) right += kerf * n->inward;
+    }
+    return matrix.inverse() * right;
+  }
+
+  void stand_back(double kerf) {
+    surface_.least_kerf = kerf;
+    if (!(kerf > 0.0)) return;
+    const std::vector<BorderNormal> normals = collect_normals();
+    std::vector<Vec3> shift(at(vertex_count_), Vec3::Zero());
+    std::vector<char> is_border(at(vertex_count_), 0);
+    for (Size first = 0; first < normals.size();) {
+      Size last = first;
+      bool has_crack = false;
+      for (; last < normals.size() && normals[last].vertex == normals[first].vertex; ++last)
+        has_crack = has_crack || normals[last].is_crack;
+      is_border[at(normals[first].vertex)] = 1;
+      if (has_crack)
+        shift[at(normals[first].vertex)] = retreat(normals.data() + first, normals.data() + last, kerf);
+      first = last;
+    }
+    limit(shift, is_border);
+    report_least_kerf(normals, shift, kerf);
+    for (Size v = 0; v < shift.size(); ++v) surface_.mesh.positions[v] += shift[v];
+  }
+
+  /// Keeps every triangle's orientation and at least kLeastAreaKept of its area. Vertices inside first move
+  /// along with the crack, so that slivers beside it do not narrow the kerf; what still does not fit is
+  /// halved.
+  void limit(std::vector<Vec3>& shift, const std::vector<char>& is_border) {
+    std::vector<int> bad = collapsed(shift);
+    for (int round = 0; round < kPropagations + kHalvings && !bad.empty(); ++round) {
+      for (const int t : bad) {
+        const Triangle& triangle = surface_.mesh.triangles[at(t)];
+        if (round >= kPropagations) {
+          for (const int v : triangle) shift[at(v)] *= round + 1 < kPropagations + kHalvings ? 0.5 : 0.0;
+          continue;
+        }
+        Vec3 largest = Vec3::Zero();
+        for (const int v : triangle)
+          if (shift[at(v)].squaredNorm() > largest.squaredNorm()) largest = shift[at(v)];
+        for (const int v : triangle)
+          if (!is_border[at(v)] && shift[at(v)].squaredNorm() < largest.squaredNorm()) shift[at(v)] = largest;
+      }
+      bad = collapsed(shift);
+    }
+    // The last resort: the vertices of a triangle that still collapses stay where they were, and so do those
+    // around it.
+    for (int round = 0; round < 100 && !bad.empty(); ++round) {
+      for (const int t : bad)
+        for (const int v : surface_.mesh.triangles[at(t)]) shift[at(v)].setZero();
+      bad = collapsed(shift);
+    }
+  }
+
+  std::vector<int> collapsed(const std::vector<Vec3>& shift) const {
+    std::vector<int> bad;
+    const std::vector<Vec3>& x = surface_.mesh.positions;
+    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t) {
+      const auto [i, j, k] = surface_.mesh.triangles[t];
+      if (shift[at(i)].isZero(0.0) && shift[at(j)].isZero(0.0) && shift[at(k)].isZero(0.0)) continue;
+      const Vec3 before = (x[at(j)] - x[at(i)]).cross(x[at(k)] - x[at(i)]);
+      const Vec3 after = (x[at(j)] + shift[at(j)] - x[at(i)] - shift[at(i)])
+                             .cross(x[at(k)] + shift[at(k)] - x[at(i)] - shift[at(i)]);
+      if (!(after.dot(before) >= kLeastAreaKept * before.squaredNorm())) bad.push_back(static_cast<int>(t));
+    }
+    return bad;
+  }
+
+  void report_least_kerf(const std::vector<BorderNormal>& normals, const std::vector<Vec3>& shift,
+                         double kerf) {
+    for (Size n = 0; n < normals.size(); ++n) {
+      if (!normals[n].is_crack) continue;
+      Size first = n;
+      while (first > 0 && normals[first - 1].vertex == normals[n].vertex) --first;
+      Size last = n + 1;
+      while (last < normals.size() && normals[last].vertex == normals[n].vertex) ++last;
+      if (retreat(normals.data() + first, normals.data() + last, kerf).isZero(0.0)) continue;  // a tip
+      surface_.least_kerf =
+          std::min(surface_.least_kerf, shift[at(normals[n].vertex)].dot(normals[n].inward));
+    }
+    surface_.least_kerf = std::max(surface_.least_kerf, 0.0);
+  }
+
+  const ShellMesh& mesh_;
+  const ShellElements& elements_;
+  std::vector<Stretch> stretches_;
+  std::vector<Stretch> facets_;
+  std::vector<char> touches_;  // per stretch: material goes on there
+  std::vector<std::vector<BorderPoint>> added_;
+  std::vector<BorderPoint> nodes_;
+  std::vector<int> first_node_;  // |cells| + 1
+  std::unique_ptr<Welds> welds_;
+  std::vector<int> vertex_of_node_;
+  int vertex_count_ = 0;
+  ShellSurface surface_;
+};
+
+}  // namespace
+
+ShellSurface extract_surface(const ShellMesh& mesh, double kerf) {
+  return SurfaceBuilder(mesh).build(kerf);
+}
+
+MassProperties shell_mass_properties(const ShellMesh& mesh, double thickness, double density) {
+  if (mesh.cells.empty()) return {};
+  const auto point = [&mesh](const ShellCell& cell, int i) {
+    return position_in_element(*mesh.elements, cell.element,
+                               mesh.corners[at(cell.first_corner + i)].barycentric);
+  };
+  MassSum sum(point(mesh.cells.front(), 0));
+  for (const ShellCell& cell : mesh.cells)
+    for (int i = 1; i + 1 < cell.corner_count; ++i)
+      sum.add_triangle(point(cell, 0), point(cell, i), point(cell, i + 1), density * thickness);
+  return sum.properties();
+}
+
+}  // namespace shatterbox::geometry
