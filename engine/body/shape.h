@@ -26,12 +26,13 @@ struct Shape {
   double radius = 0.0;              // sphere, m
 
   // Shell: the one surface for contact, pictures, audit and export.
-  geometry::TriangleMesh surface;         // body space
-  geometry::EdgeTopology topology;        // of the surface
-  std::vector<std::uint8_t> crack_edges;  // per edge of the surface: 1 on a crack face
-  std::vector<int> triangle_grains;       // per triangle: number of the grain, -1 without
-  std::vector<int> triangle_cells;        // per triangle: cell of `shell` it belongs to
-  double thickness = 0.0;                 // m
+  geometry::TriangleMesh surface;            // body space
+  geometry::EdgeTopology topology;           // of the surface
+  std::vector<std::uint8_t> crack_edges;     // per edge of the surface: 1 on a crack face
+  std::vector<int> triangle_grains;          // per triangle: number of the grain, -1 without
+  std::vector<int> triangle_cells;           // per triangle: cell of `shell` it belongs to
+  std::vector<std::uint8_t> triangle_parts;  // per triangle: number of the look; empty for all 0
+  double thickness = 0.0;                    // m
 
   // What breaks: cells in material space; x_material = x_body + material_from_body.
   std::shared_ptr<const geometry::ShellMesh> shell;

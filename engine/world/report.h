@@ -41,6 +41,7 @@ struct BreakRow {
   double momentum_error = 0.0;          // relative
   double angular_momentum_error = 0.0;  // relative, about the parent's centre
   double energy_gain = 0.0;             // kinetic, after / before - 1, at the birth
+  double thickness = 0.0;               // m
   int generation = 0;                   // within its impact event, 0 for the first break
   int crack_generations = 0;            // solves of the cracking body
   bool energy_guard_active = false;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/body/body.h"
+#include "engine/body/impulse_log.h"
 #include "engine/core/result.h"
 #include "engine/material/material.h"
 #include "engine/world/description.h"
@@ -15,6 +16,9 @@
 #include "engine/world/settings.h"
 
 namespace shatterbox::world {
+
+struct EvaluatedImpact;
+struct MovingState;
 
 /// The last evaluated stress of a shell, for pictures: greatest principal stress over both faces and the
 /// event, Pa.
@@ -63,6 +67,8 @@ class World {
   Ancestry ancestry(body::BodyId id) const;
   StressPicture stress_picture(body::BodyId id) const;
   const WorldReport& report() const;
+  /// Impulses of the last step, of the pass that was kept.
+  const body::ImpulseLog& impulse_log() const;
   const WorldSettings& settings() const;
 
   double time() const;  // s
@@ -73,6 +79,13 @@ class World {
 
  private:
   struct State;
+
+  /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the step must be taken
+  /// again.
+  bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, double time, int pass);
+  void inherit_stress(body::BodyId parent);
+  void book_conservation(const std::vector<body::Body>& before);
+
   std::unique_ptr<State> state_;
 };
 

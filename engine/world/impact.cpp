@@ -1,0 +1,84 @@
+#include "engine/world/impact.h"
+
+#include <algorithm>
+
+namespace shatterbox::world {
+namespace {
+
+/// The load in `loads` that `load` belongs to by body, place and direction, or nothing.
+Load* find_place(std::vector<Load>& loads, const Load& load, double radius) {
+  for (Load& candidate : loads) {
+    if (candidate.other != load.other) continue;
+    if ((candidate.point_body - load.point_body).squaredNorm() > radius * radius) continue;
+    if (candidate.impulse_body.dot(load.impulse_body) <
+        0.5 * candidate.impulse_body.norm() * load.impulse_body.norm())
+      continue;
+    return &candidate;
+  }
+  return nullptr;
+}
+
+void merge(Load& into, const Load& load) {
+  const double weight = into.impulse_body.norm();
+  const double other_weight = load.impulse_body.norm();
+  const double sum = weight + other_weight;
+  if (sum > 0.0) into.point_body = (weight * into.point_body + other_weight * load.point_body) / sum;
+  into.impulse_body += load.impulse_body;
+  into.closing_speed = std::max(into.closing_speed, load.closing_speed);
+  into.time = std::max(into.time, load.time);
+}
+
+double inverse_mass_at(const body::Body& body, const Vec3& point, const Vec3& direction) {
+  if (!body.is_dynamic()) return 0.0;
+  const Vec3 turn = (point - body.pose.translation).cross(direction);
+  return body.inverse_mass + turn.dot(body.inverse_inertia_world() * turn);
+}
+
+}  // namespace
+
+std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
+                               double radius, double time) {
+  std::vector<Load> loads;
+  for (const body::LoggedImpulse& entry : log) {
+    if (entry.kind != kind || (entry.body_a != struck.id && entry.body_b != struck.id)) continue;
+    const bool is_a = entry.body_a == struck.id;
+    Load load;
+    load.other = is_a ? entry.body_b : entry.body_a;
+    load.point_body = struck.pose.apply_inverse(entry.point_world);
+    load.impulse_body =
+        struck.pose.rotation.conjugate() * (is_a ? entry.impulse_world : Vec3(-entry.impulse_world));
+    load.closing_speed = entry.closing_speed;
+    load.time = time;
+    if (load.impulse_body.squaredNorm() > 0.0) loads.push_back(load);
+  }
+  // The greatest impulse founds its place first, so that places do not depend on the order of the log.
+  std::stable_sort(loads.begin(), loads.end(), [](const Load& a, const Load& b) {
+    return a.impulse_body.squaredNorm() > b.impulse_body.squaredNorm();
+  });
+  std::vector<Load> gathered;
+  for (const Load& load : loads) {
+    if (Load* place = find_place(gathered, load, radius))
+      merge(*place, load);
+    else
+      gathered.push_back(load);
+  }
+  return gathered;
+}
+
+void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, double radius) {
+  for (const Load& load : loads) {
+    if (Load* place = find_place(event, load, radius))
+      merge(*place, load);
+    else
+      event.push_back(load);
+  }
+}
+
+double effective_mass(const body::Body& struck, const body::Body* other, const Vec3& point_world,
+                      const Vec3& direction_world) {
+  double inverse = inverse_mass_at(struck, point_world, direction_world);
+  if (other) inverse += inverse_mass_at(*other, point_world, direction_world);
+  return inverse > 0.0 ? 1.0 / inverse : 0.0;
+}
+
+}  // namespace shatterbox::world

@@ -1,0 +1,49 @@
+// From the impulse log to the loads on one body: impulses of a step gathered by place, and their sums over an
+// event. [BHTF07] sec. VI sums the impulses of a step; departs from it because collisions are summed over an
+// impact event and contact is averaged over a fixed time, so that the step size does not matter.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/body/impulse_log.h"
+
+namespace shatterbox::world {
+
+/// Impulses on one body by one other body about one place.
+struct Load {
+  body::BodyId other = 0;
+  Vec3 point_body = Vec3::Zero();    // m, body space of the struck body
+  Vec3 impulse_body = Vec3::Zero();  // N s, on the struck body, its body space
+  double closing_speed = 0.0;        // m/s, greatest of the gathered collisions
+  double time = 0.0;                 // s, of the last impulse
+};
+
+/// What a fragile body remembers of its impacts between steps. Part of the state.
+struct ImpactMemory {
+  std::vector<Load> event;      // collision sums of the event that is under way
+  double event_duration = 0.0;  // s, of the event's impact as last evaluated
+  std::vector<Load> contact;    // contact impulses of the last 1/60 s, one entry a step and place
+  double tested_contact = 0.0;  // N: total contact force at which the body was last found to hold
+  int generation = 0;           // breaks since the event began from which this piece comes
+  double birth_time = -1e9;     // s
+};
+
+/// The time over which contact impulses are averaged, s.
+inline constexpr double kContactAverage = 1.0 / 60.0;
+
+/// Collision loads of one step on `struck`, gathered: same other body, nearer than `radius` (m), similar
+/// direction.
+std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
+                               double radius, double time);
+
+/// Adds `loads` to the sums in `event`, at the place of a load that is already there.
+void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, double radius);
+
+/// Effective mass (kg) of two bodies at a point along a unit direction: 1 / (direction . K direction).
+/// `other` may be null or fixed (infinite mass); the result is 0 when neither can move.
+double effective_mass(const body::Body& struck, const body::Body* other, const Vec3& point_world,
+                      const Vec3& direction_world);
+
+}  // namespace shatterbox::world

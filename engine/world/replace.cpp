@@ -1,0 +1,209 @@
+#include "engine/world/replace.h"
+
+#include <algorithm>
+
+#include "engine/core/parallel.h"
+#include "engine/fracture/split_shell.h"
+#include "engine/geometry/shell_surface.h"
+
+namespace shatterbox::world {
+namespace {
+
+struct Piece {
+  std::shared_ptr<const geometry::ShellMesh> mesh;
+  std::shared_ptr<const Fragile> fragile;
+  std::shared_ptr<const body::Shape> shape;
+  bool is_held = false;
+};
+
+/// Tips that stopped in this piece's own material.
+std::vector<fracture::CrackTip> tips_of_piece(const std::vector<fracture::CrackTip>& tips,
+                                              const geometry::ShellMesh& mesh) {
+  std::vector<int> elements;
+  for (const geometry::ShellCell& cell : mesh.cells) elements.push_back(cell.element);
+  std::sort(elements.begin(), elements.end());
+  std::vector<fracture::CrackTip> own;
+  for (const fracture::CrackTip& tip : tips)
+    if (std::binary_search(elements.begin(), elements.end(), tip.element)) own.push_back(tip);
+  return own;
+}
+
+bool is_held_by_support(const fracture::ShellSubject& subject) {
+  if (subject.clamped_vertices.empty()) return false;
+  const auto& elements = *subject.mesh->elements;
+  std::vector<char> vertices(elements.mesh.positions.size(), 0);
+  for (const int vertex : subject.clamped_vertices) vertices[static_cast<std::size_t>(vertex)] = 1;
+  const std::vector<char> edges(elements.topology.edges.size(), 0);
+  return !stress::find_support(*subject.mesh, vertices, edges).empty();
+}
+
+Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture::Decision& decision,
+                 double thickness) {
+  Piece piece;
+  piece.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
+  auto fragile = std::make_shared<Fragile>(parent);
+  fragile->subject.mesh = piece.mesh;
+  fragile->subject.system = nullptr;
+  fragile->subject.tips = tips_of_piece(decision.tips, *piece.mesh);
+  piece.is_held = is_held_by_support(fragile->subject);
+  if (!piece.is_held) fragile->subject.clamped_vertices.clear();
+  piece.shape = make_shell_shape(piece.mesh, *fragile, thickness);
+  piece.fragile = std::move(fragile);
+  return piece;
+}
+
+body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
+  body::Body born = parent;
+  born.name = parent.name + "[" + std::to_string(number) + "]";
+  born.shape = piece.shape;
+  const Vec3 centre_in_parent = piece.shape->material_from_body - parent.shape->material_from_body;
+  born.pose.translation = parent.pose.apply(centre_in_parent);
+  born.velocity = parent.velocity_at(born.pose.translation);
+  born.motion = piece.is_held ? body::Motion::fixed : body::Motion::dynamic;
+  born.inverse_mass = piece.is_held ? 0.0 : 1.0 / piece.shape->mass;
+  born.inverse_inertia = piece.is_held ? Mat3::Zero() : Mat3(piece.shape->inertia.inverse());
+  born.is_awake = true;
+  born.quiet_time = 0.0;
+  return born;
+}
+
+/// Mass, momentum and angular momentum about the parent's centre, recomputed from the pieces, whether held or
+/// not.
+void measure_errors(const body::Body& parent, const std::vector<body::Body>& pieces, BreakRow& row) {
+  const auto momentum = [](const body::Body& b) { return Vec3(b.shape->mass * b.velocity); };
+  const auto spin = [](const body::Body& b) {
+    return Vec3(b.pose.rotation * (b.shape->inertia * (b.pose.rotation.conjugate() * b.angular_velocity)));
+  };
+  const auto energy = [&](const body::Body& b) {
+    return 0.5 * b.shape->mass * b.velocity.squaredNorm() + 0.5 * b.angular_velocity.dot(spin(b));
+  };
+  double mass = 0.0, kinetic = 0.0;
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+  for (const body::Body& piece : pieces) {
+    mass += piece.shape->mass;
+    linear += momentum(piece);
+    angular += (piece.pose.translation - parent.pose.translation).cross(momentum(piece)) + spin(piece);
+    kinetic += energy(piece);
+  }
+  // Relative to the greatest value the motion could give, so that a body without spin has a scale too.
+  const double speed =
+      parent.velocity.norm() + parent.angular_velocity.norm() * parent.shape->bounding_radius;
+  const double scale = parent.shape->mass * speed;
+  const double arm = parent.shape->bounding_radius;
+  row.mass_error = std::abs(mass / parent.shape->mass - 1.0);
+  if (scale > 0.0) {
+    row.momentum_error = (linear - momentum(parent)).norm() / scale;
+    row.angular_momentum_error = (angular - spin(parent)).norm() / (scale * arm);
+  }
+  const double before = energy(parent);
+  if (before > 0.0) row.energy_gain = kinetic / before - 1.0;
+}
+
+BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, double thickness) {
+  const fracture::Decision& decision = impact.decision;
+  BreakRow row;
+  row.body = parent.name;
+  row.id = parent.id;
+  row.new_area = decision.new_area;
+  row.grain_share = decision.new_area > 0.0 ? decision.grain_area / decision.new_area : 0.0;
+  row.fracture_energy = decision.fracture_energy;
+  row.elastic_energy = decision.elastic_energy;
+  row.crack_generations = decision.generations;
+  row.energy_guard_active = decision.energy_guard_active;
+  row.generation_bound_active = decision.generation_bound_active;
+  row.place_material = decision.verdict.place;
+  row.thickness = thickness;
+  for (const fracture::CrackSegment& segment : decision.segments) row.cracks.push_back(segment.ends);
+  return row;
+}
+
+void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMemory& memory,
+                   const std::vector<Piece>& pieces, std::vector<body::Body> born, double time,
+                   std::map<body::BodyId, Ancestry>& ancestry) {
+  const auto found = ancestry.find(parent.id);
+  const body::BodyId original = found == ancestry.end() ? parent.id : found->second.original;
+  for (std::size_t i = 0; i < born.size(); ++i) {
+    born[i].id = moving.next_id++;
+    ImpactMemory own;
+    own.generation = memory.generation + 1;
+    own.birth_time = time;
+    own.event_duration = memory.event_duration;
+    moving.memories[born[i].id] = own;
+    moving.fragiles[born[i].id] = pieces[i].fragile;
+    ancestry[born[i].id] = {parent.id, original, time};
+  }
+  const body::BodyId gone = parent.id;
+  std::erase_if(moving.bodies, [&](const body::Body& b) { return b.id == gone; });
+  moving.memories.erase(gone);
+  moving.fragiles.erase(gone);
+  moving.bodies.insert(moving.bodies.end(), std::make_move_iterator(born.begin()),
+                       std::make_move_iterator(born.end()));
+}
+
+}  // namespace
+
+double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double energy,
+                      body::ImpulseLog& log) {
+  body::Body* struck = body::find_body(moving.bodies, impact.id);
+  if (!struck || energy <= 0.0 || impact.hardest.impulse_body.squaredNorm() == 0.0) return 0.0;
+  body::Body* other = body::find_body(moving.bodies, impact.hardest.other);
+  const Vec3 point = struck->pose.apply(impact.hardest.point_body);
+  const Vec3 direction = struck->pose.rotation * impact.hardest.impulse_body.normalized();
+  const double mass = effective_mass(*struck, other, point, direction);
+  const Vec3 other_velocity = other ? other->velocity_at(point) : Vec3::Zero();
+  const double closing = -(struck->velocity_at(point) - other_velocity).dot(direction);
+  if (!(mass > 0.0) || closing <= 0.0) return 0.0;
+  const double paid = std::min(energy, 0.5 * mass * closing * closing);
+  const double left = std::sqrt(std::max(0.0, closing * closing - 2.0 * paid / mass));
+  const Vec3 impulse = mass * (closing - left) * direction;
+  const auto push = [&point](body::Body& body, const Vec3& by) {
+    if (!body.is_dynamic()) return;
+    body.velocity += body.inverse_mass * by;
+    body.angular_velocity += body.inverse_inertia_world() * (point - body.pose.translation).cross(by);
+  };
+  push(*struck, impulse);
+  if (other) push(*other, -impulse);
+  body::LoggedImpulse entry;
+  entry.kind = body::ImpulseKind::fracture;
+  entry.body_a = struck->id;
+  entry.body_b = impact.hardest.other;
+  entry.point_world = point;
+  entry.normal_world = direction;
+  entry.impulse_world = impulse;
+  entry.closing_speed = closing;
+  entry.effective_mass = mass;
+  log.push_back(entry);
+  return paid;
+}
+
+BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double time,
+                      std::map<body::BodyId, Ancestry>& ancestry) {
+  const body::Body parent = *body::find_body(moving.bodies, impact.id);
+  const std::shared_ptr<const Fragile> fragile = moving.fragiles.at(impact.id);
+  const double thickness = parent.shape->thickness;
+  ImpactMemory memory = moving.memories[impact.id];
+  memory.event_duration = impact.decision.verdict.duration;
+  BreakRow row = describe(parent, impact, thickness);
+  row.generation = memory.generation;
+  row.place = parent.pose.apply(impact.hardest.point_body);
+
+  fracture::ShellSplit split = fracture::split_shell(*impact.decision.mesh, {kLeastWidth * fragile->size});
+  row.merged = split.merged_count;
+  double area = 0.0;
+  for (const geometry::ShellCell& cell : impact.decision.mesh->cells) area += cell.area;
+  row.merged_mass_share = area > 0.0 ? split.merged_area / area : 0.0;
+
+  std::vector<Piece> pieces(split.pieces.size());
+  core::parallel_for(pieces.size(), 1, [&](std::size_t i) {
+    pieces[i] = make_piece(std::move(split.pieces[i]), *fragile, impact.decision, thickness);
+  });
+  std::vector<body::Body> born;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    born.push_back(make_body(parent, pieces[i], static_cast<int>(i)));
+  row.pieces = static_cast<int>(pieces.size());
+  measure_errors(parent, born, row);
+  insert_pieces(moving, parent, memory, pieces, std::move(born), time, ancestry);
+  return row;
+}
+
+}  // namespace shatterbox::world

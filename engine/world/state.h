@@ -1,0 +1,52 @@
+// What is behind the door: the moving state, which is a value and can be put back, and what never changes.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/body/impulse_log.h"
+#include "engine/dynamics/step_motion.h"
+#include "engine/world/fragile.h"
+#include "engine/world/impact.h"
+#include "engine/world/world.h"
+
+namespace shatterbox::world {
+
+/// Everything a step reads and writes. Copied before a step in which something may break.
+struct MovingState {
+  std::vector<body::Body> bodies;  // ascending ids
+  dynamics::ContactState contact;
+  std::map<body::BodyId, ImpactMemory> memories;  // of fragile bodies
+  Fragiles fragiles;
+  body::BodyId next_id = 1;
+};
+
+/// A form that several bodies share, found again by what it was made from.
+struct SharedForm {
+  std::uint64_t key = 0;
+  std::shared_ptr<const body::Shape> shape;
+  std::shared_ptr<const Fragile> fragile;  // without flaws: those are each body's own
+};
+
+struct World::State {
+  WorldSettings settings;
+  std::vector<material::Material> materials;
+  dynamics::ContactSettings contact_settings;
+  std::vector<SharedForm> forms;
+
+  MovingState moving;
+  body::ImpulseLog log;  // of the last step
+  std::map<body::BodyId, Ancestry> ancestry;
+  std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;
+  WorldReport report;
+  long steps = 0;
+  std::uint64_t hash = 0;
+  double last_energy = 0.0;  // J
+  bool is_disturbed = true;  // bodies were added, removed or pushed since the last step
+  Vec3 momentum_before = Vec3::Zero();
+};
+
+}  // namespace shatterbox::world

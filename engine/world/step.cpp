@@ -1,0 +1,223 @@
+// World::step: the list of stages. Each is a free function of its floor; here they are only called, timed
+// and, when something broke, called again from the snapshot with the pieces in place of the whole.
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/world/replace.h"
+#include "engine/world/state.h"
+#include "engine/world/verdict.h"
+
+namespace shatterbox::world {
+namespace {
+
+/// Passes of one step: the first, and one more for each generation of breaking that went back.
+constexpr int kMostPasses = 12;
+
+std::string format_ratio(const char* word, double ratio) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%s%.3g of its strength", word, ratio);
+  return text;
+}
+
+ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body, double time) {
+  const fracture::Verdict& verdict = impact.decision.verdict;
+  ImpactRow row;
+  row.time = time;
+  row.body = body.name;
+  row.id = body.id;
+  row.impulse = verdict.impulse;
+  row.duration = verdict.duration;
+  row.stress = verdict.stress;
+  row.strength = verdict.strength;
+  row.ratio = verdict.ratio;
+  row.place = body.pose.apply(verdict.place - body.shape->material_from_body);
+  switch (verdict.outcome) {
+    case fracture::Outcome::broke:
+      row.verdict = format_ratio("broke: ", verdict.ratio);
+      break;
+    case fracture::Outcome::held:
+      row.verdict =
+          verdict.reason.empty() ? format_ratio("held: ", verdict.ratio) : "held: " + verdict.reason;
+      break;
+    case fracture::Outcome::not_evaluated:
+      row.verdict = "not evaluated: " + verdict.reason;
+      break;
+  }
+  return row;
+}
+
+double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
+                    ConservationFigures& figures) {
+  figures.momentum = Vec3::Zero();
+  figures.kinetic_energy = figures.potential_energy = 0.0;
+  for (const body::Body& body : bodies) {
+    if (!body.is_dynamic()) continue;
+    figures.momentum += body.shape->mass * body.velocity;
+    figures.kinetic_energy += body::kinetic_energy(body);
+    figures.potential_energy -= body.shape->mass * gravity.dot(body.pose.translation);
+  }
+  return figures.kinetic_energy + figures.potential_energy;
+}
+
+/// Momentum that gravity and the logged impulses of fixed bodies explain.
+Vec3 explained_momentum(const std::vector<body::Body>& before, const body::ImpulseLog& log,
+                        const Vec3& gravity, double time_step) {
+  Vec3 sum = Vec3::Zero();
+  for (const body::Body& body : before)
+    if (body.is_dynamic() && body.is_awake) sum += body.shape->mass * time_step * gravity;
+  for (const body::LoggedImpulse& entry : log) {
+    if (entry.kind == body::ImpulseKind::fracture) continue;  // was given before this pass began
+    const body::Body* a = body::find_body(before, entry.body_a);
+    const body::Body* b = body::find_body(before, entry.body_b);
+    if (a && a->is_dynamic()) sum += entry.impulse_world;
+    if (b && b->is_dynamic()) sum -= entry.impulse_world;
+  }
+  return sum;
+}
+
+void book_contact(const dynamics::ContactReport& contact, long steps, ContactFigures& figures) {
+  figures.contacts = contact.contacts;
+  figures.most_contacts = std::max(figures.most_contacts, contact.contacts);
+  if (contact.contacts > 0)
+    figures.least_gap = figures.most_contacts == contact.contacts && figures.least_gap == 0.0
+                            ? contact.least_gap
+                            : std::min(figures.least_gap, contact.least_gap);
+  figures.failsafe_steps += contact.failsafe_steps > 0 ? 1 : 0;
+  const double n = static_cast<double>(steps);
+  figures.frozen_share = (figures.frozen_share * n + contact.frozen_share) / (n + 1.0);
+  figures.residual = contact.residual;
+}
+
+std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t previous) {
+  core::Hash hash(previous);
+  hash.add(static_cast<std::uint64_t>(steps));
+  for (const body::Body& body : moving.bodies) {
+    hash.add(std::uint64_t{body.id}).add(body.pose.rotation).add(body.pose.translation);
+    hash.add(body.velocity).add(body.angular_velocity).add(std::uint64_t{body.is_awake}).add(body.quiet_time);
+  }
+  for (const auto& [id, memory] : moving.memories) {
+    hash.add(std::uint64_t{id}).add(memory.event_duration).add(memory.tested_contact);
+    hash.add(static_cast<std::uint64_t>(memory.generation));
+    for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
+    for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);
+  }
+  dynamics::add_to_hash(moving.contact, hash);
+  return hash.value();
+}
+
+}  // namespace
+
+void World::step() {
+  State& s = *state_;
+  core::StageTimer& timer = s.report.stages;
+  const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
+  const bool may_break = !s.moving.fragiles.empty();
+  if (s.steps == 0) s.report.bodies_start = static_cast<int>(s.moving.bodies.size());
+
+  dynamics::ContactReport contact;
+  std::vector<body::Body> before;
+  s.log.clear();
+  for (int pass = 0;; ++pass) {
+    MovingState snapshot;
+    if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
+    before = s.moving.bodies;
+    timer.time("wake", [&] { dynamics::wake_bodies(s.moving.bodies, s.contact_settings, s.moving.contact); });
+    contact = timer.time("motion", [&] {
+      return dynamics::step_motion(s.moving.bodies, s.contact_settings, s.moving.contact, s.log);
+    });
+    if (!may_break) break;
+
+    EvaluationFigures figures;
+    const auto impacts = timer.time("stress", [&] {
+      return evaluate_stress(s.moving.bodies, s.log, s.moving.fragiles, s.settings, s.contact_settings,
+                             end_time, s.moving.memories, figures);
+    });
+    s.report.solver.solves += figures.solves;
+    s.report.solver.skipped += figures.skipped;
+    s.report.solver.factorisations += figures.factorisations;
+    s.report.solver.worst_residual = std::max(s.report.solver.worst_residual, figures.worst_residual);
+    if (!timer.time("fracture", [&] { return break_bodies(impacts, snapshot, end_time, pass); })) break;
+  }
+  timer.time("sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+  book_contact(contact, s.steps, s.report.contact);
+  book_conservation(before);
+  ++s.steps;
+  s.report.steps = s.steps;
+  s.hash = timer.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
+}
+
+bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, double time,
+                         int pass) {
+  State& s = *state_;
+  std::vector<const EvaluatedImpact*> broken;
+  for (const EvaluatedImpact& impact : impacts) {
+    const body::Body& body = *body::find_body(s.moving.bodies, impact.id);
+    ImpactMemory& memory = s.moving.memories[impact.id];
+    if (!impact.decision.element_stress.empty())
+      s.element_stress[impact.id] =
+          std::make_shared<const std::vector<double>>(impact.decision.element_stress);
+    if (impact.decision.verdict.outcome != fracture::Outcome::broke) {
+      if (impact.decision.generations > 0) s.report.impacts.push_back(describe_impact(impact, body, time));
+      continue;
+    }
+    // Generations are bounded per event: a piece that flew for longer than the impact lasts begins anew.
+    if (time - memory.birth_time > 2.0 * memory.event_duration) memory.generation = 0;
+    ImpactRow row = describe_impact(impact, body, time);
+    if (memory.generation >= s.settings.most_generations || pass + 1 >= kMostPasses) {
+      row.verdict = "held: its impact event has used all its generations of breaking";
+      s.report.impacts.push_back(row);
+      continue;
+    }
+    s.report.impacts.push_back(row);
+    broken.push_back(&impact);
+  }
+  if (broken.empty()) return false;
+
+  const bool goes_back = s.settings.after_break == AfterBreak::go_back;
+  if (goes_back) {
+    for (const EvaluatedImpact* impact : broken)
+      snapshot.memories[impact->id].generation = s.moving.memories[impact->id].generation;
+    s.moving = std::move(snapshot);
+    s.log.clear();
+  }
+  for (const EvaluatedImpact* impact : broken) {
+    if (goes_back) pay_for_cracks(s.moving, *impact, impact->decision.fracture_energy, s.log);
+    BreakRow row = replace_body(s.moving, *impact, time, s.ancestry);
+    row.time = time;
+    inherit_stress(impact->id);
+    s.report.breaks.push_back(std::move(row));
+  }
+  s.is_disturbed = true;
+  return goes_back;
+}
+
+void World::inherit_stress(body::BodyId parent) {
+  State& s = *state_;
+  const auto stress = s.element_stress.find(parent);
+  if (stress == s.element_stress.end()) return;
+  for (const auto& [id, from] : s.ancestry)
+    if (from.parent == parent) s.element_stress[id] = stress->second;
+  s.element_stress.erase(parent);
+}
+
+void World::book_conservation(const std::vector<body::Body>& before) {
+  State& s = *state_;
+  ConservationFigures& figures = s.report.conservation;
+  ConservationFigures start;
+  total_energy(before, s.settings.gravity, start);
+  const double energy = total_energy(s.moving.bodies, s.settings.gravity, figures);
+  const Vec3 explained = explained_momentum(before, s.log, s.settings.gravity, s.contact_settings.time_step);
+  const double error = (figures.momentum - start.momentum - explained).norm();
+  figures.momentum_error = std::max(figures.momentum_error, error);
+  if (!s.is_disturbed)
+    figures.greatest_energy_rise = std::max(figures.greatest_energy_rise, energy - s.last_energy);
+  s.is_disturbed = false;
+  s.last_energy = energy;
+  long triangles = 0;
+  for (const body::Body& body : s.moving.bodies)
+    triangles += static_cast<long>(body.shape->surface.triangles.size());
+  if (s.steps == 0) s.report.triangles_start = triangles;
+  s.report.triangles_most = std::max(s.report.triangles_most, triangles);
+}
+
+}  // namespace shatterbox::world

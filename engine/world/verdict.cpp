@@ -1,0 +1,199 @@
+#include "engine/world/verdict.h"
+
+#include <algorithm>
+
+#include "engine/core/parallel.h"
+#include "engine/stress/contact_duration.h"
+
+namespace shatterbox::world {
+namespace {
+
+/// Loads nearer than this share of the body's bounding radius are one load.
+constexpr double kGatherRadius = 0.25;
+/// Resting contact is evaluated again when its force has grown by this factor since the body last held.
+constexpr double kContactGrowth = 1.1;
+
+struct Candidate {
+  const body::Body* body = nullptr;
+  const Fragile* fragile = nullptr;
+  Load hardest;
+  fracture::ShellImpact impact;
+};
+
+struct Judge {
+  const std::vector<body::Body>& bodies;
+  const WorldSettings& settings;
+  const dynamics::ContactSettings& contact;
+
+  double restitution(const body::Body& struck, body::BodyId other) const {
+    const body::Body* partner = body::find_body(bodies, other);
+    return partner ? dynamics::pair_material(struck, *partner, contact).restitution : struck.restitution;
+  }
+
+  stress::HertzContact hertz(const body::Body& struck, body::BodyId other) const {
+    const auto surface = [](const body::Body& body) {
+      double radius = body.shape->bounding_radius;
+      if (body.shape->kind == body::ShapeKind::sphere) radius = body.shape->radius;
+      if (body.shape->kind == body::ShapeKind::plane || body.shape->kind == body::ShapeKind::box)
+        radius = 0.0;
+      return stress::ContactSurface{body.young, body.poisson, radius};
+    };
+    const body::Body* partner = body::find_body(bodies, other);
+    const double size = struck.shape->bounding_radius;
+    return stress::make_hertz_contact(surface(struck), partner ? surface(*partner) : stress::ContactSurface{},
+                                      struck.shape->thickness, size);
+  }
+
+  fracture::ShellLoad shell_load(const body::Body& struck, const Load& load, bool is_collision) const {
+    fracture::ShellLoad out;
+    const body::Body* partner = body::find_body(bodies, load.other);
+    out.point_material = load.point_body + struck.shape->material_from_body;
+    out.impulse = load.impulse_body.norm();
+    out.direction = load.impulse_body / out.impulse;
+    const Vec3 point_world = struck.pose.apply(load.point_body);
+    const Vec3 direction_world = struck.pose.rotation * out.direction;
+    out.effective_mass = effective_mass(struck, partner, point_world, direction_world);
+    if (partner) {
+      const double other_mass = effective_mass(*partner, nullptr, point_world, direction_world);
+      out.other_inverse_mass = other_mass > 0.0 ? 1.0 / other_mass : 0.0;
+    }
+    if (!is_collision || !(out.effective_mass > 0.0)) return out;
+    out.closing_speed = out.impulse / ((1.0 + restitution(struck, load.other)) * out.effective_mass);
+    const stress::HertzContact contact_pair = hertz(struck, load.other);
+    const double force = stress::peak_force(contact_pair, out.effective_mass, out.closing_speed);
+    out.hertz_compliance = stress::hertz_compliance(contact_pair, force);
+    out.hertz_radius = stress::hertz_patch_radius(contact_pair, force);
+    return out;
+  }
+};
+
+void forget_old_contact(ImpactMemory& memory, double time) {
+  std::erase_if(memory.contact, [&](const Load& load) { return load.time <= time - kContactAverage; });
+}
+
+double total_force(const std::vector<Load>& loads) {
+  double sum = 0.0;
+  for (const Load& load : loads) sum += load.impulse_body.norm();
+  return sum / kContactAverage;
+}
+
+/// A shell no wider than `width` at its narrowest, bent by `force` over its whole size, has at most this
+/// stress.
+double bending_bound(const body::Body& body, double force) {
+  const double thickness = body.shape->thickness;
+  const double reach = 2.0 * body.shape->bounding_radius;
+  const double width = std::max(thickness, reach * kLeastWidth);
+  return 6.0 * force * reach / (thickness * thickness * width);
+}
+
+std::vector<Load> gather_by_place(const std::vector<Load>& loads, double radius) {
+  std::vector<Load> gathered;
+  add_to_event(gathered, loads, radius);
+  return gathered;
+}
+
+/// [BHTF07] sec. VI: collision and contact of one step together.
+void gather_paper_step(const body::ImpulseLog& log, const body::Body& body, double radius, double time,
+                       std::vector<Load>& loads) {
+  for (const auto kind :
+       {body::ImpulseKind::collision, body::ImpulseKind::contact, body::ImpulseKind::continuous})
+    add_to_event(loads, gather_loads(log, kind, body, radius, time), radius);
+}
+
+/// The impact of this step on one body, if there is anything to evaluate.
+bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::Body& body, double time,
+                   ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
+  const double radius = kGatherRadius * body.shape->bounding_radius;
+  const bool is_paper = judge.settings.criterion == Criterion::paper;
+  std::vector<Load> hits;
+  if (is_paper)
+    gather_paper_step(log, body, radius, time, hits);
+  else
+    hits = gather_loads(log, body::ImpulseKind::collision, body, radius, time);
+
+  forget_old_contact(memory, time);
+  if (!is_paper)
+    for (const Load& load : gather_loads(log, body::ImpulseKind::contact, body, radius, time))
+      memory.contact.push_back(load);
+
+  if (!memory.event.empty()) {
+    double last = -1e9;
+    for (const Load& load : memory.event) last = std::max(last, load.time);
+    if (is_paper || time - last > 2.0 * memory.event_duration) memory.event.clear();
+  }
+  add_to_event(memory.event, hits, radius);
+
+  const double contact_force = total_force(memory.contact);
+  bool is_pressed = contact_force > kContactGrowth * memory.tested_contact;
+  if (is_pressed && bending_bound(body, contact_force) < candidate.fragile->subject.material.strength) {
+    is_pressed = false;
+    if (hits.empty()) ++figures.skipped;
+  }
+  if (hits.empty() && !is_pressed) return false;
+
+  for (const Load& load : memory.event)
+    candidate.impact.loads.push_back(judge.shell_load(body, load, !is_paper));
+  for (const Load& load : gather_by_place(memory.contact, radius))
+    candidate.impact.loads.push_back(judge.shell_load(body, load, false));
+  const std::vector<Load>& told = memory.event.empty() ? memory.contact : memory.event;
+  candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
+    return a.impulse_body.squaredNorm() < b.impulse_body.squaredNorm();
+  });
+  candidate.impact.contact_average = kContactAverage;
+  candidate.impact.spin_material = body.pose.rotation.conjugate() * body.angular_velocity;
+  if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;
+  if (candidate.fragile->contact_duration)
+    candidate.impact.given_duration = candidate.fragile->contact_duration;
+  if (is_paper) candidate.impact.given_duration = judge.settings.paper_duration;
+  memory.tested_contact = std::max(memory.tested_contact, contact_force);
+  return true;
+}
+
+}  // namespace
+
+std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
+                                             const body::ImpulseLog& log, const Fragiles& fragiles,
+                                             const WorldSettings& settings,
+                                             const dynamics::ContactSettings& contact, double time,
+                                             std::map<body::BodyId, ImpactMemory>& memories,
+                                             EvaluationFigures& figures) {
+  const Judge judge{bodies, settings, contact};
+  std::vector<body::BodyId> touched;
+  for (const body::LoggedImpulse& entry : log)
+    for (const body::BodyId id : {entry.body_a, entry.body_b})
+      if (fragiles.count(id)) touched.push_back(id);
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+
+  std::vector<Candidate> candidates;
+  for (const body::BodyId id : touched) {
+    Candidate candidate;
+    candidate.body = body::find_body(bodies, id);
+    if (!candidate.body) continue;
+    candidate.fragile = fragiles.at(id).get();
+    if (gather_impact(judge, log, *candidate.body, time, memories[id], candidate, figures))
+      candidates.push_back(std::move(candidate));
+  }
+
+  std::vector<EvaluatedImpact> evaluated(candidates.size());
+  core::parallel_for(candidates.size(), 1, [&](std::size_t i) {
+    const Candidate& candidate = candidates[i];
+    fracture::FractureSettings how;
+    how.most_generations = settings.most_generations;
+    how.least_width = kLeastWidth * candidate.fragile->size;
+    evaluated[i].id = candidate.body->id;
+    evaluated[i].hardest = candidate.hardest;
+    evaluated[i].decision = fracture::decide_shell(candidate.fragile->subject, candidate.impact, how);
+  });
+  for (const EvaluatedImpact& impact : evaluated) {
+    ImpactMemory& memory = memories[impact.id];
+    memory.event_duration = std::max(memory.event_duration, impact.decision.verdict.duration);
+    figures.solves += impact.decision.generations;
+    figures.factorisations += impact.decision.factorisations;
+    if (impact.decision.generations == 0) ++figures.skipped;
+    figures.worst_residual = std::max(figures.worst_residual, impact.decision.residual);
+  }
+  return evaluated;
+}
+
+}  // namespace shatterbox::world

@@ -1,0 +1,107 @@
+#include "engine/world/world.h"
+
+#include "engine/world/state.h"
+
+namespace shatterbox::world {
+
+World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) {
+  state_->settings = settings;
+  state_->contact_settings.time_step = 1.0 / settings.steps_per_second;
+  state_->contact_settings.gravity = settings.gravity;
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+core::Result<int> World::add_material(const material::Material& material) {
+  if (const auto fault = material::find_fault(material))
+    return core::Error{"material '" + material.name + "': " + *fault};
+  state_->materials.push_back(material);
+  return static_cast<int>(state_->materials.size()) - 1;
+}
+
+void World::add_pair(const PairOverride& pair) {
+  const material::Material& a = material(pair.material_a);
+  const material::Material& b = material(pair.material_b);
+  body::Body body_a, body_b;
+  body_a.friction = a.friction;
+  body_a.restitution = a.restitution;
+  body_b.friction = b.friction;
+  body_b.restitution = b.restitution;
+  const dynamics::PairMaterial usual = dynamics::pair_material(body_a, body_b, dynamics::ContactSettings{});
+  state_->contact_settings.overrides.push_back({pair.material_a, pair.material_b,
+                                                pair.friction.value_or(usual.friction),
+                                                pair.restitution.value_or(usual.restitution)});
+}
+
+bool World::remove_body(body::BodyId id) {
+  MovingState& moving = state_->moving;
+  if (!body::find_body(moving.bodies, id)) return false;
+  std::erase_if(moving.bodies, [&](const body::Body& b) { return b.id == id; });
+  moving.memories.erase(id);
+  moving.fragiles.erase(id);
+  state_->element_stress.erase(id);
+  state_->is_disturbed = true;
+  return true;
+}
+
+bool World::push_body(body::BodyId id, const Vec3& impulse, const Vec3& point) {
+  body::Body* body = body::find_body(state_->moving.bodies, id);
+  if (!body || !body->is_dynamic()) return false;
+  body->velocity += body->inverse_mass * impulse;
+  body->angular_velocity += body->inverse_inertia_world() * (point - body->pose.translation).cross(impulse);
+  body->is_awake = true;
+  body->quiet_time = 0.0;
+  state_->is_disturbed = true;
+  return true;
+}
+
+std::span<const body::Body> World::bodies() const {
+  return state_->moving.bodies;
+}
+
+const material::Material& World::material(int number) const {
+  return state_->materials.at(static_cast<std::size_t>(number));
+}
+
+Ancestry World::ancestry(body::BodyId id) const {
+  const auto found = state_->ancestry.find(id);
+  return found == state_->ancestry.end() ? Ancestry{} : found->second;
+}
+
+StressPicture World::stress_picture(body::BodyId id) const {
+  StressPicture picture;
+  const body::Body* body = body::find_body(state_->moving.bodies, id);
+  const auto fragile = state_->moving.fragiles.find(id);
+  if (!body || fragile == state_->moving.fragiles.end()) return picture;
+  picture.strength = fragile->second->subject.material.strength;
+  const auto stress = state_->element_stress.find(id);
+  if (stress == state_->element_stress.end() || !stress->second) return picture;
+  for (const int cell : body->shape->triangle_cells) {
+    const int element = body->shape->shell->cells[static_cast<std::size_t>(cell)].element;
+    picture.triangle_stress.push_back((*stress->second)[static_cast<std::size_t>(element)]);
+  }
+  return picture;
+}
+
+const WorldReport& World::report() const {
+  return state_->report;
+}
+const body::ImpulseLog& World::impulse_log() const {
+  return state_->log;
+}
+const WorldSettings& World::settings() const {
+  return state_->settings;
+}
+long World::steps() const {
+  return state_->steps;
+}
+double World::time() const {
+  return static_cast<double>(state_->steps) / static_cast<double>(state_->settings.steps_per_second);
+}
+std::uint64_t World::state_hash() const {
+  return state_->hash;
+}
+
+}  // namespace shatterbox::world
