@@ -15,11 +15,13 @@ namespace shatterbox::render {
 
 // One body in the picture. Draws may share a mesh.
 struct Draw {
+  static constexpr std::uint32_t kNoColour = 0xffffffffU;  // keeps its look
+
   std::shared_ptr<const Mesh> mesh;  // never null
   glm::mat4 world_from_body{1.0F};   // rotation and translation (a uniform scale is allowed)
   std::vector<Look> looks{Look{}};   // by Mesh::parts; a part beyond the end takes the last
   std::shared_ptr<const std::vector<float>>
-      scalars;                     // |V| or null; shown by Overlay::stress, in `Overlay` units
+      scalars;                     // |V| or null; shown by OverlayKind::stress, in Overlay::unit
   std::uint32_t colour_index = 0;  // Overlay::pieces: equal index, equal colour
   bool casts_shadow = true;
 };

@@ -1,0 +1,45 @@
+// From a mesh as given to the triangles as drawn: a shell gets its two faces and its rim, corners get their
+// normals.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "render/frame/mesh.h"
+
+namespace shatterbox::render {
+
+enum class Face : std::uint8_t { outside = 0, inside = 1, crack = 2 };
+
+// As the vertex buffer holds it.
+struct DrawnVertex {
+  glm::vec3 position;                  // body space, m
+  std::array<std::int16_t, 4> normal;  // body space, unit times 32767
+  glm::vec3 pattern;                   // pattern space, m
+  std::uint32_t source;                // index into Mesh::positions
+  std::uint32_t face_part;             // Face in bits 0-7, part in bits 8-15
+};
+
+struct IndexRange {
+  std::uint32_t first = 0, count = 0;
+};
+
+struct DrawnMesh {
+  std::vector<DrawnVertex> vertices;
+  std::vector<std::uint32_t> indices;
+  IndexRange outer, inner, rim;  // of indices, in this order; solids have outer only
+  glm::vec3 centre{0.0F};        // of the bounding box, and the radius about it
+  float radius = 0.0F;
+  glm::vec3 box_least{0.0F}, box_most{0.0F};
+};
+
+// Corner normals (3|T|, unit): the angle-weighted mean over the triangles about a vertex that meet this one
+// at less than the crease angle. Degenerate triangles get +y and weigh nothing.
+std::vector<glm::vec3> find_corner_normals(const Mesh& mesh);
+
+// Throws std::invalid_argument when an index is out of range or an array has a length its comment does not
+// allow.
+DrawnMesh expand(const Mesh& mesh);
+
+}  // namespace shatterbox::render

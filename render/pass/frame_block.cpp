@@ -1,0 +1,83 @@
+#include "render/pass/frame_block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace shatterbox::render::pass {
+namespace {
+
+glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
+  const float length = glm::length(v);
+  return length > 0.0F && std::isfinite(length) ? v / length : otherwise;
+}
+
+// The rig of a product shot, turned with the sun: a large box on the sun's side, a tall one behind on the
+// other.
+void place_soft_boxes(glm::vec3 sun, FrameBlock& block) {
+  const glm::vec3 flat = unit_or({sun.x, 0.0F, sun.z}, {1.0F, 0.0F, 0.0F});
+  const glm::vec3 side = glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), flat);
+  const glm::vec3 axes[2] = {unit_or(0.75F * flat + 0.75F * side + glm::vec3(0.0F, 0.95F, 0.0F), sun),
+                             unit_or(-0.9F * flat - 0.75F * side + glm::vec3(0.0F, 0.3F, 0.0F), sun)};
+  const glm::vec2 halves[2] = {{0.36F, 0.42F}, {0.16F, 0.75F}};
+  const float strengths[2] = {4.2F, 2.2F};
+  for (int i = 0; i < 2; ++i) {
+    const glm::vec3 right = unit_or(glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), axes[i]), {1.0F, 0.0F, 0.0F});
+    block.box_axis[i] = glm::vec4(axes[i], strengths[i]);
+    block.box_right[i] = glm::vec4(right, halves[i].x);
+    block.box_up[i] = glm::vec4(glm::cross(axes[i], right), halves[i].y);
+  }
+}
+
+}  // namespace
+
+FrameBlock make_frame_block(const Frame& frame, int width, int height) {
+  FrameBlock block{};
+  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  const Camera& camera = frame.camera;
+  const float distance = std::max(glm::distance(camera.position, camera.target), 1e-6F);
+  const glm::vec3 forward = unit_or(camera.target - camera.position, {0.0F, 0.0F, -1.0F});
+  glm::vec3 up = unit_or(camera.up, {0.0F, 1.0F, 0.0F});
+  if (std::abs(glm::dot(up, forward)) > 0.999F) up = {0.0F, 0.0F, -1.0F};
+  const float slope = std::tan(0.5F * glm::radians(std::clamp(camera.vertical_fov, 1.0F, 150.0F)));
+
+  float fade_from = 0.0F, fade_to = 0.0F;
+  if (frame.ground) {
+    const bool is_chosen = frame.ground->fade_to <= 0.0F;
+    fade_from = is_chosen ? 0.8F * distance : frame.ground->fade_from;
+    fade_to = is_chosen ? 3.2F * distance : std::max(frame.ground->fade_to, fade_from + 1e-6F);
+  }
+  const float near = 0.02F * distance;
+  const float far = 4.0F * distance + 2.0F * fade_to + 10.0F * distance;
+  const glm::mat4 view_from_world = glm::lookAt(camera.position, camera.position + forward, up);
+  block.clip_from_world = glm::perspective(2.0F * std::atan(slope), w / h, near, far) * view_from_world;
+
+  const glm::vec3 sun = unit_or(frame.lights.sun_direction, {0.0F, 1.0F, 0.0F});
+  block.eye_exposure = glm::vec4(camera.position, frame.exposure);
+  block.target_distance = glm::vec4(camera.target, distance);
+  block.sun = glm::vec4(sun, std::tan(0.5F * glm::radians(std::clamp(frame.lights.sun_size, 0.0F, 60.0F))));
+  block.sun_radiance = glm::vec4(frame.lights.sun_colour * frame.lights.sun_strength, 0.0F);
+  block.sky_radiance =
+      glm::vec4(frame.lights.sky_colour * frame.lights.sky_strength, frame.lights.softbox_strength);
+  block.ground_radiance = glm::vec4(frame.lights.ground_colour * frame.lights.sky_strength, 1.0F);
+  place_soft_boxes(sun, block);
+
+  block.backdrop_top = glm::vec4(frame.backdrop.top, frame.backdrop.glow);
+  block.backdrop_bottom = glm::vec4(frame.backdrop.bottom, frame.backdrop.vignette);
+  if (frame.ground) {
+    block.ground_colour = glm::vec4(frame.ground->colour, frame.ground->checker);
+    block.ground_place = glm::vec4(frame.ground->height, fade_from, fade_to, 1.0F);
+  }
+  block.viewport = glm::vec4(w, h, 1.0F / w, 1.0F / h);
+  block.glow_centre = glm::vec4(0.5F * w, 0.58F * h, 1.0F / (0.62F * h), 0.0F);
+  // A neighbourhood of about a seventh of what the camera sees at its target.
+  const float reach = 0.28F * slope * distance;
+  block.occlusion_scale = glm::vec4(near, far * near / (far - near), far / (far - near), reach);
+  block.view_ray = glm::vec4(slope * w / h, slope, 0.0F, 0.0F);
+  const float range = frame.overlay.most - frame.overlay.least;
+  block.scalar_range = glm::vec4(frame.overlay.least, range != 0.0F ? 1.0F / range : 0.0F,
+                                 static_cast<float>(frame.overlay.kind), 0.0F);
+  return block;
+}
+
+}  // namespace shatterbox::render::pass

@@ -1,0 +1,60 @@
+// The meshes on the GPU, by id, and the rows that the shaders read of this frame's draws, looks and scalars.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "render/frame/expand.h"
+#include "render/frame/frame.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/handle.h"
+
+namespace shatterbox::render::pass {
+
+void delete_vertex_array(unsigned name);
+
+// One draw of the frame, ready for the passes.
+struct Item {
+  std::uint64_t mesh = 0;
+  int row = 0;  // of the draw rows
+  glm::vec3 centre_world{0.0F};
+  float radius = 0.0F;        // m, world
+  float eye_distance = 0.0F;  // m, to the centre
+  bool is_glass = false, is_on_screen = false, casts_shadow = false;
+};
+
+enum class Part { all, outer, inner, outer_and_rim };
+
+class MeshStore {
+ public:
+  MeshStore();
+
+  // Uploads meshes not seen before, drops those not in the frame, writes the rows and binds them.
+  // Throws std::invalid_argument (see expand) and then keeps what it had.
+  void prepare(const Frame& frame, const glm::mat4& clip_from_world);
+
+  const std::vector<Item>& items() const { return items_; }  // near to far
+  void bind_vertices() const;
+  void draw(const Item& item, Part part) const;  // the program in use gets the row in uniform 0
+  // What draws in the shadow map: solids wholly, shells by one face.
+  Part shadow_part(const Item& item) const;
+  int mesh_count() const { return static_cast<int>(meshes_.size()); }
+  const DrawnMesh& shape(const Item& item) const { return meshes_.at(item.mesh).shape; }
+
+ private:
+  struct Stored {
+    gpu::Buffer vertices, indices;
+    DrawnMesh shape;  // ranges and bounds; its arrays are on the GPU only
+    std::uint64_t last_frame = 0;
+  };
+  Stored& find_or_upload(const Mesh& mesh);
+  void drop_unseen();
+
+  std::map<std::uint64_t, Stored> meshes_;
+  std::vector<Item> items_;
+  gpu::Buffer draw_rows_, look_rows_, scalars_;
+  gpu::Handle<delete_vertex_array> vertex_array_;
+  std::uint64_t frame_ = 0;
+};
+
+}  // namespace shatterbox::render::pass

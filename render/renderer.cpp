@@ -1,0 +1,211 @@
+#include "render/renderer.h"
+
+#include <glad/gl.h>
+
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <span>
+#include <stdexcept>
+
+#include "render/context/context.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/framebuffer.h"
+#include "render/pass/backdrop.h"
+#include "render/pass/frame_block.h"
+#include "render/pass/glass.h"
+#include "render/pass/ground.h"
+#include "render/pass/mesh_store.h"
+#include "render/pass/occlusion.h"
+#include "render/pass/overlay.h"
+#include "render/pass/shadow.h"
+#include "render/pass/surface.h"
+
+namespace shatterbox::render {
+namespace {
+
+struct Level {
+  int samples, shadow_map, shadow_taps, occlusion_taps;
+};
+Level level_of(Quality quality) {
+  return quality == Quality::full ? Level{4, 1280, 20, 10} : Level{1, 768, 8, 5};
+}
+
+// Times what happened since the last mark, after waiting for it; nothing at all while off.
+class PassClock {
+ public:
+  PassClock(bool is_on, PassTimes& times) : is_on_(is_on), times_(times) {
+    if (is_on_) {
+      times_.passes.clear();
+      start();
+    }
+  }
+  void mark(const char* name) {
+    if (!is_on_) return;
+    glFinish();
+    const double cpu = cpu_ms() - cpu_;
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - wall_;
+    times_.passes.push_back({name, cpu, wall.count()});
+    start();
+  }
+
+ private:
+  static double cpu_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+  }
+  void start() {
+    cpu_ = cpu_ms();
+    wall_ = std::chrono::steady_clock::now();
+  }
+  bool is_on_;
+  PassTimes& times_;
+  double cpu_ = 0;
+  std::chrono::steady_clock::time_point wall_;
+};
+
+void check_size(Size size) {
+  if (size.width < 1 || size.height < 1 || size.width > 8192 || size.height > 8192) {
+    throw std::runtime_error("a picture of " + std::to_string(size.width) + " x " +
+                             std::to_string(size.height) + " pixels is not possible");
+  }
+}
+
+}  // namespace
+
+// Members are made in this order and gone in the reverse: the context outlives all that lives in it.
+struct Renderer::Rooms {
+  Size size;
+  Quality quality;
+  Level level;
+  Context context;
+  gpu::Framebuffer drawn;     // multisampled in full quality
+  gpu::Framebuffer resolved;  // read back
+  gpu::Buffer block;
+  pass::MeshStore meshes;
+  pass::ShadowPass shadow;
+  pass::OcclusionPass occlusion;
+  pass::SurfacePass surface;
+  pass::GroundPass ground;
+  pass::BackdropPass backdrop;
+  pass::GlassPass glass;
+  PassTimes times;
+  bool is_timed = false;
+
+  Rooms(Size size_, Quality quality_)
+      : size(size_),
+        quality(quality_),
+        level(level_of(quality_)),
+        drawn(size.width, size.height, level.samples, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT32F),
+        resolved(size.width, size.height, 1, GL_SRGB8_ALPHA8, 0),
+        shadow(level.shadow_map),
+        occlusion(size.width, size.height, level.occlusion_taps),
+        surface(level.shadow_taps),
+        ground(level.shadow_taps),
+        glass(level.shadow_taps) {
+    glDisable(GL_DITHER);
+    glDepthRange(0.0, 1.0);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  }
+  ~Rooms() { context.make_current(); }
+
+  void fill_block(const Frame& frame) {
+    pass::FrameBlock values = pass::make_frame_block(frame, size.width, size.height);
+    meshes.prepare(frame, values.clip_from_world);
+    shadow.fit(frame, meshes, values);
+    has_shadow = values.sun_radiance.w > 0.0F;
+    block.assign(std::span<const pass::FrameBlock>(&values, 1));
+    block.bind_uniform(0);
+  }
+
+  void draw_scene(const Frame& frame, PassClock& clock) {
+    drawn.bind();
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    shadow.bind();
+    occlusion.bind();
+    surface.run(meshes);
+    clock.mark("surface");
+    if (frame.ground) ground.run();
+    clock.mark("ground");
+    backdrop.run();
+    clock.mark("backdrop");
+    glass.run(meshes);
+    clock.mark("glass");
+  }
+
+  Image read_back() const {
+    const gpu::Framebuffer& last = level.samples > 1 ? resolved : drawn;
+    const auto width = static_cast<std::size_t>(size.width), height = static_cast<std::size_t>(size.height);
+    std::vector<std::uint8_t> rgba(width * height * 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, last.name());
+    glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    Image image(size.width, size.height);
+    for (std::size_t y = 0; y < height; ++y) {  // GL's rows run from below
+      const std::uint8_t* from = rgba.data() + (height - 1 - y) * width * 4;
+      std::uint8_t* to = image.pixels.data() + y * width * 3;
+      for (std::size_t x = 0; x < width; ++x) std::memcpy(to + 3 * x, from + 4 * x, 3);
+    }
+    return image;
+  }
+
+  bool has_shadow = false;
+};
+
+Renderer::Renderer(Size size, Quality quality) {
+  check_size(size);
+  rooms_ = std::make_unique<Rooms>(size, quality);
+}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Image Renderer::render(const Frame& frame) {
+  Rooms& r = *rooms_;
+  r.context.make_current();
+  PassClock clock(r.is_timed, r.times);
+  r.fill_block(frame);
+  clock.mark("upload");
+  if (r.has_shadow) r.shadow.run(r.meshes);
+  clock.mark("shadow");
+  r.occlusion.run(r.meshes, frame.ground.has_value());
+  clock.mark("occlusion");
+  r.draw_scene(frame, clock);
+  if (r.level.samples > 1) r.drawn.resolve_to(r.resolved);
+  clock.mark("resolve");
+  Image image = r.read_back();
+  clock.mark("read back");
+  pass::draw_overlay(image, frame);
+  clock.mark("overlay");
+  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+    throw std::runtime_error("OpenGL error " + std::to_string(error) + " while drawing a frame");
+  }
+  return image;
+}
+
+Size Renderer::size() const {
+  return rooms_->size;
+}
+Quality Renderer::quality() const {
+  return rooms_->quality;
+}
+const std::string& Renderer::gl_renderer() const {
+  return rooms_->context.gl_renderer();
+}
+bool Renderer::is_llvmpipe() const {
+  return gl_renderer().find("llvmpipe") != std::string::npos;
+}
+int Renderer::mesh_count() const {
+  return rooms_->meshes.mesh_count();
+}
+void Renderer::set_timing(bool on) {
+  rooms_->is_timed = on;
+  rooms_->times.passes.clear();
+}
+const PassTimes& Renderer::pass_times() const {
+  return rooms_->times;
+}
+
+}  // namespace shatterbox::render

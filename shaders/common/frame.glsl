@@ -1,0 +1,25 @@
+// What every pass knows of the frame. World space, metres; colours linear. Mirrors render/pass/frame_block.h.
+layout(std140, binding = 0) uniform FrameBlock {
+  mat4 clip_from_world;
+  mat4 shadow_from_world;   // to texture coordinates and depth, 0..1
+  vec4 eye_exposure;        // world; w: exposure
+  vec4 target_distance;     // world; w: metres from the eye
+  vec4 sun;                 // unit, towards it; w: tangent of half its size
+  vec4 sun_radiance;        // w: 1 if it casts shadows
+  vec4 sky_radiance;        // from above; w: soft box strength
+  vec4 ground_radiance;     // from below; w: 1 if there is occlusion
+  vec4 box_axis[2];         // unit, towards the soft box; w: its strength
+  vec4 box_right[2];        // unit, across; w: half width at unit distance
+  vec4 box_up[2];           // unit, along; w: half height
+  vec4 backdrop_top;        // w: glow
+  vec4 backdrop_bottom;     // w: vignette
+  vec4 ground_colour;       // w: metres a checker square, 0 if plain
+  vec4 ground_place;        // x: height, y: fade from, z: fade to (m from the target), w: 1 if there is a ground
+  vec4 viewport;            // width, height, 1/width, 1/height (pixels)
+  vec4 glow_centre;         // x, y in pixels; z: 1/reach; w unused
+  vec4 occlusion_scale;     // x: clip near; y: near/(far) terms are in z, w: view depth = y / (z - depth)
+  vec4 view_ray;            // x, y: view-space slope of a pixel at the screen's edge
+  vec4 shadow_texel;        // x, y: metres a texel; z: metres of depth range; w: texels across a tile
+  vec4 scalar_range;        // x: least, y: 1/(most - least), z: overlay kind
+};
+const float kPi = 3.14159265;

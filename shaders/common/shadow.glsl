@@ -1,0 +1,43 @@
+// How much of the sun a point sees, from the shadow map. Most points are told lit or dark by the tiles alone; only
+// those near an edge take taps, over a disc that grows with the distance to what casts the shadow [Fer05].
+#include "common/frame.glsl"
+layout(binding = 0) uniform sampler2DShadow shadow_map;
+layout(binding = 1) uniform sampler2D shadow_tiles;    // x: least, y: greatest depth near the tile
+layout(binding = 2) uniform sampler2D shadow_casters;  // x: depth times cover, y: cover; smooth between tiles
+
+// normal: of the receiver, world; its plane is followed so that a lit plane never shades itself.
+float sun_seen(vec3 position_world, vec3 normal) {
+  vec3 p = (shadow_from_world * vec4(position_world, 1.0)).xyz;
+  if (sun_radiance.w == 0.0) return 1.0;
+  vec2 map_size = vec2(textureSize(shadow_map, 0));
+  ivec2 tiles = textureSize(shadow_tiles, 0);
+  vec2 tile = p.xy * vec2(tiles);
+  vec2 bounds = texelFetch(shadow_tiles, clamp(ivec2(floor(tile)), ivec2(0), tiles - 1), 0).xy;
+  bool inside = all(greaterThan(p.xy, vec2(0.0))) && all(lessThan(p.xy, vec2(1.0)));
+
+  vec2 caster = texture(shadow_casters, p.xy).xy;
+  float gap = max(p.z - caster.x / max(caster.y, 1e-4), 0.0) * shadow_texel.z;  // m
+  float reach = gap * sun.w;                                                    // m, radius of the disc
+  vec2 texel = 1.0 / map_size;
+  vec2 radius = clamp(reach / shadow_texel.xy, vec2(1.2), vec2(0.94 * shadow_texel.w)) * texel;
+
+  // Depth change per unit of texture coordinate along the receiver's plane; grazing planes are followed less far.
+  vec3 extent = vec3(shadow_texel.xy * map_size, shadow_texel.z);  // m
+  vec3 m = (mat3(shadow_from_world) * normal) * extent;            // unit, in the sun's frame; z away from it
+  float depth_part = (m.z < 0.0 ? -1.0 : 1.0) * max(abs(m.z), 0.12);
+  vec2 slope = -m.xy / depth_part * extent.xy / extent.z;
+  float bias = dot(abs(slope), texel) + 0.5 * max(shadow_texel.x, shadow_texel.y) / extent.z;
+  float spread = dot(abs(slope), radius);
+  bool lit = p.z - bias - spread <= bounds.x;
+  bool dark = p.z - bias - spread > bounds.y && p.z < 1.0;
+  int taps = inside && !lit && !dark ? SHADOW_TAPS : 0;
+  float sum = 0.0;
+  for (int i = 0; i < taps; ++i) {  // golden-angle spiral
+    float r = sqrt((float(i) + 0.5) / float(SHADOW_TAPS));
+    float a = float(i) * 2.39996323;
+    vec2 shift = r * radius * vec2(cos(a), sin(a));
+    sum += texture(shadow_map, vec3(p.xy + shift, p.z - bias + dot(slope, shift)));
+  }
+  if (!inside || lit) return 1.0;
+  return dark ? 0.0 : sum / float(SHADOW_TAPS);
+}
