@@ -1,0 +1,74 @@
+#include "engine/world/replace.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/world/world.h"
+
+using namespace shatterbox;
+
+namespace {
+
+body::Body make_ball(body::BodyId id, double mass) {
+  auto shape = std::make_shared<body::Shape>();
+  shape->radius = shape->bounding_radius = 0.1;
+  shape->mass = mass;
+  shape->inertia = 0.4 * mass * 0.01 * Mat3::Identity();
+  body::Body body;
+  body.id = id;
+  body.inverse_mass = 1.0 / mass;
+  body.inverse_inertia = shape->inertia.inverse();
+  body.shape = shape;
+  return body;
+}
+
+double energy(const world::MovingState& moving) {
+  double sum = 0.0;
+  for (const body::Body& body : moving.bodies) sum += body::kinetic_energy(body);
+  return sum;
+}
+
+world::MovingState make_pair_of_balls() {
+  world::MovingState moving;
+  moving.bodies = {make_ball(1, 2.0), make_ball(2, 3.0)};
+  moving.bodies[1].pose.translation = Vec3(0.2, 0.01, 0);
+  moving.bodies[0].velocity = Vec3(4, 0, 1);
+  moving.bodies[0].angular_velocity = Vec3(0, 3, 2);
+  moving.bodies[1].velocity = Vec3(-1, 0.5, 0);
+  return moving;
+}
+
+world::EvaluatedImpact make_impact() {
+  world::EvaluatedImpact impact;
+  impact.id = 1;
+  impact.hardest.other = 2;
+  impact.hardest.point_body = Vec3(0.1, 0, 0);
+  impact.hardest.impulse_body = Vec3(-5, 0.2, 0.1);
+  return impact;
+}
+
+}  // namespace
+
+TEST_CASE("cracks are paid for exactly, out of the relative motion, with momentum kept") {
+  world::MovingState moving = make_pair_of_balls();
+  const double before = energy(moving);
+  const Vec3 momentum = 2.0 * moving.bodies[0].velocity + 3.0 * moving.bodies[1].velocity;
+  const Vec3 spin = body::angular_momentum(moving.bodies[0]) + body::angular_momentum(moving.bodies[1]);
+  body::ImpulseLog log;
+  CHECK(world::pay_for_cracks(moving, make_impact(), 1.5, log) == Approx(1.5));
+  CHECK(before - energy(moving) == Approx(1.5).epsilon(1e-12));
+  CHECK((2.0 * moving.bodies[0].velocity + 3.0 * moving.bodies[1].velocity - momentum).norm() < 1e-14);
+  CHECK((body::angular_momentum(moving.bodies[0]) + body::angular_momentum(moving.bodies[1]) - spin).norm() <
+        1e-14);
+  REQUIRE(log.size() == 1);
+  CHECK(log[0].kind == body::ImpulseKind::fracture);
+}
+
+TEST_CASE("cracks cannot take more than there is, and nothing from bodies that part") {
+  world::MovingState moving = make_pair_of_balls();
+  body::ImpulseLog log;
+  const double before = energy(moving);
+  const double paid = world::pay_for_cracks(moving, make_impact(), 1e9, log);
+  CHECK(paid < 0.5 * 1.2 * 30.0);  // reduced mass, closing below sqrt(30) m/s
+  CHECK(before - energy(moving) == Approx(paid));
+  CHECK(world::pay_for_cracks(moving, make_impact(), 1.0, log) == Approx(0.0).margin(1e-12));
+}

@@ -1,0 +1,118 @@
+#include "engine/world/world.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/core/parallel.h"
+#include "engine/geometry/generators.h"
+
+using namespace shatterbox;
+
+namespace {
+
+world::BodyDescription ground(int material) {
+  world::BodyDescription plane;
+  plane.name = "ground";
+  plane.form = world::PlaneDescription{};
+  plane.material = material;
+  return plane;
+}
+
+/// A glass sphere of 40 mm radius and 0.5 mm wall above a plane, thrown down.
+world::World make_drop(double speed, double thickness = 0.5e-3, int steps_per_second = 240) {
+  world::WorldSettings settings;
+  settings.steps_per_second = steps_per_second;
+  world::World w(settings);
+  material::Material glass = *material::find_preset("glass");
+  glass.flaw_area = 1e-3;
+  const int number = w.add_material(glass).value();
+  REQUIRE(w.add_body(ground(number)).ok());
+  world::BodyDescription ball;
+  ball.name = "ball";
+  ball.material = number;
+  ball.pose.translation = Vec3(0, 0.06, 0);
+  ball.velocity = Vec3(0, -speed, 0);
+  world::ShellDescription shell;
+  geometry::Meshing meshing;
+  meshing.edge_length = 0.005;
+  shell.mesh = geometry::make_sphere(0.04, meshing).value();
+  shell.thickness = thickness;
+  ball.form = shell;
+  REQUIRE(w.add_body(ball).ok());
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("a body in flight follows the parabola") {
+  world::World w{world::WorldSettings{}};
+  const int number = w.add_material(material::Material{}).value();
+  world::BodyDescription ball;
+  ball.form = world::SphereDescription{0.1};
+  ball.material = number;
+  ball.velocity = Vec3(1, 2, 3);
+  REQUIRE(w.add_body(ball).ok());
+  for (int i = 0; i < 240; ++i) w.step();
+  const Vec3 expected = Vec3(1, 2 - 0.5 * 9.81, 3);
+  CHECK((w.bodies()[0].pose.translation - expected).norm() < 1e-12);
+  CHECK(w.report().conservation.momentum_error < 1e-12);
+}
+
+TEST_CASE("what cannot be a body is refused with a reason") {
+  world::World w{world::WorldSettings{}};
+  const int number = w.add_material(material::Material{}).value();
+  world::BodyDescription body;
+  body.name = "thing";
+  body.form = world::SphereDescription{0.0};
+  body.material = number;
+  CHECK_FALSE(w.add_body(body).ok());
+  CHECK(w.add_body(body).error().find("thing") != std::string::npos);
+  body.form = world::SphereDescription{1.0};
+  body.material = 7;
+  CHECK_FALSE(w.add_body(body).ok());
+  material::Material broken;
+  broken.poisson = 0.7;
+  CHECK_FALSE(w.add_material(broken).ok());
+}
+
+TEST_CASE("a hard impact breaks a shell, and mass and momentum are those of the whole") {
+  world::World w = make_drop(4.4);
+  for (int i = 0; i < 24; ++i) w.step();
+  REQUIRE_FALSE(w.report().breaks.empty());
+  for (const world::BreakRow& row : w.report().breaks) {
+    CHECK(row.mass_error < 1e-10);
+    CHECK(row.momentum_error < 1e-10);
+    CHECK(row.angular_momentum_error < 1e-10);
+    CHECK(std::abs(row.energy_gain) < 1e-9);
+    CHECK(row.fracture_energy <= row.elastic_energy);
+    CHECK(row.new_area > 0.0);
+  }
+  CHECK(w.bodies().size() > 5);
+  for (const body::Body& body : w.bodies())
+    if (body.is_dynamic()) CHECK(body.pose.translation.y() > 0.0);
+}
+
+TEST_CASE("a soft impact holds, and the report says by how much") {
+  world::World w = make_drop(0.1);
+  for (int i = 0; i < 240; ++i) w.step();
+  CHECK(w.report().breaks.empty());
+  CHECK(w.bodies().size() == 2);
+  REQUIRE_FALSE(w.report().impacts.empty());
+  for (const world::ImpactRow& row : w.report().impacts) {
+    CHECK(row.ratio < 1.0);
+    CHECK(row.verdict.substr(0, 4) == "held");
+  }
+}
+
+TEST_CASE("the same scene gives the same bits on any number of threads") {
+  std::uint64_t hashes[3];
+  const int threads[3] = {1, 2, 4};
+  for (int i = 0; i < 3; ++i) {
+    core::set_thread_count(threads[i]);
+    world::World w = make_drop(4.4);
+    for (int k = 0; k < 30; ++k) w.step();
+    hashes[i] = w.state_hash();
+  }
+  core::set_thread_count(0);
+  CHECK(hashes[0] == hashes[1]);
+  CHECK(hashes[0] == hashes[2]);
+}
