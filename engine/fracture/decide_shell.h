@@ -16,7 +16,7 @@
 #include "engine/fracture/grains.h"
 #include "engine/geometry/shell_mesh.h"
 #include "engine/material/material.h"
-#include "engine/stress/shell_system.h"
+#include "engine/stress/shell_system_cache.h"
 
 namespace shatterbox::fracture {
 
@@ -53,8 +53,10 @@ struct CrackTip {
 /// The body: what it is made of, how it is held, what has happened to it so far.
 struct ShellSubject {
   std::shared_ptr<const geometry::ShellMesh> mesh;
-  std::shared_ptr<const stress::ShellSystem>
-      system;  // kept factor of the intact mesh; may be null (made then)
+  /// Kept factors of the intact mesh, unscreened and one for each power of two of the screening; shared by
+  /// all copies of the body, and kept from impact to impact (pieces make theirs at their first hit that
+  /// passes the bound). Null: made for this decision and thrown away.
+  std::shared_ptr<stress::ShellSystemCache> systems;
   material::Material material;
   double thickness = 0.0;                    // m
   std::vector<int> clamped_vertices;         // of the element mesh, ascending; empty: a free body

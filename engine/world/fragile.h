@@ -29,6 +29,11 @@ using Fragiles = std::map<body::BodyId, std::shared_ptr<const Fragile>>;
 inline constexpr double kKerf = 1e-4;
 inline constexpr double kLeastWidth = 1e-3;
 
+/// The kept factors of a subject's mesh, for `stiffness`; the support is that of its clamped vertices, with
+/// no turning about an edge between two of them.
+std::shared_ptr<stress::ShellSystemCache> make_systems(
+    const fracture::ShellSubject& subject, std::shared_ptr<const stress::ShellStiffness> stiffness);
+
 /// The shape of a shell: the true cut gives mass, centre and inertia, the surface stands back from crack
 /// faces.
 std::shared_ptr<const body::Shape> make_shell_shape(std::shared_ptr<const geometry::ShellMesh> mesh,

@@ -28,24 +28,15 @@ std::vector<fracture::CrackTip> tips_of_piece(const std::vector<fracture::CrackT
   return own;
 }
 
-bool is_held_by_support(const fracture::ShellSubject& subject) {
-  if (subject.clamped_vertices.empty()) return false;
-  const auto& elements = *subject.mesh->elements;
-  std::vector<char> vertices(elements.mesh.positions.size(), 0);
-  for (const int vertex : subject.clamped_vertices) vertices[static_cast<std::size_t>(vertex)] = 1;
-  const std::vector<char> edges(elements.topology.edges.size(), 0);
-  return !stress::find_support(*subject.mesh, vertices, edges).empty();
-}
-
 Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture::Decision& decision,
                  double thickness) {
   Piece piece;
   piece.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
   auto fragile = std::make_shared<Fragile>(parent);
   fragile->subject.mesh = piece.mesh;
-  fragile->subject.system = nullptr;
+  fragile->subject.systems = make_systems(fragile->subject, parent.subject.systems->shared_stiffness());
   fragile->subject.tips = tips_of_piece(decision.tips, *piece.mesh);
-  piece.is_held = is_held_by_support(fragile->subject);
+  piece.is_held = !fragile->subject.systems->support().empty();
   if (!piece.is_held) fragile->subject.clamped_vertices.clear();
   piece.shape = make_shell_shape(piece.mesh, *fragile, thickness);
   piece.fragile = std::move(fragile);
