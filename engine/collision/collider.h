@@ -16,13 +16,14 @@ namespace shatterbox::collision {
 
 struct Collider {
   body::ShapeKind kind = body::ShapeKind::shell;
-  std::vector<Vec3> vertices;                 // |V| x 3, body space, m
-  std::vector<geometry::Triangle> triangles;  // |T| x 3; a sphere has one that is its centre thrice
-  std::vector<std::array<int, 2>> edges;      // |E| x 2
-  std::vector<int> neighbour_begin;           // |V| + 1
-  std::vector<int> neighbours;                // vertices that share an edge with a vertex
-  std::vector<int> opposite_begin;            // |E| + 1
-  std::vector<int> opposites;                 // the third vertices of an edge's triangles
+  std::vector<Vec3> vertices;                      // |V| x 3, body space, m
+  std::vector<geometry::Triangle> triangles;       // |T| x 3; a sphere has one that is its centre thrice
+  std::vector<std::array<int, 2>> edges;           // |E| x 2
+  std::vector<std::array<int, 3>> triangle_edges;  // |T| x 3: edge i joins corners i and (i + 1) % 3
+  std::vector<int> neighbour_begin;                // |V| + 1
+  std::vector<int> neighbours;                     // vertices that share an edge with a vertex
+  std::vector<int> opposite_begin;                 // |E| + 1
+  std::vector<int> opposites;                      // the third vertices of an edge's triangles
   // Every vertex and edge is owned by one of its triangles, so that each feature pair is met once.
   std::vector<int> owned_vertex_begin, owned_vertices;  // |T| + 1
   std::vector<int> owned_edge_begin, owned_edges;       // |T| + 1

@@ -37,9 +37,9 @@ struct PlacedCollider {
 /// Fills `placed.boxes` (grown by the sphere's radius) from `placed.start`.
 void refit_boxes(PlacedCollider& placed);
 
-/// Fills `placed.swept_boxes` for straight paths from `start` to `end`, seen from the centre, which moves by
-/// `centre_way`.
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& end, const Vec3& centre_way);
+/// Fills `placed.swept_boxes` for straight paths from `start` to `turned` (|V| x 3: end positions less the
+/// way of the body's centre).
+void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& turned);
 
 /// All feature pairs that may be within `margin` (a superset; each pair once). Needs `boxes` of both.
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out);

@@ -12,6 +12,7 @@
 #include "engine/collision/feature_list.h"
 #include "engine/core/hash.h"
 #include "engine/core/vec.h"
+#include "engine/dynamics/free_motion.h"
 
 namespace shatterbox::dynamics {
 
@@ -23,6 +24,8 @@ struct RememberedContact {
   double arrival_speed = 0.0;            // m/s: closing speed of an impact that has not bounced yet
   bool was_loaded = false;               // carried an impulse in the last step
 };
+
+inline constexpr int kNoTrouble = 1000;
 
 /// One pair of bodies that were near each other in the last step.
 struct PairState {
@@ -44,6 +47,7 @@ struct BodyState {
   body::BodyId id = 0;
   std::shared_ptr<const body::Shape> shape;
   std::shared_ptr<const collision::Collider> collider;  // of `shape`; shared between copies of the body
+  PrincipalInertia inertia;
 };
 
 struct ContactState {

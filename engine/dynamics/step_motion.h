@@ -30,7 +30,7 @@ struct ContactReport {
 };
 
 /// Scratch of one step, handed from stage to stage. Holds no state: a new one gives the same results.
-class MotionWork;
+class MotionWork;  // motion_work.h
 
 /// Stage: wakes bodies whose support vanished or moves, or that were given a velocity; floods through
 /// touching pairs.

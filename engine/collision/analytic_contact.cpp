@@ -1,0 +1,228 @@
+#include "engine/collision/analytic_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/geometry/closest_points.h"
+
+namespace shatterbox::collision {
+namespace {
+
+using body::Shape;
+using body::ShapeKind;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+void add_sphere_sphere(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& c) {
+  const Vec3 way = pose_a.translation - pose_b.translation;
+  const double distance = way.norm();
+  c.normal = distance > 0.0 ? Vec3(way / distance) : Vec3::UnitY();
+  c.gap = distance - a.radius - b.radius;
+  c.on_a = pose_a.translation - a.radius * c.normal;
+  c.on_b = pose_b.translation + b.radius * c.normal;
+}
+
+// The sphere is a.
+void add_sphere_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& c) {
+  const auto nearest = geometry::closest_on_box(pose_b.apply_inverse(pose_a.translation), b.half_extent);
+  c.normal = pose_b.rotation * nearest.normal;
+  c.gap = nearest.signed_distance - a.radius;
+  c.on_b = pose_b.apply(nearest.closest);
+  c.on_a = pose_a.translation - a.radius * c.normal;
+}
+
+struct Axis {
+  Vec3 normal;      // unit, from b towards a
+  double gap;       // separation along it
+  int number = -1;  // 0-2 faces of a, 3-5 faces of b, 6-14 edge i of a x edge j of b
+};
+
+// The axis of greatest separation. An edge pair must be better by a little, so that faces that lie on each
+// other are not taken for edges.
+Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const Vec3& way) {
+  const double size = std::min(a.half_extent.minCoeff(), b.half_extent.minCoeff());
+  Axis best{Vec3::UnitY(), -1e300, -1};
+  const auto try_axis = [&](const Vec3& direction, int number, double handicap) {
+    const double side = direction.dot(way) < 0.0 ? -1.0 : 1.0;
+    const double gap = std::abs(direction.dot(way)) -
+                       (ra.transpose() * direction).cwiseAbs().dot(a.half_extent) -
+                       (rb.transpose() * direction).cwiseAbs().dot(b.half_extent);
+    if (gap > best.gap + handicap) best = {side * direction, gap, number};
+  };
+  for (int i = 0; i < 3; ++i) try_axis(ra.col(i), i, 0.0);
+  for (int i = 0; i < 3; ++i) try_axis(rb.col(i), 3 + i, 1e-3 * size);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Vec3 cross = ra.col(i).cross(rb.col(j));
+      const double length = cross.norm();
+      if (length > 1e-3) try_axis(cross / length, 6 + 3 * i + j, 5e-3 * size);
+    }
+  }
+  return best;
+}
+
+// Keeps the part of the polygon where direction.x <= limit.
+void clip(std::vector<Vec3>& polygon, const Vec3& direction, double limit) {
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& p = polygon[i];
+    const Vec3& q = polygon[(i + 1) % polygon.size()];
+    const double dp = direction.dot(p) - limit, dq = direction.dot(q) - limit;
+    if (dp <= 0.0) result.push_back(p);
+    if ((dp < 0.0 && dq > 0.0) || (dp > 0.0 && dq < 0.0)) result.push_back(p + (q - p) * (dp / (dp - dq)));
+  }
+  polygon = std::move(result);
+}
+
+struct PlacedBox {
+  const Shape& shape;
+  Mat3 axes;
+  Vec3 centre;
+};
+
+// `outward` points out of the reference box's face `axis`; the incident box's most opposed face is clipped to
+// it.
+void add_face_contacts(const PlacedBox& reference, int axis, const Vec3& outward, const PlacedBox& incident,
+                       bool reference_is_a, double margin, int number, std::vector<Contact>& out) {
+  int face = 0;
+  const Vec3 alignment = incident.axes.transpose() * outward;
+  alignment.cwiseAbs().maxCoeff(&face);
+  const double face_side = alignment[face] > 0.0 ? -1.0 : 1.0;
+  const int u = (face + 1) % 3, v = (face + 2) % 3;
+  const Vec3 centre =
+      incident.centre + face_side * incident.shape.half_extent[face] * incident.axes.col(face);
+  const Vec3 du = incident.shape.half_extent[u] * incident.axes.col(u);
+  const Vec3 dv = incident.shape.half_extent[v] * incident.axes.col(v);
+  std::vector<Vec3> polygon = {centre - du - dv, centre + du - dv, centre + du + dv, centre - du + dv};
+  for (const int side : {(axis + 1) % 3, (axis + 2) % 3}) {
+    const Vec3 direction = reference.axes.col(side);
+    const double middle = direction.dot(reference.centre);
+    clip(polygon, direction, reference.shape.half_extent[side] + middle);
+    clip(polygon, -direction, reference.shape.half_extent[side] - middle);
+  }
+  const double plane = outward.dot(reference.centre) + reference.shape.half_extent[axis];
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const double gap = outward.dot(polygon[i]) - plane;
+    if (gap > margin) continue;
+    Contact c;
+    // Polygon corners keep their number while the clipping does not change: good enough to find last step's
+    // impulse.
+    c.key = (static_cast<std::uint64_t>(number) << 16) | (static_cast<std::uint64_t>(face) << 8) |
+            static_cast<std::uint64_t>(i);
+    const Vec3 on_reference = polygon[i] - gap * outward;
+    c.gap = gap;
+    c.normal = reference_is_a ? Vec3(-outward) : outward;
+    c.on_a = reference_is_a ? on_reference : polygon[i];
+    c.on_b = reference_is_a ? polygon[i] : on_reference;
+    out.push_back(c);
+  }
+}
+
+Vec3 edge_centre(const PlacedBox& box, int edge, const Vec3& direction) {
+  Vec3 centre = box.centre;
+  for (int i = 0; i < 3; ++i) {
+    if (i == edge) continue;
+    const double side = box.axes.col(i).dot(direction) > 0.0 ? 1.0 : -1.0;
+    centre += side * box.shape.half_extent[i] * box.axes.col(i);
+  }
+  return centre;
+}
+
+void add_edge_contact(const PlacedBox& a, const PlacedBox& b, const Axis& axis, std::vector<Contact>& out) {
+  const int edge_a = (axis.number - 6) / 3, edge_b = (axis.number - 6) % 3;
+  const Vec3 middle_a = edge_centre(a, edge_a, -axis.normal), middle_b = edge_centre(b, edge_b, axis.normal);
+  const Vec3 half_a = a.shape.half_extent[edge_a] * a.axes.col(edge_a);
+  const Vec3 half_b = b.shape.half_extent[edge_b] * b.axes.col(edge_b);
+  const auto nearest = geometry::closest_between_segments(middle_a - half_a, middle_a + half_a,
+                                                          middle_b - half_b, middle_b + half_b);
+  Contact c;
+  c.key = static_cast<std::uint64_t>(axis.number) << 16;
+  c.on_a = nearest.on_p;
+  c.on_b = nearest.on_q;
+  c.normal = axis.normal;
+  c.gap = axis.normal.dot(c.on_a - c.on_b);
+  out.push_back(c);
+}
+
+void add_box_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, double margin,
+                 std::vector<Contact>& out) {
+  const PlacedBox box_a{a, pose_a.rotation.toRotationMatrix(), pose_a.translation};
+  const PlacedBox box_b{b, pose_b.rotation.toRotationMatrix(), pose_b.translation};
+  const Axis axis = best_axis(a, box_a.axes, b, box_b.axes, pose_a.translation - pose_b.translation);
+  if (axis.gap > margin) return;
+  if (axis.number < 3) {
+    add_face_contacts(box_a, axis.number, -axis.normal, box_b, true, margin, axis.number, out);
+  } else if (axis.number < 6) {
+    add_face_contacts(box_b, axis.number - 3, axis.normal, box_a, false, margin, axis.number, out);
+  } else {
+    add_edge_contact(box_a, box_b, axis, out);
+  }
+}
+
+}  // namespace
+
+void find_plane_contacts(const Collider& a, const std::vector<Vec3>& positions_a, const Pose& plane,
+                         double margin, std::vector<Contact>& out) {
+  constexpr double kSlack = 0.1;  // sine of the angle by which a neighbour may lie lower
+  const Vec3 normal = plane.rotation * Vec3::UnitY();
+  const double level = normal.dot(plane.translation);
+  for (std::size_t v = 0; v < positions_a.size(); ++v) {
+    const double gap = normal.dot(positions_a[v]) - level - a.radius;
+    if (gap > margin) continue;
+    bool is_lowest = true;
+    for (int i = a.neighbour_begin[v]; i < a.neighbour_begin[v + 1] && is_lowest; ++i) {
+      const Vec3 edge = positions_a[at(a.neighbours[at(i)])] - positions_a[v];
+      const double down = -normal.dot(edge);
+      is_lowest = down <= 0.0 || down * down <= kSlack * kSlack * edge.squaredNorm();
+    }
+    if (!is_lowest) continue;
+    Contact c;
+    c.key = static_cast<std::uint64_t>(v);
+    c.normal = normal;
+    c.gap = gap;
+    c.on_a = positions_a[v] - a.radius * normal;
+    c.on_b = c.on_a - gap * normal;
+    out.push_back(c);
+  }
+}
+
+bool is_analytic_pair(ShapeKind a, ShapeKind b) {
+  const auto is_solid = [](ShapeKind kind) { return kind == ShapeKind::box || kind == ShapeKind::sphere; };
+  return is_solid(a) && is_solid(b);
+}
+
+void find_analytic_contacts(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                            double margin, std::vector<Contact>& out) {
+  if (a.kind == ShapeKind::box && b.kind == ShapeKind::box) {
+    add_box_box(a, pose_a, b, pose_b, margin, out);
+    return;
+  }
+  Contact c;
+  if (a.kind == ShapeKind::sphere && b.kind == ShapeKind::sphere) {
+    add_sphere_sphere(a, pose_a, b, pose_b, c);
+  } else if (a.kind == ShapeKind::sphere) {
+    add_sphere_box(a, pose_a, b, pose_b, c);
+  } else {
+    add_sphere_box(b, pose_b, a, pose_a, c);
+    std::swap(c.on_a, c.on_b);
+    c.normal = -c.normal;
+  }
+  if (c.gap <= margin) out.push_back(c);
+}
+
+double analytic_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Vec3& normal) {
+  if (a.kind == ShapeKind::box && b.kind == ShapeKind::box) {
+    const Axis axis = best_axis(a, pose_a.rotation.toRotationMatrix(), b, pose_b.rotation.toRotationMatrix(),
+                                pose_a.translation - pose_b.translation);
+    normal = axis.normal;
+    return axis.gap;
+  }
+  std::vector<Contact> contacts;
+  find_analytic_contacts(a, pose_a, b, pose_b, 1e300, contacts);
+  normal = contacts.front().normal;
+  return contacts.front().gap;
+}
+
+}  // namespace shatterbox::collision

@@ -1,0 +1,183 @@
+#include "engine/collision/feature_gap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/geometry/closest_points.h"
+
+namespace shatterbox::collision {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// No neighbour of `vertex` leads along `direction` by more than the slack.
+bool leads_away_at_vertex(const Collider& c, const std::vector<Vec3>& positions, int vertex,
+                          const Vec3& direction, double slack) {
+  for (int i = c.neighbour_begin[at(vertex)]; i < c.neighbour_begin[at(vertex) + 1]; ++i) {
+    const Vec3 edge = positions[at(c.neighbours[at(i)])] - positions[at(vertex)];
+    const double along = edge.dot(direction);
+    if (along > 0.0 && along * along > slack * slack * edge.squaredNorm()) return false;
+  }
+  return true;
+}
+
+// No triangle of `edge` leads along `direction` by more than the slack.
+bool leads_away_at_edge(const Collider& c, const std::vector<Vec3>& positions, int edge,
+                        const Vec3& direction, double slack) {
+  const Vec3& from = positions[at(c.edges[at(edge)][0])];
+  const Vec3 way = positions[at(c.edges[at(edge)][1])] - from;
+  const double length_squared = way.squaredNorm();
+  if (length_squared == 0.0) return true;
+  for (int i = c.opposite_begin[at(edge)]; i < c.opposite_begin[at(edge) + 1]; ++i) {
+    Vec3 inward = positions[at(c.opposites[at(i)])] - from;
+    inward -= way * (inward.dot(way) / length_squared);
+    const double along = inward.dot(direction);
+    if (along > 0.0 && along * along > slack * slack * inward.squaredNorm()) return false;
+  }
+  return true;
+}
+
+bool leads_away_at_triangle(const Collider& c, const std::vector<Vec3>& positions, int triangle,
+                            const double* weights, const Vec3& direction, double slack) {
+  const auto& corners = c.triangles[at(triangle)];
+  int zeros = 0, last_zero = 0, last_positive = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (weights[i] <= 0.0) {
+      ++zeros;
+      last_zero = i;
+    } else {
+      last_positive = i;
+    }
+  }
+  if (zeros == 0) return true;
+  if (zeros == 1) {  // on the edge opposite to corner `last_zero`
+    const int edge = c.triangle_edges[at(triangle)][at((last_zero + 1) % 3)];
+    return leads_away_at_edge(c, positions, edge, direction, slack);
+  }
+  return leads_away_at_vertex(c, positions, corners[at(last_positive)], direction, slack);
+}
+
+double reach(const FeaturePoints& start, const FeaturePoints& end, int first, int last,
+             const Vec3& direction) {
+  double greatest = -1e300;
+  for (int i = first; i < last; ++i) {
+    greatest = std::max(greatest, direction.dot(end.points[at(i)] - start.points[at(i)]));
+  }
+  return greatest;
+}
+
+}  // namespace
+
+FeaturePoints gather(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
+                     const Collider& b, const std::vector<Vec3>& positions_b) {
+  FeaturePoints result;
+  if (pair.kind == FeatureKind::edge_edge) {
+    const auto& edge_a = a.edges[at(pair.a)];
+    const auto& edge_b = b.edges[at(pair.b)];
+    result.is_edge_edge = true;
+    result.points = {positions_a[at(edge_a[0])], positions_a[at(edge_a[1])], positions_b[at(edge_b[0])],
+                     positions_b[at(edge_b[1])]};
+    return result;
+  }
+  result.is_flipped = pair.kind == FeatureKind::triangle_vertex;
+  const Collider& face_body = result.is_flipped ? a : b;
+  const auto& face_positions = result.is_flipped ? positions_a : positions_b;
+  const auto& triangle = face_body.triangles[at(result.is_flipped ? pair.a : pair.b)];
+  result.radius = (result.is_flipped ? b : a).radius;
+  result.points = {result.is_flipped ? positions_b[at(pair.b)] : positions_a[at(pair.a)],
+                   face_positions[at(triangle[0])], face_positions[at(triangle[1])],
+                   face_positions[at(triangle[2])]};
+  return result;
+}
+
+FeatureGap measure(const FeaturePoints& f, const Vec3& hint) {
+  constexpr double kNoDirection = 1e-14;  // of the features' size: rounding, not a direction
+  FeatureGap result;
+  Vec3 spare;
+  if (f.is_edge_edge) {
+    const auto c = geometry::closest_between_segments(f.points[0], f.points[1], f.points[2], f.points[3]);
+    result.weights = {1.0 - c.s, c.s, 1.0 - c.t, c.t};
+    result.on_a = c.on_p;
+    result.on_b = c.on_q;
+    result.distance = c.distance;
+  } else {
+    const auto c = geometry::closest_on_triangle(f.points[0], f.points[1], f.points[2], f.points[3]);
+    result.weights = {1.0, c.barycentric[0], c.barycentric[1], c.barycentric[2]};
+    result.on_a = f.is_flipped ? c.closest : f.points[0];
+    result.on_b = f.is_flipped ? f.points[0] : c.closest;
+    result.distance = c.distance;
+  }
+  const Vec3 e = f.points[3] - f.points[2];
+  if (result.distance > kNoDirection * (e.cwiseAbs().maxCoeff() + f.radius) && result.distance > 1e-150) {
+    result.normal = (result.on_a - result.on_b) / result.distance;
+  } else {
+    spare = f.is_edge_edge ? Vec3((f.points[1] - f.points[0]).cross(e))
+                           : Vec3((f.points[2] - f.points[1]).cross(e));
+    const double length = spare.norm();
+    result.normal = length > 1e-150 ? Vec3(spare / length) : Vec3::UnitY();
+    if (result.normal.dot(hint) < 0.0) result.normal = -result.normal;
+  }
+  result.gap = result.distance - f.radius;
+  if (f.radius > 0.0) {
+    if (f.is_flipped) {
+      result.on_b += f.radius * result.normal;
+    } else {
+      result.on_a -= f.radius * result.normal;
+    }
+  }
+  return result;
+}
+
+bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Collider& a,
+                      const std::vector<Vec3>& positions_a, const Collider& b,
+                      const std::vector<Vec3>& positions_b, double slack) {
+  const Vec3 towards_b = -gap.normal;
+  switch (pair.kind) {
+    case FeatureKind::vertex_triangle:
+      return leads_away_at_vertex(a, positions_a, pair.a, towards_b, slack) &&
+             leads_away_at_triangle(b, positions_b, pair.b, &gap.weights[1], gap.normal, slack);
+    case FeatureKind::triangle_vertex:
+      return leads_away_at_vertex(b, positions_b, pair.b, gap.normal, slack) &&
+             leads_away_at_triangle(a, positions_a, pair.a, &gap.weights[1], towards_b, slack);
+    case FeatureKind::edge_edge:
+      // At an edge's end the pair is a vertex against a triangle, and listed as such.
+      for (const double weight : gap.weights) {
+        if (weight <= 0.0 || weight >= 1.0) return false;
+      }
+      return leads_away_at_edge(a, positions_a, pair.a, towards_b, slack) &&
+             leads_away_at_edge(b, positions_b, pair.b, gap.normal, slack);
+  }
+  return true;
+}
+
+PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least,
+                        const Vec3& hint) {
+  constexpr int kMostSteps = 200;
+  const int split = start.is_edge_edge ? 2 : 1;  // points [0, split) are one body's
+  PathResult result;
+  result.time = 0.0;
+  FeaturePoints now = start;
+  for (int step = 0; step < kMostSteps; ++step) {
+    result.gap = measure(now, hint);
+    // From the second group of points to the first.
+    const Vec3 n = start.is_flipped ? Vec3(-result.gap.normal) : result.gap.normal;
+    const double closing = reach(start, end, 0, split, -n) + reach(start, end, split, 4, n);
+    const double room = result.gap.gap - least;
+    // n separates the pair at both ends of what is left, hence all along the straight paths.
+    if (closing <= 0.0 || closing * (1.0 - result.time) < room) {
+      result.time = 1.0;
+      return result;
+    }
+    if (room <= 0.1 * std::abs(least) || room <= 1e-14 * std::abs(result.gap.distance)) break;
+    result.time = std::min(1.0, result.time + 0.999 * room / closing);
+    for (std::size_t i = 0; i < 4; ++i) {
+      now.points[i] = start.points[i] + result.time * (end.points[i] - start.points[i]);
+    }
+  }
+  result.has_hit = true;
+  return result;
+}
+
+}  // namespace shatterbox::collision

@@ -1,0 +1,54 @@
+// Distance of a feature pair, and whether its straight path keeps a least distance: conservative advancement
+// along fixed separating directions, which has no false negatives.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "engine/collision/collider.h"
+#include "engine/collision/feature_list.h"
+#include "engine/core/vec.h"
+
+namespace shatterbox::collision {
+
+/// The up to four vertices of a feature pair: [vertex, triangle] or [edge of a, edge of b].
+struct FeaturePoints {
+  bool is_edge_edge = false;
+  bool is_flipped = false;  // the vertex is body b's
+  double radius = 0.0;      // of the vertex, m
+  std::array<Vec3, 4> points;
+};
+
+/// Gathers them from vertex positions of both bodies.
+FeaturePoints gather(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
+                     const Collider& b, const std::vector<Vec3>& positions_b);
+
+struct FeatureGap {
+  std::array<double, 4> weights{};                // of the four points in the closest points
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // m, world, on the surfaces (radius included)
+  Vec3 normal = Vec3::UnitY();                    // unit, from b towards a
+  double gap = 0.0;                               // m, radius subtracted; only a sphere's may be negative
+  double distance = 0.0;                          // m, of the features themselves
+};
+
+/// Closest points of the pair. Where they coincide the normal is the triangle's or the edges' common normal,
+/// its sign chosen along `hint` (from b towards a).
+FeatureGap measure(const FeaturePoints& points, const Vec3& hint);
+
+/// True if the distance of the two *surfaces*, not only of these features, is least here: neighbouring
+/// features of either mesh lead away from the other. Slack: sine of the angle by which they may lead closer.
+bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Collider& a,
+                      const std::vector<Vec3>& positions_a, const Collider& b,
+                      const std::vector<Vec3>& positions_b, double slack);
+
+struct PathResult {
+  bool has_hit = false;
+  double time = 1.0;  // share of the path that is certainly free
+  FeatureGap gap;     // at `time` if it has hit
+};
+
+/// Follows the straight paths from `start` to `end`. Free means that the gap never falls to `least` (a pair
+/// that starts closer than that must only not approach).
+PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint);
+
+}  // namespace shatterbox::collision

@@ -1,0 +1,95 @@
+#include "engine/dynamics/free_motion.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/elementary.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+// State of the split flows: rotation (world from principal axes) and angular momentum in these axes.
+struct Spin {
+  Quat rotation;
+  Vec3 momentum;
+
+  void turn_about(int axis, double angle) {
+    const double half = 0.5 * angle;
+    const double c = core::cos(half), s = core::sin(half);
+    Quat turn(c, 0.0, 0.0, 0.0);
+    turn.vec()[axis] = s;
+    rotation = rotation * turn;
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const double cos_full = 1.0 - 2.0 * s * s, sin_full = 2.0 * s * c;
+    const double mi = momentum[i], mj = momentum[j];
+    momentum[i] = cos_full * mi + sin_full * mj;
+    momentum[j] = cos_full * mj - sin_full * mi;
+  }
+
+  void strang(const Vec3& moments, double time) {
+    turn_about(0, 0.5 * time * momentum[0] / moments[0]);
+    turn_about(1, 0.5 * time * momentum[1] / moments[1]);
+    turn_about(2, time * momentum[2] / moments[2]);
+    turn_about(1, 0.5 * time * momentum[1] / moments[1]);
+    turn_about(0, 0.5 * time * momentum[0] / moments[0]);
+  }
+};
+
+}  // namespace
+
+PrincipalInertia find_principal_inertia(const Mat3& inertia) {
+  PrincipalInertia result;
+  const double scale = inertia.cwiseAbs().maxCoeff();
+  if (!(scale > 0.0)) {
+    result.is_round = true;
+    return result;
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+  Mat3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0.0) axes.col(0) = -axes.col(0);
+  const Vec3 moments = solver.eigenvalues();
+  result.moments = moments.cwiseMax(1e-12 * moments[2]);
+  result.body_from_axes = Quat(axes).normalized();
+  result.is_round = moments[2] - moments[0] <= 1e-12 * moments[2];
+  return result;
+}
+
+Quat rotation_by(const Vec3& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle < 1e-150) return Quat::Identity();
+  const Vec3 axis = rotation_vector * (core::sin(0.5 * angle) / angle);
+  return Quat(core::cos(0.5 * angle), axis.x(), axis.y(), axis.z());
+}
+
+void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin) {
+  constexpr double kMostAngle = 0.1;              // rad a part
+  constexpr double kSuzuki = 0.4144907717943757;  // 1 / (4 - 4^(1/3))
+  const double speed = spin.norm();
+  if (speed * time < 1e-150) return;
+  if (inertia.is_round) {
+    rotation = (rotation_by(time * spin) * rotation).normalized();
+    return;
+  }
+  Spin s;
+  s.rotation = rotation * inertia.body_from_axes;
+  s.momentum = inertia.moments.cwiseProduct(s.rotation.conjugate() * spin);
+  const Vec3 momentum_world = s.rotation * s.momentum;
+  const int parts = 1 + static_cast<int>(std::min(speed * time / kMostAngle, 1e6));
+  const double part = time / parts;
+  for (int i = 0; i < parts; ++i) {
+    if (order == SpinOrder::second) {
+      s.strang(inertia.moments, part);
+      continue;
+    }
+    for (const double share : {kSuzuki, kSuzuki, 1.0 - 4.0 * kSuzuki, kSuzuki, kSuzuki}) {
+      s.strang(inertia.moments, share * part);
+    }
+  }
+  s.rotation.normalize();
+  // From the momentum in the world, which is kept, not from the rotated one, which gathers rounding.
+  spin = s.rotation * (s.rotation.conjugate() * momentum_world).cwiseQuotient(inertia.moments);
+  rotation = (s.rotation * inertia.body_from_axes.conjugate()).normalized();
+}
+
+}  // namespace shatterbox::dynamics

@@ -1,0 +1,116 @@
+// Scratch of one step: bodies as the stages see them, pairs, contacts. Made anew every step; holds no state.
+#pragma once
+
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/collision/contact.h"
+#include "engine/collision/feature_list.h"
+#include "engine/core/vec.h"
+#include "engine/dynamics/contact_settings.h"
+#include "engine/dynamics/free_motion.h"
+
+namespace shatterbox::dynamics {
+
+struct WorkBody {
+  const body::Shape* shape = nullptr;
+  const collision::Collider* collider = nullptr;
+  PrincipalInertia inertia;
+  double inverse_mass = 0.0;  // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
+  bool is_active = false;     // moves in this step: awake dynamic, or scripted with a velocity
+  double reach = 0.0;         // m: greatest distance of a vertex from the centre
+
+  Pose start, end;
+  Vec3 gravity = Vec3::Zero();          // m/s2; zero unless dynamic and awake
+  Vec3 velocity = Vec3::Zero();         // m/s, now
+  Vec3 spin = Vec3::Zero();             // rad/s, now
+  Vec3 way = Vec3::Zero();              // m, of the centre since the start
+  Quat rotation = Quat::Identity();     // now
+  Mat3 turn = Mat3::Identity();         // rotation since the start
+  Mat3 inverse_inertia = Mat3::Zero();  // world, now
+
+  bool is_placed = false;
+  bool is_free = true;               // no contact: end is the predicted end
+  collision::PlacedCollider placed;  // vertices at the start
+  std::vector<Vec3> turned;          // vertices at the end less `end_way`, for swept tests
+  Vec3 end_way = Vec3::Zero();       // m
+  Pose predicted;                    // end pose if nothing touches
+};
+
+struct SolverContact {
+  int a = 0, b = 0;  // numbers of the bodies
+  int pair = 0;
+  std::uint64_t key = 0;
+  double friction = 0.0, restitution = 0.0, rolling = 0.0;
+  double kept_gap = 0.0;    // m
+  double threshold = 0.0;   // m/s: slower closing does not bounce
+  bool was_loaded = false;  // in the last step
+
+  Vec3 normal = Vec3::UnitY();
+  Vec3 tangent_u = Vec3::UnitX(), tangent_v = Vec3::UnitZ();
+  Vec3 arm_a_start = Vec3::Zero(), arm_b_start = Vec3::Zero();  // m
+  double gap_start = 0.0;                                       // m
+
+  // At the present pose.
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero(), point = Vec3::Zero();
+  Mat3 response = Mat3::Zero();  // relative velocity by impulse, in (normal, tangents), 1/kg
+  Vec3 weights = Vec3::Zero();   // 1 / diagonal of it, kg
+  double slack = 0.0;            // m: gap less kept gap
+
+  Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
+  Vec3 warm = Vec3::Zero();     // to start the next substep from, in the same axes
+  Vec2 rolling_impulse = Vec2::Zero();
+  double arrival_speed = 0.0;  // m/s, of an impact that has not bounced
+  double target = 0.0;         // m/s, of the bounce
+  bool is_arriving = false;
+
+  // Of the whole step.
+  Vec3 total = Vec3::Zero();         // N s, world, on a
+  Vec3 moment_point = Vec3::Zero();  // sum of |normal impulse| point
+  double moment_weight = 0.0;
+  double closing_speed = 0.0;   // m/s, greatest of an arrival
+  double effective_mass = 0.0;  // kg, at that arrival
+};
+
+struct WorkPair {
+  int a = 0, b = 0;  // numbers of the bodies, a < b
+  int state = 0;     // number in ContactState::pairs
+  PairMaterial material;
+  double size = 0.0;               // m
+  double kept_gap = 0.0;           // m, after adaptation
+  double threshold = 0.0;          // m/s
+  bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
+  double list_margin = 0.0;        // m: `features` holds all pairs that were this close at the start
+  std::shared_ptr<const collision::FeatureList> features;
+  std::vector<collision::Contact> contacts;
+  double work = 0.0;  // J, of its impulses in this substep
+};
+
+struct Island {
+  std::vector<int> bodies;    // dynamic ones, ascending
+  std::vector<int> contacts;  // ascending
+};
+
+class MotionWork {
+ public:
+  std::vector<WorkBody> bodies;  // as many as the world's, same order
+  std::vector<WorkPair> pairs;   // ascending
+  std::vector<SolverContact> contacts;
+  std::vector<Island> islands;
+  body::ImpulseLog continuous_log;  // impulses of the continuous pass
+  int failsafe_bodies = 0;
+};
+
+/// Size that tolerances of a pair are measured by, m.
+double pair_size(const body::Body& a, const WorkBody& work_a, const body::Body& b, const WorkBody& work_b);
+
+/// Fills a body's vertices at the start of the step, once.
+void place(WorkBody& body);
+
+/// Vertices (|V| x 3, world) at a pose.
+void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out);
+
+/// Relative motion of a pair during the step is at most this, m: from ways and turns of end poses.
+double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b);
+
+}  // namespace shatterbox::dynamics
