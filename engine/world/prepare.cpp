@@ -1,0 +1,103 @@
+// Factors made before the run: likely impacts are tried on every breakable form, so that the factors which a
+// first hit would need are there. The answers are thrown away; the kept factors change no result.
+#include <algorithm>
+#include <set>
+
+#include <Eigen/Eigenvalues>
+
+#include "engine/core/parallel.h"
+#include "engine/stress/contact_duration.h"
+#include "engine/world/state.h"
+
+namespace shatterbox::world {
+namespace {
+
+constexpr double kLikelySpeed = 3.0;  // m/s
+
+struct Trial {
+  const Fragile* fragile = nullptr;
+  fracture::ShellLoad load;
+};
+
+/// The vertex farthest along `direction`.
+Vec3 farthest(const std::vector<Vec3>& points, const Vec3& direction) {
+  return *std::max_element(points.begin(), points.end(),
+                           [&](const Vec3& a, const Vec3& b) { return a.dot(direction) < b.dot(direction); });
+}
+
+Vec3 nearest_to_centre(const std::vector<Vec3>& points) {
+  return *std::min_element(points.begin(), points.end(),
+                           [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
+}
+
+fracture::ShellLoad make_load(const body::Body& struck, const body::Body* partner, const Vec3& point,
+                              const Vec3& direction) {
+  fracture::ShellLoad load;
+  load.point_material = point + struck.shape->material_from_body;
+  load.direction = direction;
+  const double partner_mass = partner ? partner->shape->mass : 0.0;
+  load.other_inverse_mass = partner ? 1.0 / partner_mass : 0.0;
+  double inverse = load.other_inverse_mass;
+  if (struck.is_dynamic()) {
+    const Vec3 turn = point.cross(direction);
+    inverse += struck.inverse_mass + turn.dot(struck.inverse_inertia * turn);
+  }
+  load.effective_mass = 1.0 / inverse;
+  load.closing_speed = std::max(kLikelySpeed, partner ? (partner->velocity - struck.velocity).norm() : 0.0);
+  load.impulse = load.effective_mass * load.closing_speed;
+  const double size = struck.shape->bounding_radius;
+  const stress::HertzContact contact = stress::make_hertz_contact(
+      {struck.young, struck.poisson, size},
+      partner ? stress::ContactSurface{partner->young, partner->poisson, partner->shape->radius}
+              : stress::ContactSurface{},
+      struck.shape->thickness, size);
+  const double force = stress::peak_force(contact, load.effective_mass, load.closing_speed);
+  load.hertz_compliance = stress::hertz_compliance(contact, force);
+  load.hertz_radius = stress::hertz_patch_radius(contact, force);
+  return load;
+}
+
+/// Free bodies meet a floor with each of their six sides; held ones are hit in the middle by what moves.
+void add_trials(const body::Body& struck, const Fragile& fragile, std::span<const body::Body* const> partners,
+                std::vector<Trial>& trials) {
+  const std::vector<Vec3>& points = struck.shape->surface.positions;
+  if (struck.is_dynamic()) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {-1.0, 1.0}) {
+        const Vec3 outward = sign * Vec3::Unit(axis);
+        trials.push_back({&fragile, make_load(struck, nullptr, farthest(points, outward), -outward)});
+      }
+    return;
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> inertia(struck.shape->inertia);
+  const Vec3 across = inertia.eigenvectors().col(2);
+  for (const body::Body* partner : partners)
+    trials.push_back({&fragile, make_load(struck, partner, nearest_to_centre(points), across)});
+}
+
+}  // namespace
+
+void World::prepare() {
+  State& s = *state_;
+  std::vector<const body::Body*> partners;
+  for (const body::Body& body : s.moving.bodies)
+    if (body.is_dynamic() && !s.moving.fragiles.count(body.id)) partners.push_back(&body);
+
+  std::set<const stress::ShellSystemCache*> seen;
+  std::vector<Trial> trials;
+  for (const auto& [id, fragile] : s.moving.fragiles) {
+    if (!seen.insert(fragile->subject.systems.get()).second) continue;
+    add_trials(*body::find_body(s.moving.bodies, id), *fragile, partners, trials);
+  }
+  fracture::FractureSettings once;
+  once.most_generations = 1;
+  core::parallel_for(trials.size(), 1, [&](std::size_t i) {
+    fracture::ShellImpact impact;
+    impact.loads = {trials[i].load};
+    if (s.settings.stress_window) impact.given_duration = s.settings.stress_window;
+    if (trials[i].fragile->contact_duration) impact.given_duration = trials[i].fragile->contact_duration;
+    fracture::decide_shell(trials[i].fragile->subject, impact, once);
+  });
+}
+
+}  // namespace shatterbox::world
