@@ -13,7 +13,7 @@ namespace shatterbox::geometry {
 
 enum class MeshFault : std::uint8_t {
   empty,                  // refused
-  not_finite,             // refused: NaN or infinite coordinates
+  not_finite,             // refused: NaN, infinite or beyond 1e60 m
   index_out_of_range,     // refused
   duplicate_vertices,     // mended: equal to the bit, welded
   unused_vertices,        // mended: dropped
@@ -67,8 +67,9 @@ struct MendedMesh {
 MeshDiagnosis diagnose(const TriangleMesh& mesh, const MendOptions& options = {});
 
 /// The mesh, mended: every edge has one or two triangles of agreeing winding, every vertex one fan, no
-/// triangle is without area. Nothing is moved. A closed part that was inside out is turned outside. Mending a
-/// mended mesh changes nothing. Refused meshes come back empty; diagnosis.refused() tells.
+/// triangle is without area. No vertex is moved; one that is nearer to its neighbour than 1e-12 of the
+/// triangle joins it. A single closed surface that was inside out is turned. Mending a mended mesh changes
+/// nothing. Refused meshes come back empty; diagnosis.refused() tells.
 MendedMesh mend(const TriangleMesh& mesh, const MendOptions& options = {});
 
 }  // namespace shatterbox::geometry

@@ -10,10 +10,10 @@
 #include "engine/core/result.h"
 #include "engine/geometry/triangle_mesh.h"
 
-namespace shatterbox::sandbox {
+namespace shatterbox::sandbox::scene {
 
 /// Files larger than this are refused unread.
-inline constexpr std::uintmax_t kMostMeshFileBytes = std::uintmax_t{1} << 30;
+inline constexpr std::uintmax_t kMostMeshFileBytes = std::uintmax_t{1} << 29;
 
 /// The triangles of an .obj, .ply or .stl file (by its ending, in any case); polygons are cut into triangles.
 /// PLY and STL come in single precision, STL unwelded: positions equal to the bit are welded. A sentence with
@@ -22,4 +22,4 @@ inline constexpr std::uintmax_t kMostMeshFileBytes = std::uintmax_t{1} << 30;
 core::Result<geometry::TriangleMesh> read_mesh(const std::filesystem::path& path,
                                                std::vector<std::string>* notes = nullptr);
 
-}  // namespace shatterbox::sandbox
+}  // namespace shatterbox::sandbox::scene

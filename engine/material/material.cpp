@@ -1,0 +1,176 @@
+#include "engine/material/material.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace shatterbox::material {
+namespace {
+
+// Elastic constants, densities and fracture toughnesses are handbook values. Of the rest: `fracture_energy`
+// is (1 - nu^2) K_Ic^2 / E unless said; `friction` and `restitution` are mid-range for dry, clean pairs;
+// `flaw_area`, `crack_spacing` and the grains were chosen by eye on whole breaks, within what the strengths'
+// known scatter allows.
+std::vector<Preset> make_presets() {
+  Material ceramic;
+  ceramic.name = "ceramic";
+  ceramic.density = 2400.0;
+  ceramic.young = 60e9;
+  ceramic.poisson = 0.2;
+  ceramic.strength = 45e6;
+  ceramic.fracture_energy = 25.0;
+  ceramic.weibull_modulus = 10.0;
+  ceramic.flaw_area = 1e-3;
+  ceramic.friction = 0.5;
+  ceramic.restitution = 0.35;
+  ceramic.thickness = 4e-3;
+
+  Material eggshell;
+  eggshell.name = "eggshell";
+  eggshell.density = 2240.0;
+  eggshell.young = 30e9;
+  eggshell.poisson = 0.3;
+  eggshell.strength = 20e6;
+  eggshell.fracture_energy = 10.0;
+  eggshell.weibull_modulus = 5.0;
+  eggshell.flaw_area = 1e-4;
+  eggshell.grain_size = 4e-3;
+  eggshell.grain_strength = 0.7;
+  eggshell.friction = 0.5;
+  eggshell.restitution = 0.3;
+  eggshell.thickness = 0.35e-3;
+
+  Material glass;
+  glass.name = "glass";
+  glass.density = 2500.0;
+  glass.young = 70e9;
+  glass.poisson = 0.22;
+  glass.strength = 50e6;
+  glass.fracture_energy = 8.0;
+  glass.weibull_modulus = 5.0;
+  glass.flaw_area = 1e-2;
+  glass.friction = 0.4;
+  glass.restitution = 0.5;
+  glass.thickness = 4e-3;
+
+  Material ornament_glass = glass;
+  ornament_glass.name = "ornament_glass";
+  ornament_glass.flaw_area = 1e-3;
+  ornament_glass.grain_size = 8e-3;
+  ornament_glass.grain_strength = 0.7;
+  ornament_glass.thickness = 0.5e-3;
+
+  Material porcelain;
+  porcelain.name = "porcelain";
+  porcelain.density = 2400.0;
+  porcelain.young = 70e9;
+  porcelain.poisson = 0.2;
+  porcelain.strength = 70e6;
+  porcelain.fracture_energy = 23.0;
+  porcelain.weibull_modulus = 12.0;
+  porcelain.flaw_area = 1e-3;
+  porcelain.friction = 0.4;
+  porcelain.restitution = 0.45;
+  porcelain.thickness = 3e-3;
+
+  Material steel;
+  steel.name = "steel";
+  steel.density = 7850.0;
+  steel.young = 210e9;
+  steel.poisson = 0.3;
+  steel.strength = 360e6;
+  steel.fracture_energy = 1e4;
+  steel.weibull_modulus = 40.0;
+  steel.flaw_area = 1e-2;
+  steel.friction = 0.4;
+  steel.restitution = 0.6;
+  steel.thickness = 2e-3;
+
+  return {
+      {ceramic,
+       "Glazed stoneware: density, E, nu and bending strength mid-range of tableware stoneware [ASM4], K_Ic "
+       "near "
+       "1.25 MPa sqrt(m) as of porcelain-like bodies; Weibull modulus 10 usual for traditional ceramics; "
+       "flaw_area, "
+       "crack_spacing estimated"},
+      {eggshell,
+       "Hen's egg: density, thickness and E of the order of [BSA93]; strength, fracture energy, Weibull "
+       "modulus and "
+       "grains estimated (published strengths spread from 10 to 40 MPa)"},
+      {glass,
+       "Soda-lime float glass: density, E, nu by [EN572] (rounded: nu 0.2 there, 0.22 measured); K_Ic 0.75 "
+       "MPa "
+       "sqrt(m) [Law93]; strength of the order of the 45 MPa characteristic value of [EN572], for short "
+       "loads; "
+       "Weibull modulus 5 for weathered glass; flaw_area, crack_spacing fitted by eye"},
+      {ornament_glass,
+       "As glass; blown, 0.3 to 0.8 mm thick; flaw_area a tenth of a pane's and the grains (of paint and "
+       "silvering) "
+       "estimated by eye"},
+      {porcelain,
+       "Hard glazed porcelain, unpressed: density, E, bending strength by [IEC672] group C 110/120 (at least "
+       "2200 to "
+       "2300 kg/m3, 60 GPa and 50 to 90 MPa); K_Ic near 1.3 MPa sqrt(m); flaw_area, crack_spacing estimated"},
+      {steel,
+       "Structural steel S235: density, E, nu by [EN1993], tensile strength 360 MPa by the same; fracture "
+       "energy an "
+       "order of magnitude for tearing of sheet; as a shell it breaks as if brittle (no yield here): meant "
+       "for what hits"},
+  };
+}
+
+struct Range {
+  const char* name;
+  double Material::*value;
+  double least;
+  double most;
+  bool includes_least;
+  const char* unit;
+};
+
+constexpr Range kRanges[] = {
+    {"density", &Material::density, 0.0, 1e6, false, " kg/m3"},
+    {"young", &Material::young, 0.0, 1e15, false, " Pa"},
+    {"poisson", &Material::poisson, 0.0, 0.4999, true, ""},
+    {"strength", &Material::strength, 0.0, 1e15, false, " Pa"},
+    {"fracture_energy", &Material::fracture_energy, 0.0, 1e12, false, " J/m2"},
+    {"weibull_modulus", &Material::weibull_modulus, 1.0, 1000.0, true, ""},
+    {"flaw_area", &Material::flaw_area, 0.0, 1e12, false, " m2"},
+    {"crack_spacing", &Material::crack_spacing, 0.0, 10.0, true, ""},
+    {"grain_size", &Material::grain_size, 0.0, 1e9, true, " m"},
+    {"grain_strength", &Material::grain_strength, 0.0, 1.0, false, ""},
+    {"friction", &Material::friction, 0.0, 100.0, true, ""},
+    {"rolling_friction", &Material::rolling_friction, 0.0, 1e9, true, " m"},
+    {"restitution", &Material::restitution, 0.0, 1.0, true, ""},
+    {"thickness", &Material::thickness, 0.0, 1e9, false, " m"},
+};
+
+}  // namespace
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> list = make_presets();
+  return list;
+}
+
+std::optional<Material> find_preset(std::string_view name) {
+  for (const Preset& preset : presets())
+    if (preset.material.name == name) return preset.material;
+  return std::nullopt;
+}
+
+std::optional<std::string> find_fault(const Material& material) {
+  for (const Range& range : kRanges) {
+    const double value = material.*range.value;
+    const bool is_above = range.includes_least ? value >= range.least : value > range.least;
+    if (std::isfinite(value) && is_above && value <= range.most) continue;
+    std::ostringstream text;
+    text << range.name << " of material \"" << material.name << "\" must be "
+         << (range.includes_least ? "from " : "greater than ") << range.least
+         << (range.includes_least ? " to " : " and at most ") << range.most << range.unit << " (it is "
+         << value << ")";
+    return text.str();
+  }
+  return std::nullopt;
+}
+
+}  // namespace shatterbox::material
