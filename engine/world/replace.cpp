@@ -4,6 +4,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/fracture/split_shell.h"
+#include "engine/geometry/crossings.h"
 #include "engine/geometry/shell_surface.h"
 
 namespace shatterbox::world {
@@ -192,9 +193,19 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   for (std::size_t i = 0; i < pieces.size(); ++i)
     born.push_back(make_body(parent, pieces[i], static_cast<int>(i)));
   row.pieces = static_cast<int>(pieces.size());
+  for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);
   insert_pieces(moving, parent, memory, pieces, std::move(born), time, ancestry);
   return row;
+}
+
+long count_overlaps(const BreakRow& row) {
+  std::vector<geometry::TriangleMesh> meshes;
+  for (const auto& shape : row.shapes) {
+    meshes.push_back(shape->surface);
+    for (Vec3& p : meshes.back().positions) p += shape->material_from_body;
+  }
+  return geometry::count_crossing_pairs(meshes);
 }
 
 }  // namespace shatterbox::world

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -52,8 +53,12 @@ struct BreakRow {
   /// Cracks as segments in the parent's material space (x, y, z of both ends), for studies of their
   /// orientation.
   std::vector<std::array<Vec3, 2>> cracks;
-  Vec3 place_material = Vec3::Zero();  // m
+  Vec3 place_material = Vec3::Zero();                      // m
+  std::vector<std::shared_ptr<const body::Shape>> shapes;  // of the pieces
 };
+
+/// Pairs of triangles of different pieces that cross at the birth, counted when asked for.
+long count_overlaps(const BreakRow& row);
 
 struct ContactFigures {
   int contacts = 0;  // with a gap below twice the kept one, last step
