@@ -6,6 +6,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/random.h"
+#include "engine/geometry/mass_properties.h"
 #include "sandbox/scene/build_mesh.h"
 
 namespace shatterbox::sandbox::scene {
@@ -23,9 +24,9 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
   shell.is_breakable = form.is_breakable;
   shell.clamped = find_clamped(built->mesh, body.rotation, body.support, body.place, problems);
   for (const Vec3& p : built->mesh.positions) plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
+  plan.centre = geometry::shell_mass_properties(built->mesh, shell.thickness, 1.0).centre;
   shell.mesh = std::move(built->mesh);
-  shell.parts = built->parts;
-  plan.parts = std::move(built->parts);
+  shell.parts = std::move(built->parts);
   return shell;
 }
 

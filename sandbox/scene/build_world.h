@@ -16,8 +16,8 @@ namespace shatterbox::sandbox::scene {
 /// One [[body]], ready to be added at its own place.
 struct BodyPlan {
   world::BodyDescription description;
-  std::vector<std::uint8_t> parts;  // of shells, per triangle: geometry::Part
-  double bounding_radius = 0.0;     // m, about the frame's origin; 0 for planes
+  double bounding_radius = 0.0;  // m, about the frame's origin; 0 for planes
+  Vec3 centre = Vec3::Zero();    // centre of mass in the mesh's frame, m
 };
 
 struct ScenePlan {

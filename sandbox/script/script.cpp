@@ -1,0 +1,99 @@
+#include "sandbox/script/script.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "engine/core/elementary.h"
+
+namespace shatterbox::sandbox::script {
+
+namespace {
+
+/// Where a body of the scene is now: its centre of mass, or that of all its pieces. Nothing if it is not
+/// there.
+std::optional<Vec3> centre_of(const scene::BuiltScene& built, int entry) {
+  double mass = 0.0;
+  Vec3 moment = Vec3::Zero();
+  std::optional<Vec3> massless;
+  for (const body::Body& body : built.world.bodies()) {
+    const auto original = built.entries.find(built.world.ancestry(body.id).original);
+    if (original == built.entries.end() || original->second != entry) continue;
+    mass += body.shape->mass;
+    moment += body.shape->mass * body.pose.translation;
+    if (!massless) massless = body.pose.translation;
+  }
+  if (mass <= 0.0) return massless;
+  return Vec3(moment / mass);
+}
+
+/// The motion of what an event brings in, or a sentence why it cannot be.
+core::Result<world::BodyDescription> describe(const scene::EventEntry& event,
+                                              const scene::BuiltScene& built) {
+  world::BodyDescription description = built.plan.bodies[static_cast<std::size_t>(event.body)].description;
+  if (const auto* drop = std::get_if<scene::Drop>(&event.action)) {
+    if (drop->position) description.pose.translation = *drop->position;
+    return description;
+  }
+  const auto& projectile = std::get<scene::Projectile>(event.action);
+  Vec3 target = Vec3::Zero();
+  if (const auto* point = std::get_if<Vec3>(&projectile.target)) {
+    target = *point;
+  } else {
+    const auto centre = centre_of(built, std::get<int>(projectile.target));
+    if (!centre) return core::Error{"its target is not there"};
+    target = *centre;
+  }
+  if ((target - projectile.from).norm() < 1e-9) return core::Error{"its target is where it starts"};
+  description.pose.translation = projectile.from;
+  description.velocity = aim(projectile.from, target, projectile.speed, built.world.settings().gravity);
+  description.angular_velocity = projectile.spin;
+  return description;
+}
+
+}  // namespace
+
+Script::Script(const scene::SceneDescription& scene) : scene_(scene), throws_(scene.bodies.size(), 0) {}
+
+std::vector<std::string> Script::play(scene::BuiltScene& built) {
+  std::vector<std::string> faults;
+  const double rate = built.world.settings().steps_per_second;
+  for (; next_ < scene_.events.size(); ++next_) {
+    const scene::EventEntry& event = scene_.events[next_];
+    // A hair's breadth of tolerance: at = 0.1 is step 24 of 240, although 0.1 * 240 is not 24 to the bit.
+    const auto due = static_cast<long>(std::ceil(event.at * rate - 1e-6));
+    if (due > built.world.steps()) break;
+    auto description = describe(event, built);
+    if (!description) {
+      faults.push_back(
+          fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, description.error()));
+      continue;
+    }
+    const int count = ++throws_[static_cast<std::size_t>(event.body)];
+    if (count > 1) description.value().name += fmt::format("[{}]", count);
+    const auto id = built.world.add_body(description.value());
+    if (!id) {
+      faults.push_back(
+          fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, id.error()));
+      continue;
+    }
+    built.entries[id.value()] = event.body;
+  }
+  return faults;
+}
+
+Vec3 aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity) {
+  // |target - from - g t2/2| = speed t is quadratic in t2 = t^2.
+  const Vec3 way = target - from;
+  const double a = 0.25 * gravity.squaredNorm();
+  const double b = way.dot(gravity) + speed * speed;
+  const double c = way.squaredNorm();
+  const double discriminant = b * b - 4.0 * a * c;
+  if (discriminant < 0.0 || b <= 0.0) return way * (speed / core::sqrt(c));
+  const double time_squared =
+      2.0 * c / (b + core::sqrt(discriminant));  // the lesser root, without cancellation
+  const double time = core::sqrt(time_squared);
+  return (way - 0.5 * time_squared * gravity) / time;
+}
+
+}  // namespace shatterbox::sandbox::script

@@ -1,0 +1,35 @@
+// What happens when: the events of a scene, played on step borders, so that the same script gives the same
+// run.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sandbox/scene/build_world.h"
+#include "sandbox/scene/scene_description.h"
+
+namespace shatterbox::sandbox::script {
+
+class Script {
+ public:
+  /// `scene` must outlive the script.
+  explicit Script(const scene::SceneDescription& scene);
+
+  /// Plays all events that are due before the coming step (an event lands on the first step border at or
+  /// after its time). Returns what could not be done, in sentences.
+  std::vector<std::string> play(scene::BuiltScene& built);
+
+  bool is_over() const { return next_ == scene_.events.size(); }
+
+ private:
+  const scene::SceneDescription& scene_;
+  std::size_t next_ = 0;
+  std::vector<int> throws_;  // per [[body]]: how often it was brought in
+};
+
+/// The velocity with which a body thrown from `from` flies through `target` under `gravity` (m/s2), the
+/// quicker of the two ways; straight at it where the speed does not reach that far.
+Vec3 aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity);
+
+}  // namespace shatterbox::sandbox::script

@@ -1,0 +1,78 @@
+#include "sandbox/view/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace shatterbox::sandbox::view {
+
+namespace {
+
+glm::vec3 to_glm(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// Position, target and field of view as one point of a space in which the path runs.
+Eigen::Matrix<double, 7, 1> point_of(const scene::CameraKey& key) {
+  Eigen::Matrix<double, 7, 1> point;
+  point << key.position, key.target, key.fov;
+  return point;
+}
+
+scene::CameraKey on_path(const std::vector<scene::CameraKey>& path, double time) {
+  if (time <= path.front().at || path.size() == 1) return path.front();
+  if (time >= path.back().at) return path.back();
+  const auto after = std::upper_bound(path.begin(), path.end(), time,
+                                      [](double t, const scene::CameraKey& key) { return t < key.at; });
+  const auto i = static_cast<std::size_t>(after - path.begin());
+  const auto slope = [&path](std::size_t k) -> Eigen::Matrix<double, 7, 1> {
+    if (k == 0 || k + 1 == path.size())
+      return Eigen::Matrix<double, 7, 1>::Zero();  // starts and ends at rest
+    return (point_of(path[k + 1]) - point_of(path[k - 1])) / (path[k + 1].at - path[k - 1].at);
+  };
+  const double span = path[i].at - path[i - 1].at;
+  const double s = (time - path[i - 1].at) / span;
+  const double s2 = s * s, s3 = s2 * s;
+  const Eigen::Matrix<double, 7, 1> point =
+      (2 * s3 - 3 * s2 + 1) * point_of(path[i - 1]) + (s3 - 2 * s2 + s) * span * slope(i - 1) +
+      (3 * s2 - 2 * s3) * point_of(path[i]) + (s3 - s2) * span * slope(i);
+  return {time, point.head<3>(), point.segment<3>(3), point[6]};
+}
+
+}  // namespace
+
+Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
+  Vec3 least = Vec3::Constant(std::numeric_limits<double>::max());
+  Vec3 most = -least;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const double radius = plan.bodies[i].bounding_radius;
+    if (radius <= 0.0 || scene.bodies[i].is_held_back) continue;
+    for (const Pose& pose : scene::copy_poses(scene.bodies[i], scene.world.seed, i)) {
+      least = least.cwiseMin(pose.translation - Vec3::Constant(radius));
+      most = most.cwiseMax(pose.translation + Vec3::Constant(radius));
+    }
+  }
+  if (least.x() > most.x()) return {};
+  return {0.5 * (least + most), 0.5 * (most - least).norm()};
+}
+
+render::Camera camera_at(const scene::CameraEntry& camera, const Subject& subject, double time) {
+  render::Camera result;
+  result.up = to_glm(camera.up);
+  if (!camera.path.empty()) {
+    const scene::CameraKey key = on_path(camera.path, time);
+    result.position = to_glm(key.position);
+    result.target = to_glm(key.target);
+    result.vertical_fov = static_cast<float>(key.fov);
+    return result;
+  }
+  const Vec3 target = camera.target.value_or(subject.centre);
+  const double half_view = camera.fov * 3.14159265358979 / 360.0;
+  const Vec3 away = Vec3(0.45, 0.35, 1.0).normalized() * (1.15 * subject.radius / std::sin(half_view));
+  result.position = to_glm(camera.position.value_or(target + away));
+  result.target = to_glm(target);
+  result.vertical_fov = static_cast<float>(camera.fov);
+  return result;
+}
+
+}  // namespace shatterbox::sandbox::view

@@ -1,0 +1,23 @@
+// Where the camera is at a time: fixed, on a smooth path through keyframes, or chosen so that all is seen.
+#pragma once
+
+#include "render/frame/frame.h"
+#include "sandbox/scene/build_world.h"
+#include "sandbox/scene/scene_description.h"
+
+namespace shatterbox::sandbox::view {
+
+/// What a camera without a place must see.
+struct Subject {
+  Vec3 centre = Vec3::Zero();  // m
+  double radius = 1.0;         // m
+};
+
+/// A ball about all bodies that have an end and are there at the start; about everything if nothing has.
+Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan);
+
+/// The camera at `time` (s). Keyframes are passed with continuous velocity (cubic Hermite, tangents from
+/// neighbours).
+render::Camera camera_at(const scene::CameraEntry& camera, const Subject& subject, double time);
+
+}  // namespace shatterbox::sandbox::view

@@ -1,0 +1,109 @@
+#include "sandbox/view/looks.h"
+
+#include <cmath>
+
+namespace shatterbox::sandbox::view {
+
+namespace {
+
+glm::vec3 hex(unsigned rgb) {
+  return linear_colour(Vec3((rgb >> 16) & 255U, (rgb >> 8) & 255U, rgb & 255U) / 255.0);
+}
+
+render::Look make_look(const std::string& name, const std::optional<glm::vec3>& colour) {
+  const auto paint = [&colour](unsigned usual) { return colour.value_or(hex(usual)); };
+  if (name == "ornament") return render::ornament(paint(0xb5121f));
+  if (name == "glass") return colour ? render::glass(*colour) : render::glass();
+  if (name == "ceramic") return render::ceramic(paint(0x2f6f86));
+  if (name == "porcelain") {
+    render::Look look = render::ceramic(paint(0xf2efe8));
+    look.inside = look.outside;
+    look.crack = hex(0xfbfaf5);
+    look.clear_coat = 1.0F;
+    return look;
+  }
+  if (name == "steel") return render::metal(paint(0xc9ccd1), 0.22F);
+  if (name == "wood") {
+    render::Look look = render::matt(paint(0x8a5a34));
+    look.crack = hex(0xd2a877);
+    look.roughness = look.inside_roughness = 0.6F;
+    look.clear_coat = 0.25F;
+    look.clear_coat_roughness = 0.35F;
+    return look;
+  }
+  if (name == "concrete") return render::stone(paint(0x9d9a94));
+  if (name == "brick") return render::stone(paint(0xa2543b));
+  if (name == "plaster") return render::matt(paint(0xebe6da));
+  if (name == "ice") return render::glass(paint(0xdff1fb));
+  if (name == "eggshell") return render::matt(paint(0xe9d3b8));
+  if (name == "glossy") return render::glossy_paint(paint(0x2a6fb0));
+  return render::matt(paint(0xb9b4aa));
+}
+
+}  // namespace
+
+glm::vec3 linear_colour(const Vec3& srgb) {
+  const auto channel = [](double c) {
+    return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+  };
+  return {channel(srgb.x()), channel(srgb.y()), channel(srgb.z())};
+}
+
+std::vector<render::Look> make_looks(const std::string& name, const std::optional<Vec3>& colour, double size,
+                                     const Vec3& centre) {
+  std::optional<glm::vec3> linear;
+  if (colour) linear = linear_colour(*colour);
+  render::Look look = make_look(name, linear);
+  look.pattern_centre = {centre.x(), centre.y(), centre.z()};
+  look.pattern_size = static_cast<float>(0.02 * size);
+  const render::Look metal = render::metal(hex(0xe3c06a), 0.3F);
+  render::Look neck = look;
+  if (name == "ornament") {
+    look.pattern = render::Pattern::rings;
+    look.pattern_colour = hex(0xf0d9a0);
+    look.pattern_metalness = 0.9F;
+    look.pattern_size = static_cast<float>(0.42 * size);
+  } else if (look.pattern == render::Pattern::none && name == "ceramic") {
+    look.pattern = render::Pattern::speckle;
+    look.pattern_colour = 0.55F * look.outside;
+    look.pattern_size = static_cast<float>(0.05 * size);
+  }
+  return {look, neck, metal, metal};
+}
+
+std::string usual_look(const std::string& preset) {
+  for (const char* same :
+       {"glass", "ceramic", "porcelain", "steel", "concrete", "brick", "plaster", "ice", "eggshell"}) {
+    if (preset == same) return same;
+  }
+  return "matt";
+}
+
+std::optional<render::Ground> make_ground(const std::string& name, double height) {
+  if (name == "none") return std::nullopt;
+  render::Ground ground;
+  ground.height = static_cast<float>(height);
+  if (name == "concrete") ground.colour = hex(0xa5a29c);
+  if (name == "wood") ground.colour = hex(0xa07a55);
+  if (name == "dark") ground.colour = hex(0x3a3d42);
+  if (name == "checker") ground.checker = 0.1F;
+  return ground;
+}
+
+render::Backdrop make_backdrop(const std::string& name) {
+  render::Backdrop backdrop;
+  if (name == "dark") {
+    backdrop.top = hex(0x1d2126);
+    backdrop.bottom = hex(0x3b4046);
+  } else if (name == "sky") {
+    backdrop.top = hex(0x6f9fd0);
+    backdrop.bottom = hex(0xd8e4ee);
+    backdrop.glow = 0.1F;
+  } else if (name == "white") {
+    backdrop.top = backdrop.bottom = glm::vec3(0.92F);
+    backdrop.glow = backdrop.vignette = 0.0F;
+  }
+  return backdrop;
+}
+
+}  // namespace shatterbox::sandbox::view
