@@ -1,0 +1,177 @@
+#include "sandbox/report/json_report.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "sandbox/report/statistics.h"
+
+namespace shatterbox::sandbox::report {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json vector(const Vec3& v) {
+  return Json::array({number(v.x()), number(v.y()), number(v.z())});
+}
+
+Json spread(const std::vector<double>& values) {
+  const Spread s = spread_of(values);
+  return {{"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
+}
+
+Json impacts(const world::WorldReport& report) {
+  Json list = Json::array();
+  for (const world::ImpactRow& row : report.impacts) {
+    list.push_back({{"time", number(row.time)},
+                    {"body", row.body},
+                    {"impulse_ns", number(row.impulse)},
+                    {"duration_s", number(row.duration)},
+                    {"stress_pa", number(row.stress)},
+                    {"strength_pa", number(row.strength)},
+                    {"ratio", number(row.ratio)},
+                    {"verdict", row.verdict},
+                    {"place", vector(row.place)}});
+  }
+  return list;
+}
+
+Json breaks(const world::WorldReport& report) {
+  Json list = Json::array();
+  for (const world::BreakRow& row : report.breaks) {
+    list.push_back({{"time", number(row.time)},
+                    {"body", row.body},
+                    {"pieces", row.pieces},
+                    {"place", vector(row.place)},
+                    {"new_area_m2", number(row.new_area)},
+                    {"grain_share", number(row.grain_share)},
+                    {"fracture_energy_j", number(row.fracture_energy)},
+                    {"elastic_energy_j", number(row.elastic_energy)},
+                    {"mass_error", number(row.mass_error)},
+                    {"momentum_error", number(row.momentum_error)},
+                    {"angular_momentum_error", number(row.angular_momentum_error)},
+                    {"overlap", world::count_overlaps(row)},
+                    {"energy_gain", number(row.energy_gain)},
+                    {"generation", row.generation},
+                    {"crack_generations", row.crack_generations},
+                    {"energy_guard_active", row.energy_guard_active},
+                    {"generation_bound_active", row.generation_bound_active},
+                    {"merged", row.merged}});
+  }
+  return list;
+}
+
+Json merged(const world::WorldReport& report) {
+  int count = 0;
+  double share = 0.0;
+  for (const world::BreakRow& row : report.breaks) {
+    count += row.merged;
+    share = std::max(share, row.merged_mass_share);
+  }
+  return {{"count", count}, {"mass_share", number(share)}};
+}
+
+Json times(const RunRecord& record) {
+  std::vector<double> frame, simulate, render, encode;
+  for (const FrameRecord& f : record.frames) {
+    frame.push_back(f.frame);
+    simulate.push_back(f.simulate);
+    render.push_back(f.render);
+    encode.push_back(f.encode);
+  }
+  Json stages = Json::object();
+  for (const auto& [name, values] : record.stages) stages[name] = spread(values);
+  Json phases = Json::object();
+  for (const Phase& phase : phases_of(record.frames)) {
+    Json entry = {{"frames", phase.frame_times.size()}};
+    entry.update(spread(phase.frame_times));
+    entry["contacts"] = number(phase.contacts);
+    entry["awake"] = number(phase.awake);
+    phases[phase.name] = entry;
+  }
+  return {{"frame", spread(frame)},   {"simulate", spread(simulate)},
+          {"render", spread(render)}, {"encode", spread(encode)},
+          {"stages", stages},         {"phases", phases}};
+}
+
+}  // namespace
+
+std::string hex_digits(std::uint64_t number) {
+  return fmt::format("{:016x}", number);
+}
+
+Json make_json(const RunRecord& record) {
+  const world::WorldReport& w = record.world;
+  Json json;
+  json["report_version"] = kReportVersion;
+  json["version"] = record.version;
+  json["compiler"] = record.compiler;
+  json["gl_renderer"] = record.gl_renderer;
+  json["scene"] = record.scene;
+  json["seed"] = record.seed;
+  json["steps"] = w.steps;
+  json["steps_per_second"] = record.steps_per_second;
+  json["simulated_seconds"] = number(record.simulated_seconds);
+  json["wall_seconds"] = number(record.wall_seconds);
+  json["interrupted"] = record.is_interrupted;
+  json["threads"] = record.threads;
+  json["state_hash"] = hex_digits(record.state_hash);
+  json["frame_hashes"] = Json::array();
+  for (const std::uint64_t hash : record.frame_hashes) json["frame_hashes"].push_back(hex_digits(hash));
+  json["bodies"] = {{"start", w.bodies_start}, {"end", record.bodies_end}};
+  json["pieces"] = record.pieces;
+  json["merged"] = merged(w);
+  json["triangles"] = {
+      {"start", w.triangles_start}, {"end", record.triangles_end}, {"max", w.triangles_most}};
+  json["impacts"] = impacts(w);
+  json["breaks"] = breaks(w);
+  json["contact"] = {{"most", w.contact.most_contacts},
+                     {"failsafe_steps", w.contact.failsafe_steps},
+                     {"frozen_share", number(w.contact.frozen_share)},
+                     {"least_gap", number(w.contact.least_gap)}};
+  json["conservation"] = {{"momentum", vector(w.conservation.momentum)},
+                          {"kinetic_energy_j", number(w.conservation.kinetic_energy)},
+                          {"potential_energy_j", number(w.conservation.potential_energy)},
+                          {"greatest_energy_rise_j", number(w.conservation.greatest_energy_rise)},
+                          {"momentum_error_ns", number(w.conservation.momentum_error)}};
+  json["solver"] = {{"worst_residual", number(w.solver.worst_residual)},
+                    {"contact_residual", number(w.contact.residual)},
+                    {"solves", w.solver.solves},
+                    {"skipped", w.solver.skipped},
+                    {"factorisations", w.solver.factorisations}};
+  json["used"] = record.used;
+  json["left_out"] = record.left_out;
+  json["time_ms"] = times(record);
+  json["load_ms"] = Json::object();
+  for (const auto& [name, milliseconds] : record.load) json["load_ms"][name] = number(milliseconds);
+  json["peak_memory_mb"] = number(record.peak_memory);
+  json["warnings"] = record.warnings;
+  return json;
+}
+
+std::string write_report(const std::string& path, const RunRecord& record) {
+  const std::string part = path + ".part";
+  errno = 0;
+  {
+    std::ofstream stream(part);
+    stream << make_json(record).dump(2) << "\n";
+    stream.close();
+    if (!stream) return fmt::format("{} cannot be written: {}", path, std::strerror(errno));
+  }
+  std::error_code code;
+  std::filesystem::rename(part, path, code);
+  if (code) return fmt::format("{} cannot be written: {}", path, code.message());
+  return {};
+}
+
+}  // namespace shatterbox::sandbox::report

@@ -1,0 +1,22 @@
+// The report as JSON: field names as sandbox/README.md lists them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "sandbox/report/run_record.h"
+
+namespace shatterbox::sandbox::report {
+
+inline constexpr int kReportVersion = 1;
+
+/// The whole report; numbers that are not finite become null.
+nlohmann::ordered_json make_json(const RunRecord& record);
+
+/// Writes it beside its name and renames it. A sentence if that fails, else empty.
+std::string write_report(const std::string& path, const RunRecord& record);
+
+/// 16 lower-case hex digits.
+std::string hex_digits(std::uint64_t number);
+
+}  // namespace shatterbox::sandbox::report

@@ -1,0 +1,49 @@
+// What a run did and what it cost: plain data from which the JSON report and the closing words are made.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/world/report.h"
+
+namespace shatterbox::sandbox::report {
+
+/// One frame: 1/fps of simulated time. Times are wall clock, ms.
+struct FrameRecord {
+  double frame = 0.0;     // between finished frames
+  double simulate = 0.0;  // stepping and making the frame's data
+  double render = 0.0;
+  double encode = 0.0;  // by the encoder's own clock, and pictures written
+  int contacts = 0;     // most in any of its steps
+  int awake = 0;        // dynamic bodies not asleep, at its end
+  int impacts = 0;      // evaluated in it
+  int breaks = 0;
+};
+
+struct RunRecord {
+  std::string version, scene, goal, compiler, gl_renderer;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  int steps_per_second = 240, frames_per_second = 60;
+  double gravity = 9.81;  // m/s2, for potential energy's share
+  double simulated_seconds = 0.0, wall_seconds = 0.0, asked_seconds = 0.0;
+  bool is_interrupted = false;
+  std::uint64_t state_hash = 0;
+  std::vector<std::uint64_t> frame_hashes;
+  int bodies_end = 0, pieces = 0;
+  long triangles_end = 0;
+  world::WorldReport world;
+  std::vector<FrameRecord> frames;
+  std::vector<std::pair<std::string, std::vector<double>>>
+      stages;                                        // ms in each frame, in the order of the step
+  std::vector<std::pair<std::string, double>> load;  // ms
+  std::vector<std::string> used, left_out;
+  double peak_memory = 0.0;  // MB
+  std::vector<std::string> outputs;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace shatterbox::sandbox::report

@@ -1,0 +1,43 @@
+#include "sandbox/report/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shatterbox::sandbox::report {
+
+Spread spread_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const std::size_t count = values.size();
+  const double median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(count)));
+  return {median, values[std::max<std::size_t>(rank, 1) - 1], values.back()};
+}
+
+std::vector<Phase> phases_of(const std::vector<FrameRecord>& frames) {
+  std::vector<Phase> phases(5);
+  const char* const names[] = {"before", "impact", "breaking", "busy", "rest"};
+  for (std::size_t i = 0; i < phases.size(); ++i) phases[i].name = names[i];
+  int most = 0;
+  for (const FrameRecord& frame : frames) most = std::max(most, frame.contacts);
+  bool has_begun = false;
+  for (const FrameRecord& frame : frames) {
+    has_begun = has_begun || frame.contacts > 0 || frame.impacts > 0 || frame.breaks > 0;
+    const bool is_in[] = {!has_begun, frame.impacts > 0 && frame.breaks == 0, frame.breaks > 0,
+                          most > 0 && frame.contacts >= 0.8 * most, has_begun && frame.awake == 0};
+    for (std::size_t i = 0; i < phases.size(); ++i) {
+      if (!is_in[i]) continue;
+      phases[i].frame_times.push_back(frame.frame);
+      phases[i].contacts += frame.contacts;
+      phases[i].awake += frame.awake;
+    }
+  }
+  for (Phase& phase : phases) {
+    const auto count = static_cast<double>(std::max<std::size_t>(1, phase.frame_times.size()));
+    phase.contacts /= count;
+    phase.awake /= count;
+  }
+  return phases;
+}
+
+}  // namespace shatterbox::sandbox::report

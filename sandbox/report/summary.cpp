@@ -1,0 +1,136 @@
+#include "sandbox/report/summary.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "sandbox/report/json_report.h"
+#include "sandbox/report/statistics.h"
+
+namespace shatterbox::sandbox::report {
+
+namespace {
+
+constexpr std::size_t kMostRows = 5;
+
+std::string plural(long count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string bodies_line(const RunRecord& record) {
+  return fmt::format(
+      "{:g} s of \"{}\" in {} steps: {} at the start, {} at the end, {} of them born of breaks; at most "
+      "{} triangles\n",
+      record.simulated_seconds, record.scene, record.world.steps,
+      plural(record.world.bodies_start, "body", "bodies"), record.bodies_end, record.pieces,
+      record.world.triangles_most);
+}
+
+/// The hardest impacts, in the order of time.
+std::string impact_lines(const RunRecord& record) {
+  std::vector<const world::ImpactRow*> rows;
+  for (const world::ImpactRow& row : record.world.impacts) rows.push_back(&row);
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto* a, const auto* b) { return a->ratio > b->ratio; });
+  if (rows.size() > kMostRows) rows.resize(kMostRows);
+  std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->time < b->time; });
+  std::string text = fmt::format("{} evaluated",
+                                 plural(static_cast<long>(record.world.impacts.size()), "impact", "impacts"));
+  if (record.world.solver.skipped > 0)
+    text += fmt::format(", {} too weak to matter", record.world.solver.skipped);
+  text += rows.empty() ? "\n" : ", the hardest:\n";
+  for (const world::ImpactRow* row : rows) {
+    text += fmt::format("  {:7.3f} s  {:<16} {:9.3g} N s in {:7.3g} ms  {:8.3g} of {:8.3g} MPa  {}\n",
+                        row->time, row->body, row->impulse, 1e3 * row->duration, 1e-6 * row->stress,
+                        1e-6 * row->strength, row->verdict);
+  }
+  return text;
+}
+
+std::string break_lines(const RunRecord& record) {
+  const auto& breaks = record.world.breaks;
+  if (breaks.empty()) return "nothing broke\n";
+  std::string text = fmt::format("{}{}\n", plural(static_cast<long>(breaks.size()), "break", "breaks"),
+                                 breaks.size() > kMostRows ? ", the first:" : ":");
+  for (std::size_t i = 0; i < std::min(breaks.size(), kMostRows); ++i) {
+    const world::BreakRow& row = breaks[i];
+    text += fmt::format(
+        "  {:7.3f} s  {:<16} {:>4} pieces, {:.3g} cm2 of new area ({:.0f} % on grain boundaries), {:.3g} "
+        "of {:.3g} mJ spent{}{}\n",
+        row.time, row.body, row.pieces, 1e4 * row.new_area, 100.0 * row.grain_share,
+        1e3 * row.fracture_energy, 1e3 * row.elastic_energy,
+        row.energy_guard_active ? ", stopped by the energy" : "",
+        row.generation_bound_active ? ", stopped by the bound on generations" : "");
+  }
+  return text;
+}
+
+std::string time_lines(const RunRecord& record) {
+  std::vector<double> frame, simulate, render, encode;
+  for (const FrameRecord& f : record.frames) {
+    frame.push_back(f.frame);
+    simulate.push_back(f.simulate);
+    render.push_back(f.render);
+    encode.push_back(f.encode);
+  }
+  const auto line = [](const char* name, const std::vector<double>& values) {
+    const Spread s = spread_of(values);
+    return fmt::format("{} {:.1f} / {:.1f} / {:.1f}", name, s.median, s.p95, s.max);
+  };
+  std::string text =
+      "time a frame, ms (median / p95 / worst): " + line("all", frame) + ", " + line("simulate", simulate);
+  if (!record.gl_renderer.empty()) text += ", " + line("render", render) + ", " + line("encode", encode);
+  text += "\n";
+  std::vector<std::pair<double, std::string>> stages;
+  double sum = 0.0;
+  for (const auto& [name, values] : record.stages) {
+    const double total = std::accumulate(values.begin(), values.end(), 0.0);
+    stages.emplace_back(total, name);
+    sum += total;
+  }
+  std::stable_sort(stages.begin(), stages.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (sum > 0.0) text += "the step's time:";
+  for (const auto& [total, name] : stages) {
+    if (total < 0.01 * sum) continue;
+    text += fmt::format(" {} {:.0f} %,", name, 100.0 * total / sum);
+  }
+  if (sum > 0.0) text.back() = '\n';
+  return text;
+}
+
+std::string error_line(const RunRecord& record) {
+  double worst = 0.0;
+  for (const world::BreakRow& row : record.world.breaks) {
+    worst = std::max({worst, row.mass_error, row.momentum_error, row.angular_momentum_error});
+  }
+  const auto& w = record.world;
+  return fmt::format(
+      "errors: breaks {:.1g} (mass, momenta), momentum {:.1g} N s, energy rise {:.1g} J, least gap {:.2g} "
+      "mm, stress solver {:.1g}, contact solver {:.1g} m/s, failsafe {:.2g} %\n",
+      worst, w.conservation.momentum_error, w.conservation.greatest_energy_rise, 1e3 * w.contact.least_gap,
+      w.solver.worst_residual, w.contact.residual, 100.0 * w.contact.frozen_share);
+}
+
+}  // namespace
+
+std::string make_summary(const RunRecord& record) {
+  std::string text;
+  if (record.is_interrupted) {
+    text += fmt::format("interrupted at {:.2f} of {:g} s\n", record.simulated_seconds, record.asked_seconds);
+  }
+  text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
+          error_line(record);
+  const double slowness =
+      record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
+  text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,
+                      slowness > 1.0
+                          ? fmt::format("{:.1f} times slower than real time", slowness)
+                          : fmt::format("{:.1f} times faster than real time", 1.0 / std::max(slowness, 1e-9)),
+                      hex_digits(record.state_hash));
+  for (const std::string& output : record.outputs) text += "wrote " + output + "\n";
+  return text;
+}
+
+}  // namespace shatterbox::sandbox::report

@@ -1,0 +1,87 @@
+#include "sandbox/run/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+#include "sandbox/run/run.h"
+#include "sandbox/scene/nearest_name.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+void add_scene_options(CLI::App& command, Options& options) {
+  command.add_option("--set", options.overrides, "change a value: NAME.key=value, the value as in TOML")
+      ->type_name("NAME.key=value")
+      ->allow_extra_args(false);
+  command.add_option("--script", options.script, "a file of [[event]] to play on the scene")
+      ->type_name("FILE");
+  command.add_option("--seconds", options.seconds, "how long to simulate, s");
+  command.add_option("--seed", options.seed, "seed of flaws, grains and jitter");
+}
+
+void add_run_options(CLI::App& command, Options& options) {
+  command.add_option("-o", options.video, "video: .mp4 .mkv .webm .gif")->type_name("FILE");
+  command.add_option("--frames", options.frames_folder, "folder for one PNG a frame")->type_name("DIR");
+  command.add_option("--meshes", options.meshes_folder, "folder for one OBJ a frame")->type_name("DIR");
+  command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
+  command.add_option("--size", options.size, "picture size")
+      ->capture_default_str()
+      ->type_name("WIDTHxHEIGHT");
+  command.add_option("--fps", options.frames_per_second, "frames a second")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--quality", options.quality, "preview or full")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"preview", "full"}));
+  command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 256));
+  command.add_flag("!--no-render", options.has_pictures, "simulate only");
+}
+
+}  // namespace
+
+/// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.
+bool is_known_verb(const std::string& verb) {
+  const std::vector<std::string> verbs{"run", "check", "list"};
+  const std::vector<std::string> later{"plan", "diff", "study", "bench"};
+  if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
+    return true;
+  if (std::find(later.begin(), later.end(), verb) != later.end()) {
+    std::fprintf(stderr, "\"%s\" is not available in this version\n    verbs: %s\n", verb.c_str(),
+                 scene::quoted_list(verbs).c_str());
+  } else {
+    std::fprintf(stderr, "there is no verb \"%s\"\n    %s\n", verb.c_str(),
+                 scene::hint_for_name(verb, verbs, "verbs").c_str());
+  }
+  return false;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  if (argc > 1 && !is_known_verb(argv[1])) return kBadInput;
+  Options options;
+  CLI::App app("Shatterbox: throw things, watch them break, keep the video and the numbers.", "shatterbox");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", SHATTERBOX_VERSION);
+  CLI::App* run_command = app.add_subcommand("run", "simulate, draw and encode a scene");
+  CLI::App* check_command =
+      app.add_subcommand("check", "say what is wrong with a scene, where, and how to mend it");
+  app.add_subcommand("list", "scenes, materials, looks and events");
+  run_command->add_option("SCENE", options.scene, "a .toml file, or the name of a scene that came along");
+  check_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
+  for (CLI::App* command : {run_command, check_command}) add_scene_options(*command, options);
+  add_run_options(*run_command, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  if (app.got_subcommand("run")) return run_scene(options);
+  return app.got_subcommand("check") ? check_scene(options) : list_all();
+}
+
+}  // namespace shatterbox::sandbox::run

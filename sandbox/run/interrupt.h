@@ -1,0 +1,13 @@
+// Ctrl-C asks a run to end in order: the video is closed and plays. A second one ends the program at once.
+#pragma once
+
+namespace shatterbox::sandbox::run {
+
+/// Catches SIGINT and SIGTERM, even where the shell that started us ignores them (as it does for background
+/// jobs); SIGPIPE is ignored.
+void catch_interrupts();
+
+/// Whether one came.
+bool is_interrupted();
+
+}  // namespace shatterbox::sandbox::run

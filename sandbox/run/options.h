@@ -1,0 +1,46 @@
+// What the command line asks of `run` and `check`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/renderer.h"
+#include "sandbox/scene/problem.h"
+#include "sandbox/scene/read_scene.h"
+
+namespace shatterbox::sandbox::run {
+
+// Exit statuses of the program.
+inline constexpr int kDone = 0;
+inline constexpr int kDiffers = 1;   // a difference, or a failed check
+inline constexpr int kBadInput = 2;  // bad input or usage
+inline constexpr int kFailed = 3;    // failed, or was interrupted, while running
+
+struct Options {
+  std::string scene;          // path or name; empty: none given
+  std::string video;          // empty: NAME.mp4, unless there is another output
+  std::string frames_folder;  // PNG
+  std::string meshes_folder;  // OBJ
+  std::string report;         // JSON
+  std::string size = "640x360";
+  int frames_per_second = 60;
+  std::string quality = "preview";
+  std::optional<double> seconds;
+  std::optional<long long> seed;
+  int threads = 0;  // 0: one a core
+  std::vector<std::string> overrides;
+  std::string script;
+  bool has_pictures = true;
+};
+
+/// The size of "640x360"; nothing, with a problem, if it is none (16 to 8192 each, even for video).
+std::optional<render::Size> parse_size(const std::string& text, scene::Problems& problems);
+
+/// --set, --seconds, --seed and --script, as changes to a scene.
+scene::SceneChanges changes_of(const Options& options);
+
+/// Makes the output folders and finds out, before any work, what cannot be written.
+void prepare_outputs(const Options& options, scene::Problems& problems);
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,175 @@
+#include "sandbox/run/painter.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "engine/core/hash.h"
+#include "render/output/image_file.h"
+#include "render/output/video_file.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kMostWaiting = 2;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+std::uint64_t hash_image(const render::Image& image) {
+  core::Hash hash;
+  hash.add(static_cast<std::uint64_t>(image.width)).add(static_cast<std::uint64_t>(image.height));
+  for (std::size_t i = 0; i < image.pixels.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, image.pixels.data() + i, std::min<std::size_t>(8, image.pixels.size() - i));
+    hash.add(word);
+  }
+  return hash.value();
+}
+
+struct Painter::Room {
+  PainterSettings settings;
+  std::optional<render::VideoFile> video;
+  Painted painted;
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<render::Frame> waiting;
+  bool is_ending = false;
+  std::string error;
+  std::atomic<int> finished{0};
+  std::thread thread;
+
+  void fail(std::string sentence) {
+    const std::lock_guard lock(mutex);
+    if (error.empty()) error = std::move(sentence);
+    changed.notify_all();
+  }
+
+  std::optional<render::Frame> next() {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [this] { return !waiting.empty() || is_ending; });
+    if (waiting.empty()) return std::nullopt;
+    render::Frame frame = std::move(waiting.front());
+    waiting.pop_front();
+    changed.notify_all();
+    return frame;
+  }
+
+  /// Pictures to disk. False if that failed.
+  bool write(render::Image image, int number) {
+    if (!settings.frames_folder.empty()) {
+      const auto status =
+          render::write_png(fmt::format("{}/frame_{:06}.png", settings.frames_folder, number), image);
+      if (!status) return fail(status.error), false;
+    }
+    if (!video) return true;
+    const auto status = video->add(std::move(image));
+    if (!status) fail(status.error);
+    return status.ok();
+  }
+
+  void paint() {
+    const auto start = Clock::now();
+    render::Renderer renderer(settings.size, settings.quality);
+    painted.gl_renderer = renderer.gl_renderer();
+    auto last = start;
+    double encoded = 0.0;
+    for (int number = 0; auto frame = next(); ++number) {
+      if (number == 0) {  // compiles the shaders for this processor; not a frame's cost
+        (void)renderer.render(*frame);
+        painted.start = milliseconds_since(start);
+        last = Clock::now();
+      }
+      const auto begin = Clock::now();
+      render::Image image = renderer.render(*frame);
+      painted.render.push_back(milliseconds_since(begin));
+      painted.hashes.push_back(hash_image(image));
+      const auto written = Clock::now();
+      if (!write(std::move(image), number)) return;
+      const double encoder = video ? video->encode_cpu_ms() : 0.0;
+      painted.encode.push_back(encoder - encoded +
+                               (settings.frames_folder.empty() ? 0.0 : milliseconds_since(written)));
+      encoded = encoder;
+      painted.frame.push_back(milliseconds_since(last));
+      last = Clock::now();
+      finished.store(number + 1);
+    }
+  }
+};
+
+Painter::Painter(PainterSettings settings) : room_(std::make_unique<Room>()) {
+  room_->settings = std::move(settings);
+  const PainterSettings& s = room_->settings;
+  if (!s.video.empty()) {
+    render::VideoSettings video;
+    video.width = s.size.width;
+    video.height = s.size.height;
+    video.frames_per_second = s.frames_per_second;
+    room_->video.emplace(s.video, video);
+    if (!room_->video->status()) room_->error = room_->video->status().error;
+  }
+  room_->thread = std::thread([room = room_.get()] {
+    try {
+      room->paint();
+    } catch (const std::exception& fault) {
+      room->fail(fault.what());
+    }
+  });
+}
+
+Painter::~Painter() {
+  (void)finish();
+}
+
+bool Painter::add(render::Frame frame) {
+  std::unique_lock lock(room_->mutex);
+  room_->changed.wait(lock, [this] { return room_->waiting.size() < kMostWaiting || !room_->error.empty(); });
+  if (!room_->error.empty()) return false;
+  room_->waiting.push_back(std::move(frame));
+  room_->changed.notify_all();
+  return true;
+}
+
+bool Painter::finish() {
+  {
+    const std::lock_guard lock(room_->mutex);
+    room_->is_ending = true;
+    room_->changed.notify_all();
+  }
+  if (room_->thread.joinable()) {
+    room_->thread.join();
+    if (room_->video) {
+      const auto status = room_->video->close();
+      if (!status) room_->fail(status.error);
+    }
+  }
+  return error().empty();
+}
+
+int Painter::finished_frames() const {
+  return room_->finished.load();
+}
+
+std::string Painter::error() const {
+  const std::lock_guard lock(room_->mutex);
+  return room_->error;
+}
+
+const Painted& Painter::painted() const {
+  return room_->painted;
+}
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,57 @@
+// Draws and writes frames on a thread of its own while the world steps on: a frame is a value. The renderer
+// lives and dies on that thread; the video is encoded on a third one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/frame/frame.h"
+#include "render/renderer.h"
+
+namespace shatterbox::sandbox::run {
+
+struct PainterSettings {
+  render::Size size;
+  render::Quality quality = render::Quality::preview;
+  int frames_per_second = 60;
+  std::string video;          // empty: none
+  std::string frames_folder;  // empty: none
+};
+
+/// What became of the frames that were added; times in ms, by frame.
+struct Painted {
+  std::vector<std::uint64_t> hashes;
+  std::vector<double> frame, render, encode;
+  double start = 0.0;  // making the renderer and the warm-up picture
+  std::string gl_renderer;
+};
+
+class Painter {
+ public:
+  explicit Painter(PainterSettings settings);
+  ~Painter();
+  Painter(const Painter&) = delete;
+  Painter& operator=(const Painter&) = delete;
+
+  /// Hands a frame over; waits while two are waiting. False once something failed: see error().
+  bool add(render::Frame frame);
+  /// Waits for the last frame, closes the video. False if something failed.
+  bool finish();
+
+  int finished_frames() const;
+  std::string error() const;
+  /// After finish().
+  const Painted& painted() const;
+
+ private:
+  struct Room;
+  std::unique_ptr<Room> room_;
+};
+
+/// A hash of a picture's bytes and size.
+std::uint64_t hash_image(const render::Image& image);
+
+}  // namespace shatterbox::sandbox::run

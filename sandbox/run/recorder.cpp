@@ -1,0 +1,62 @@
+#include "sandbox/run/recorder.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace shatterbox::sandbox::run {
+
+void Recorder::note_step(const world::World& world) {
+  most_contacts_ = std::max(most_contacts_, world.report().contact.contacts);
+}
+
+void Recorder::note_frame(const world::World& world, double simulate) {
+  const world::WorldReport& report = world.report();
+  report::FrameRecord frame;
+  frame.simulate = frame.frame = simulate;
+  frame.contacts = most_contacts_;
+  for (const body::Body& body : world.bodies()) frame.awake += body.is_dynamic() && body.is_awake ? 1 : 0;
+  frame.impacts = static_cast<int>(report.impacts.size() - impacts_);
+  frame.breaks = static_cast<int>(report.breaks.size() - breaks_);
+  const auto& stages = report.stages.stages();  // in the order of their first call: new ones come last
+  stage_sums_.resize(stages.size(), 0.0);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (i == record.stages.size()) {
+      record.stages.emplace_back(stages[i].name, std::vector<double>(record.frames.size(), 0.0));
+    }
+    record.stages[i].second.push_back(stages[i].milliseconds - stage_sums_[i]);
+    stage_sums_[i] = stages[i].milliseconds;
+  }
+  record.frames.push_back(frame);
+  most_contacts_ = 0;
+  impacts_ = report.impacts.size();
+  breaks_ = report.breaks.size();
+}
+
+void Recorder::note_pictures(const Painted& painted) {
+  record.gl_renderer = painted.gl_renderer;
+  record.frame_hashes = painted.hashes;
+  record.load.emplace_back("renderer", painted.start);
+  for (std::size_t i = 0; i < std::min(painted.frame.size(), record.frames.size()); ++i) {
+    record.frames[i].frame = painted.frame[i];
+    record.frames[i].render = painted.render[i];
+    record.frames[i].encode = painted.encode[i];
+  }
+}
+
+void Recorder::finish(const world::World& world, double wall_seconds) {
+  record.wall_seconds = wall_seconds;
+  record.simulated_seconds = world.time();
+  record.state_hash = world.state_hash();
+  record.world = world.report();
+  for (const body::Body& body : world.bodies()) {
+    ++record.bodies_end;
+    record.pieces += world.ancestry(body.id).parent != 0 ? 1 : 0;
+    record.triangles_end += static_cast<long>(body.shape->surface.triangles.size());
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  record.peak_memory = static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,31 @@
+// Gathers what a run did, frame by frame, from the world's own report.
+#pragma once
+
+#include <string>
+
+#include "engine/world/world.h"
+#include "sandbox/report/run_record.h"
+#include "sandbox/run/painter.h"
+
+namespace shatterbox::sandbox::run {
+
+class Recorder {
+ public:
+  report::RunRecord record;
+
+  /// After one step.
+  void note_step(const world::World& world);
+  /// After the steps of one frame, which took `simulate` ms.
+  void note_frame(const world::World& world, double simulate);
+  /// Times and hashes of pictures.
+  void note_pictures(const Painted& painted);
+  /// At the end: counts, hash, memory, what was used.
+  void finish(const world::World& world, double wall_seconds);
+
+ private:
+  int most_contacts_ = 0;  // in this frame
+  std::size_t impacts_ = 0, breaks_ = 0;
+  std::vector<double> stage_sums_;
+};
+
+}  // namespace shatterbox::sandbox::run
