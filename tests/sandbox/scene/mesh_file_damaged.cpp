@@ -1,0 +1,105 @@
+// Files that are no meshes: each is refused in a sentence that says where; none brings the program down.
+#include "engine/core/random.h"
+#include "sandbox/scene/mesh_file.h"
+#include "tests/sandbox/scene/mesh_file_folder.h"
+
+namespace shatterbox::sandbox::scene {
+namespace {
+
+std::string fault_of(const std::filesystem::path& path) {
+  const auto mesh = read_mesh(path);
+  return mesh.ok() ? "(read)" : mesh.error();
+}
+
+void check_says(const std::string& sentence, const std::string& words) {
+  INFO(sentence);
+  CHECK(sentence.find(words) != std::string::npos);
+}
+
+const std::string kPlyHead =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+
+}  // namespace
+
+TEST_CASE("what is no file is refused") {
+  const MeshFileFolder folder;
+  check_says(fault_of(folder.path() / "none.obj"), "no such file");
+  check_says(fault_of(folder.path()), "folder");
+  for (const char* name : {"empty.obj", "empty.ply", "empty.stl"})
+    check_says(fault_of(folder.write(name, "")), "empty");
+  check_says(fault_of(folder.write("mesh.docx", "hello")), ".obj, .ply and .stl");
+}
+
+TEST_CASE("faults of an OBJ are told with their line") {
+  const MeshFileFolder folder;
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  check_says(fault_of(folder.write("a.obj", three + "v 1 2\nf 1 2 3\n")), "a.obj:4: a vertex needs three");
+  check_says(fault_of(folder.write("a.obj", "v 0 0 zero\n")), "a.obj:1: the coordinate \"zero\"");
+  check_says(fault_of(folder.write("a.obj", "v 0 1.2.3 0\n")), "a.obj:1: the coordinate \"1.2.3\"");
+  check_says(fault_of(folder.write("a.obj", three + "v nan 0 0\nf 1 2 4\n")),
+             "a.obj:4: the coordinate \"nan\"");
+  check_says(fault_of(folder.write("a.obj", three + "v 0 inf 0\nf 1 2 4\n")), "a.obj:4:");
+  check_says(fault_of(folder.write("a.obj", three + "v 0 1e999 0\nf 1 2 4\n")), "a.obj:4:");
+  check_says(fault_of(folder.write("a.obj", three + "\nf 1 2 4\n")), "a.obj:5: this face names vertex 4");
+  check_says(fault_of(folder.write("a.obj", three + "f 1 2 99999999999\n")), "a.obj:4:");
+  check_says(fault_of(folder.write("a.obj", three + "f 1 2 99999999999999999999\n")), "a.obj:4:");
+  check_says(fault_of(folder.write("a.obj", three + "f 0 1 2\n")), "a.obj:4: vertices count from 1");
+  check_says(fault_of(folder.write("a.obj", three + "f -1 -2 -4\n")), "a.obj:4:");
+  check_says(fault_of(folder.write("a.obj", three + "f 1 2\n")), "a.obj:4: a face needs at least three");
+  check_says(fault_of(folder.write("a.obj", three + "f 1 a 2\n")), "a.obj:4: the corner \"a\"");
+  check_says(fault_of(folder.write("a.obj", three)), "no face");
+  check_says(fault_of(folder.write("a.obj", "hello, this is a letter\n")), "no vertex");
+  check_says(fault_of(folder.write("a.obj", std::string("\x7f"
+                                                        "ELF\0\0\1\2",
+                                                        8))),
+             "binary");
+}
+
+TEST_CASE("faults of PLY and STL are told before memory is asked for") {
+  const MeshFileFolder folder;
+  check_says(fault_of(folder.write("a.ply", kPlyHead + "0 0 0\n1 0 0\n")), "cut short");
+  check_says(fault_of(folder.write("a.ply", kPlyHead + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")), "a.ply");
+  check_says(fault_of(folder.write("a.ply", kPlyHead + "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n")), "a.ply");
+  std::string huge = kPlyHead;
+  huge.replace(huge.find("vertex 3"), 8, "vertex 4000000000");
+  check_says(fault_of(folder.write("a.ply", huge)), "4000000000");
+  huge.replace(huge.find("4000000000"), 10, "99999999999999999999999");
+  check_says(fault_of(folder.write("a.ply", huge)), "no number");
+  check_says(fault_of(folder.write("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n")), "end_header");
+  check_says(fault_of(folder.write("a.ply", std::string(300, '\x9c'))), "no PLY");
+  check_says(fault_of(folder.write("a.stl", std::string(300, '\x9c'))), "cut short, or no STL");
+  check_says(fault_of(folder.write("a.stl", "solid x\nfacet normal 0 0 1\nouter loop\n")), "endsolid");
+  check_says(fault_of(folder.write("a.stl", std::string(84, '\0'))), "no triangles");
+}
+
+TEST_CASE("files damaged at random never bring the reader down") {
+  const MeshFileFolder folder;
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4 1\n";
+  const std::string ply = kPlyHead + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const std::string stl =
+      "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+      "0\nendloop\nendfacet\nendsolid x\n";
+  core::Random random(7);
+  int refused = 0;
+  for (int round = 0; round < 1500; ++round) {
+    const int kind = round % 3;
+    std::string bytes = kind == 0 ? obj : kind == 1 ? ply : stl;
+    for (std::uint64_t n = 1 + random.index(4); n > 0; --n) {
+      const std::size_t place = random.index(bytes.size());
+      bytes[place] = static_cast<char>(random.index(4) == 0 ? random.index(256) : 32 + random.index(90));
+    }
+    if (random.index(4) == 0) bytes.resize(random.index(bytes.size()));
+    const auto mesh = read_mesh(folder.write(kind == 0 ? "r.obj" : kind == 1 ? "r.ply" : "r.stl", bytes));
+    if (!mesh) {
+      ++refused;
+      CHECK(!mesh.error().empty());
+      continue;
+    }
+    for (const auto& t : mesh.value().triangles)
+      for (const int v : t) REQUIRE((v >= 0 && static_cast<std::size_t>(v) < mesh.value().positions.size()));
+  }
+  CHECK(refused > 100);
+}
+
+}  // namespace shatterbox::sandbox::scene
