@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 
 #include "engine/core/result.h"
 #include "engine/stress/shell_system.h"
@@ -37,17 +36,16 @@ class ShellSystemCache {
   int count() const;
 
  private:
-  struct Slot {
-    std::once_flag is_made;
-    std::optional<System> system;
-  };
   const System& get(int key, double screening);
 
   std::shared_ptr<const ShellStiffness> stiffness_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;
   ShellSupport support_;
-  mutable std::mutex mutex_;                    // guards slots_, never held while a system is made
-  std::map<int, std::unique_ptr<Slot>> slots_;  // by exponent
+  // Guards systems_, and is never held while one is made: a thread that waits inside a parallel loop may pick
+  // up work that asks for the same system. Two threads that ask at once both make it, to the same bits, and
+  // the first is kept.
+  mutable std::mutex mutex_;
+  std::map<int, System> systems_;  // by exponent
 };
 
 }  // namespace shatterbox::stress

@@ -1,0 +1,122 @@
+#include "engine/stress/contact_duration.h"
+
+#include <algorithm>
+
+#include "engine/core/elementary.h"
+#include "engine/stress/shell_system_cache.h"
+
+namespace shatterbox::stress {
+namespace {
+
+/// 2.9432... (15/16)^(2/5), 2.9432... = (4 sqrt(pi) / 5) Gamma(2/5) / Gamma(9/10).
+constexpr double kHertzDuration = 2.8682656991953315;
+constexpr double kRigidModulus = 1e13;  // Pa
+constexpr int kSteps = 6;               // of the fixed point
+
+double inverse_modulus(const ContactSurface& surface) {
+  if (!(surface.youngs_modulus > 0.0)) return 0.0;
+  return (1.0 - surface.poisson_ratio * surface.poisson_ratio) / surface.youngs_modulus;
+}
+
+}  // namespace
+
+HertzContact make_hertz_contact(const ContactSurface& a, const ContactSurface& b, double least_radius,
+                                double largest_radius) {
+  const double compliance = inverse_modulus(a) + inverse_modulus(b);
+  double curvature = 0.0;
+  for (const ContactSurface* surface : {&a, &b})
+    if (surface->radius > 0.0) curvature += 1.0 / std::clamp(surface->radius, least_radius, largest_radius);
+  return {compliance > 0.0 ? 1.0 / compliance : kRigidModulus,
+          curvature > 0.0 ? 1.0 / curvature : largest_radius};
+}
+
+double hertz_stiffness(const HertzContact& contact) {
+  return 4.0 / 3.0 * contact.modulus * core::sqrt(contact.radius);
+}
+
+double hertz_duration(const HertzContact& contact, double mass, double speed) {
+  const double fifth_power = mass / contact.modulus * (mass / contact.modulus) / (contact.radius * speed);
+  return kHertzDuration * core::pow(fifth_power, 0.2);
+}
+
+double peak_force(const HertzContact& contact, double mass, double speed, double body_compliance) {
+  const double stiffness = hertz_stiffness(contact);
+  const double twice_energy = mass * speed * speed;
+  if (!(twice_energy > 0.0)) return 0.0;
+  // Hertz alone: (2/5) stiffness depth^(5/2) is the energy.
+  const double depth = core::pow(1.25 * twice_energy / stiffness, 0.4);
+  const double hertz_force = stiffness * depth * core::sqrt(depth);
+  // With F = hertz_force y^3 the energies are y^5 + spring y^6 = 1: convex, so Newton's steps come down
+  // from 1.
+  const double spring = body_compliance * hertz_force * hertz_force / twice_energy;
+  double y = 1.0;
+  for (int step = 0; step < 200; ++step) {
+    const double y4 = y * y * y * y;
+    const double correction = (y4 * y * (1.0 + spring * y) - 1.0) / (y4 * (5.0 + 6.0 * spring * y));
+    y -= correction;
+    if (correction <= 1e-15 * y) break;
+  }
+  return hertz_force * y * y * y;
+}
+
+double hertz_compliance(const HertzContact& contact, double force) {
+  // depth / F with depth = (F / stiffness)^(2/3)
+  const double stiffness = hertz_stiffness(contact);
+  return 1.0 / core::pow(stiffness * stiffness * force, 1.0 / 3.0);
+}
+
+double hertz_patch_radius(const HertzContact& contact, double force) {
+  return core::pow(0.75 * force * contact.radius / contact.modulus, 1.0 / 3.0);
+}
+
+double series_duration(double mass, double contact_compliance, double body_compliance) {
+  return core::kPi * core::sqrt(mass * (contact_compliance + body_compliance));
+}
+
+ImpactDuration find_duration(
+    const DurationProblem& problem,
+    const std::function<BodyCompliance(bool is_screened, int exponent)>& compliance) {
+  const double mass = problem.mass;
+  const double speed = problem.speed;
+  ImpactDuration result;
+  const auto solve = [&](bool is_screened, int exponent) {
+    result.is_screened = is_screened;
+    result.screening_exponent = exponent;
+    result.body = compliance(is_screened, exponent);
+    ++result.solve_count;
+    const double counted = problem.counts_inertia && is_screened ? result.body.total : result.body.elastic;
+    if (problem.given_duration > 0.0) {
+      const double all = problem.given_duration / core::kPi * (problem.given_duration / core::kPi) / mass;
+      const double most = speed * core::sqrt(mass / std::max(result.body.elastic, 1e-300));
+      result.duration = problem.given_duration;
+      result.contact_compliance = std::max(0.0, all - counted);
+      result.peak_force = std::min(core::kPi * mass * speed / problem.given_duration, most);
+      return;
+    }
+    result.peak_force = peak_force(problem.contact, mass, speed, counted);
+    result.contact_compliance = hertz_compliance(problem.contact, result.peak_force);
+    result.duration = series_duration(mass, result.contact_compliance, counted);
+  };
+
+  const auto is_long = [&] { return result.duration >= 0.5 * problem.first_period; };
+  if (problem.given_duration > 0.0) {
+    result.duration = problem.given_duration;
+    if (is_long())
+      solve(false, 0);
+    else
+      solve(true, quantise_screening(1.0 / problem.given_duration));
+    return result;
+  }
+  solve(false, 0);
+  if (is_long()) return result;
+  std::vector<int> tried;
+  for (int step = 0; step < kSteps; ++step) {
+    const int exponent = quantise_screening(1.0 / result.duration);
+    if (std::find(tried.begin(), tried.end(), exponent) != tried.end()) break;
+    tried.push_back(exponent);
+    solve(true, exponent);
+  }
+  return result;
+}
+
+}  // namespace shatterbox::stress

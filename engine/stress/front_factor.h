@@ -1,0 +1,39 @@
+// Numeric part of the multifrontal Cholesky factorisation: dense fronts in tiles of four rows, every sum in a
+// fixed order whatever the address of the data or the number of threads, so that the same matrix gives the
+// same bits.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/stress/front_tree.h"
+
+namespace shatterbox::stress {
+
+/// The lower triangle of an element's 12 x 12 matrix, column after column, and a factor. Unknowns: nodes 0,
+/// 1, 2 (three each), then nodes 3, 4, 5 (one each).
+struct ElementEntries {
+  const double* lower = nullptr;
+  double factor = 1.0;
+};
+
+class FrontFactor {
+ public:
+  /// Factors sum of elements + diag(diagonal). `diagonal`: one entry an unknown, in order of elimination.
+  /// `element(e)` gives the entries of element e and may be called from several threads. None if a pivot is
+  /// not positive.
+  static std::optional<FrontFactor> make(const FrontTree& tree, const std::vector<double>& diagonal,
+                                         const std::function<ElementEntries(int element)>& element);
+
+  /// Solves in place; each column of `x` (unknowns in order of elimination) is one right-hand side.
+  void solve(const FrontTree& tree, Eigen::MatrixXd& x) const;
+
+ private:
+  std::vector<std::size_t> first_;  // begin of each front's panel in entries_
+  std::vector<double>
+      entries_;  // panels: strips of four rows, pivot rows then rows below; the diagonal is inverted
+};
+
+}  // namespace shatterbox::stress

@@ -1,0 +1,159 @@
+#include "engine/stress/rigid_modes.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numeric>
+
+#include "engine/core/elementary.h"
+#include "engine/stress/shell_stiffness.h"
+
+namespace shatterbox::stress {
+namespace {
+
+using Size = std::size_t;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+Size at(int i) {
+  return static_cast<Size>(i);
+}
+
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
+  return i;
+}
+
+}  // namespace
+
+RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>& positions,
+                       const std::vector<Vec3>& edge_directions, const VecX& mass,
+                       const std::vector<char>& is_clamped)
+    : mass_(mass) {
+  find_parts(mesh);
+  const Size parts = part_mass_.size();
+  modes_ = Modes::Zero(mass.size(), 6);
+  std::vector<Vec3> centre(parts, Vec3::Zero()), low(parts), high(parts);
+  std::vector<char> has_box(parts, 0);
+  for (Size v = 0; v < positions.size(); ++v) {
+    const int dof = vertex_dof(static_cast<int>(v));
+    if (part_[at(dof)] < 0) continue;
+    const Size part = at(part_[at(dof)]);
+    part_mass_[part] += mass(dof);
+    centre[part] += mass(dof) * positions[v];
+    low[part] = has_box[part] != 0 ? Vec3(low[part].cwiseMin(positions[v])) : positions[v];
+    high[part] = has_box[part] != 0 ? Vec3(high[part].cwiseMax(positions[v])) : positions[v];
+    has_box[part] = 1;
+  }
+  part_size_.resize(parts);
+  for (Size part = 0; part < parts; ++part) {
+    centre[part] /= part_mass_[part];
+    part_size_[part] = core::sqrt((high[part] - low[part]).squaredNorm());
+  }
+
+  // Translations, and rotations about the centre of mass, scaled so that the part's size counts as one
+  // radian's arm.
+  std::vector<std::vector<int>> dofs(parts);
+  for (Size v = 0; v < positions.size(); ++v) {
+    const int dof = vertex_dof(static_cast<int>(v));
+    if (part_[at(dof)] < 0) continue;
+    const Size part = at(part_[at(dof)]);
+    const Vec3 arm = (positions[v] - centre[part]) / part_size_[part];
+    for (int axis = 0; axis < 3; ++axis) {
+      modes_(dof + axis, axis) = 1.0;
+      for (int turn = 0; turn < 3; ++turn) modes_(dof + axis, 3 + turn) = Vec3::Unit(turn).cross(arm)(axis);
+      dofs[part].push_back(dof + axis);
+    }
+  }
+  for (Size e = 0; e < edge_directions.size(); ++e) {
+    const int dof = edge_dof(mesh, static_cast<int>(e));
+    if (part_[at(dof)] < 0) continue;
+    const Size part = at(part_[at(dof)]);
+    modes_.block<1, 3>(dof, 3) = edge_directions[e].transpose() / part_size_[part];
+    dofs[part].push_back(dof);
+  }
+  for (Size part = 0; part < parts; ++part) orthonormalise(static_cast<int>(part), dofs[part], is_clamped);
+}
+
+void RigidModes::find_parts(const geometry::ShellMesh& mesh) {
+  std::vector<int> parent(mesh.vertex_source.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<char> is_used(parent.size(), 0);
+  for (const geometry::ShellCell& cell : mesh.cells)
+    for (const int vertex : cell.vertices) {
+      is_used[at(vertex)] = 1;
+      const int a = find_root(parent, vertex);
+      const int b = find_root(parent, cell.vertices[0]);
+      if (a != b) parent[at(std::max(a, b))] = std::min(a, b);
+    }
+  part_.assign(at(mesh.degree_of_freedom_count()), -1);
+  std::vector<int> number(parent.size(), -1);
+  int count = 0;
+  for (int v = 0; v < static_cast<int>(parent.size()); ++v) {
+    if (is_used[at(v)] == 0) continue;
+    int& part = number[at(find_root(parent, v))];
+    if (part < 0) part = count++;
+    for (int axis = 0; axis < 3; ++axis) part_[at(vertex_dof(v) + axis)] = part;
+  }
+  for (const geometry::ShellCell& cell : mesh.cells)
+    for (const int edge : cell.edges)
+      part_[at(edge_dof(mesh, edge))] = part_[at(vertex_dof(cell.vertices[0]))];
+  part_mass_.assign(at(count), 0.0);
+}
+
+void RigidModes::orthonormalise(int part, const std::vector<int>& dofs, const std::vector<char>& is_clamped) {
+  static_cast<void>(part);
+  Mat6 held = Mat6::Zero();
+  for (const int dof : dofs)
+    if (is_clamped[at(dof)] != 0) held += modes_.row(dof).transpose() * modes_.row(dof);
+  Mat6 basis = Mat6::Identity();
+  std::array<bool, 6> is_free{true, true, true, true, true, true};
+  if (const double scale = held.trace(); scale > 0.0) {
+    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(held);
+    basis = eigen.eigenvectors();
+    for (int i = 0; i < 6; ++i) is_free[at(i)] = eigen.eigenvalues()(i) < 1e-9 * scale;
+  }
+  for (const int dof : dofs) {
+    const Vec6 row = basis.transpose() * modes_.row(dof).transpose();
+    for (int i = 0; i < 6; ++i) modes_(dof, i) = is_free[at(i)] && is_clamped[at(dof)] == 0 ? row(i) : 0.0;
+  }
+  // Gram and Schmidt in the product with the mass, twice for the last digits.
+  for (int i = 0; i < 6; ++i) {
+    if (!is_free[at(i)]) continue;
+    double before = 0.0;
+    for (const int dof : dofs) before += mass_(dof) * modes_(dof, i) * modes_(dof, i);
+    for (int pass = 0; pass < 2; ++pass)
+      for (int j = 0; j < i; ++j) {
+        if (!is_free[at(j)]) continue;
+        double overlap = 0.0;
+        for (const int dof : dofs) overlap += mass_(dof) * modes_(dof, i) * modes_(dof, j);
+        for (const int dof : dofs) modes_(dof, i) -= overlap * modes_(dof, j);
+      }
+    double norm = 0.0;
+    for (const int dof : dofs) norm += mass_(dof) * modes_(dof, i) * modes_(dof, i);
+    is_free[at(i)] = norm > 1e-20 * before && norm > 0.0;
+    const double factor = is_free[at(i)] ? 1.0 / core::sqrt(norm) : 0.0;
+    for (const int dof : dofs) modes_(dof, i) *= factor;
+    if (is_free[at(i)]) ++mode_count_;
+  }
+}
+
+void RigidModes::remove_motion(VecX& x) const {
+  std::vector<Vec6> amount(part_mass_.size(), Vec6::Zero());
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (const int part = part_[static_cast<Size>(i)]; part >= 0)
+      amount[at(part)] += (mass_(i) * x(i)) * modes_.row(i).transpose();
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (const int part = part_[static_cast<Size>(i)]; part >= 0) x(i) -= modes_.row(i).dot(amount[at(part)]);
+}
+
+void RigidModes::balance(VecX& b) const {
+  std::vector<Vec6> amount(part_mass_.size(), Vec6::Zero());
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    if (const int part = part_[static_cast<Size>(i)]; part >= 0)
+      amount[at(part)] += b(i) * modes_.row(i).transpose();
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    if (const int part = part_[static_cast<Size>(i)]; part >= 0)
+      b(i) -= mass_(i) * modes_.row(i).dot(amount[at(part)]);
+}
+
+}  // namespace shatterbox::stress

@@ -1,0 +1,45 @@
+// The rigid motions of the connected parts of a shell that its support allows, orthonormal in mass: what
+// inertia relief takes out of a load and what a displacement is free by.
+#pragma once
+
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/geometry/shell_mesh.h"
+
+namespace shatterbox::stress {
+
+class RigidModes {
+ public:
+  RigidModes() = default;
+
+  /// `positions`: |virtual vertices| x 3, `edge_directions`: |virtual edges|, unit (or empty: rotations do
+  /// not count), `mass`: |dof|, `is_clamped`: |dof|. All lengths in one unit.
+  RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>& positions,
+             const std::vector<Vec3>& edge_directions, const VecX& mass, const std::vector<char>& is_clamped);
+
+  /// x -= R R^T M x: no rigid motion in x.
+  void remove_motion(VecX& x) const;
+  /// b -= M R R^T b: no resultant in the load.
+  void balance(VecX& b) const;
+
+  int part_count() const { return static_cast<int>(part_mass_.size()); }
+  int mode_count() const { return mode_count_; }
+  const std::vector<int>& part_of_dof() const { return part_; }
+  /// Mass and diagonal of the bounding box of each part.
+  const std::vector<double>& part_mass() const { return part_mass_; }
+  const std::vector<double>& part_size() const { return part_size_; }
+
+ private:
+  using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+  void find_parts(const geometry::ShellMesh& mesh);
+  void orthonormalise(int part, const std::vector<int>& dofs, const std::vector<char>& is_clamped);
+
+  VecX mass_;
+  std::vector<int> part_;  // |dof|, -1 for unknowns without a cell
+  std::vector<double> part_mass_, part_size_;
+  Modes modes_;  // |dof| x 6: of the unknown's own part; zero columns where the support holds
+  int mode_count_ = 0;
+};
+
+}  // namespace shatterbox::stress

@@ -1,0 +1,53 @@
+#include "engine/stress/shell_system_cache.h"
+
+#include <cmath>
+#include <limits>
+
+#include "engine/core/elementary.h"
+
+namespace shatterbox::stress {
+namespace {
+
+constexpr int kUnscreened = std::numeric_limits<int>::min();
+
+}  // namespace
+
+int quantise_screening(double screening) {
+  // frexp and ldexp are exact: screening = fraction 2^exponent with fraction in [1/2, 1).
+  int exponent = 0;
+  const double fraction = std::frexp(screening, &exponent);
+  return fraction * fraction < 0.5 ? exponent - 1 : exponent;
+}
+
+double screening_of(int exponent) {
+  return std::ldexp(1.0, exponent);
+}
+
+ShellSystemCache::ShellSystemCache(std::shared_ptr<const ShellStiffness> stiffness,
+                                   std::shared_ptr<const geometry::ShellMesh> mesh, ShellSupport support)
+    : stiffness_(std::move(stiffness)), mesh_(std::move(mesh)), support_(std::move(support)) {}
+
+const ShellSystemCache::System& ShellSystemCache::get(int key, double screening) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto kept = systems_.find(key); kept != systems_.end()) return kept->second;
+  }
+  System made = ShellSystem::make(stiffness_, *mesh_, screening, support_);
+  const std::lock_guard lock(mutex_);
+  return systems_.emplace(key, std::move(made)).first->second;
+}
+
+const ShellSystemCache::System& ShellSystemCache::unscreened() {
+  return get(kUnscreened, 0.0);
+}
+
+const ShellSystemCache::System& ShellSystemCache::screened(int exponent) {
+  return get(exponent, screening_of(exponent));
+}
+
+int ShellSystemCache::count() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(systems_.size());
+}
+
+}  // namespace shatterbox::stress

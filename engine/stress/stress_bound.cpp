@@ -1,0 +1,70 @@
+#include "engine/stress/stress_bound.h"
+
+#include <algorithm>
+
+#include "engine/core/elementary.h"
+
+// Why the bound holds. One cell, stress sigma_m + (2 z / t) sigma_b over the thickness, S the compliance of
+// plane stress: its energy is W = V / 2 (sigma_m S sigma_m + sigma_b S sigma_b / 3), and sigma S sigma >= (1
+// - nu^2) / E sigma_1^2 (least over the second principal stress, at nu sigma_1). With e_m + e_b / 3 = W / V
+// the face stress is at most sqrt(2 E / (1 - nu^2)) (sqrt(e_m) + sqrt(e_b)) <= sqrt(2 E / (1 - nu^2) * 4 W /
+// V), by Cauchy and Schwarz with 1 and
+// 3. The cell's volume is the one its stiffness has: t A', A' = max(A, floor).
+// An average with weights A_i / S, S = sum A_i: the first principal stress is convex, so it is at most
+// sum A_i / S sqrt(k W_i / (t A'_i)) <= sqrt(k W / t) sqrt(sum A_i^2 / (S^2 A'_i)), again by Cauchy and
+// Schwarz.
+
+namespace shatterbox::stress {
+namespace {
+
+using Size = std::size_t;
+
+double stiff_area(const geometry::ShellMesh& mesh, Size cell) {
+  return stiffness_fraction(*mesh.elements, mesh.cells[cell]) *
+         geometry::element_area(*mesh.elements, mesh.cells[cell].element);
+}
+
+}  // namespace
+
+double least_stressed_area(const geometry::ShellMesh& mesh) {
+  double least = 0.0;
+  for (Size c = 0; c < mesh.cells.size(); ++c) {
+    const double area = stiff_area(mesh, c);
+    least = c == 0 ? area : std::min(least, area);
+  }
+  return least;
+}
+
+double least_stressed_area(const geometry::ShellMesh& mesh,
+                           const std::vector<geometry::CellContact>& contacts) {
+  std::vector<double> sum(mesh.cells.size()), weighted(mesh.cells.size());
+  const auto add = [&](Size to, Size from) {
+    const double area = mesh.cells[from].area;
+    sum[to] += area;
+    weighted[to] += area * area / stiff_area(mesh, from);
+  };
+  for (Size c = 0; c < mesh.cells.size(); ++c) add(c, c);
+  for (const geometry::CellContact& contact : contacts) {
+    add(static_cast<Size>(contact.cell_a), static_cast<Size>(contact.cell_b));
+    add(static_cast<Size>(contact.cell_b), static_cast<Size>(contact.cell_a));
+  }
+  double least = 0.0;
+  bool has_any = false;
+  for (Size c = 0; c < mesh.cells.size(); ++c) {
+    if (!(weighted[c] > 0.0))
+      return least_stressed_area(mesh);  // a cell without area: no average to speak of
+    const double area = sum[c] * sum[c] / weighted[c];
+    least = has_any ? std::min(least, area) : area;
+    has_any = true;
+  }
+  return least;
+}
+
+double stress_bound(const ShellProperties& properties, double least_area, double energy) {
+  const double nu = properties.poisson_ratio;
+  if (!(energy > 0.0) || !(least_area > 0.0)) return 0.0;
+  return core::sqrt(8.0 * properties.youngs_modulus / (1.0 - nu * nu) * energy /
+                    (properties.thickness * least_area));
+}
+
+}  // namespace shatterbox::stress
