@@ -119,6 +119,10 @@ struct Decision {
   double factor_ms = 0.0, solve_ms = 0.0, trace_ms = 0.0;  // wall time; enters no state
 };
 
+/// Fills in what is kept between impacts where it is null: the systems (nothing is factored yet) and the
+/// flaws.
+void prepare_subject(ShellSubject& subject);
+
 /// The verdict, and the cracked mesh where it breaks.
 Decision decide_shell(const ShellSubject& subject, const ShellImpact& impact,
                       const FractureSettings& settings = {});

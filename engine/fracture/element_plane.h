@@ -1,0 +1,58 @@
+// The plane of one element: its facet frame and the maps between barycentric weights, plane coordinates and
+// space.
+#pragma once
+
+#include <vector>
+
+#include "engine/core/elementary.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/shell_mesh.h"
+
+namespace shatterbox::fracture {
+
+struct ElementPlane {
+  Vec3 origin = Vec3::Zero();
+  Mat3 frame = Mat3::Identity();     // columns e1, e2, normal
+  Mat2 from_weights = Mat2::Zero();  // plane coordinates of corners 1 and 2
+  Mat2 to_weights = Mat2::Zero();
+  double scale = 0.0;  // m, sqrt(2 area); 0 for an element without area: nothing is cut there
+
+  Vec2 flat(const Vec2& barycentric) const { return from_weights * barycentric; }
+  Vec2 weights(const Vec2& flat_point) const { return to_weights * flat_point; }
+  Vec3 space(const Vec2& flat_point) const {
+    return origin + frame.col(0) * flat_point.x() + frame.col(1) * flat_point.y();
+  }
+  Vec3 direction(const Vec2& d) const { return frame.col(0) * d.x() + frame.col(1) * d.y(); }
+  Vec2 flat_direction(const Vec3& d) const { return {frame.col(0).dot(d), frame.col(1).dot(d)}; }
+};
+
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+inline ElementPlane make_element_plane(const geometry::ShellElements& elements, int element) {
+  ElementPlane plane;
+  const geometry::Triangle& t = elements.mesh.triangles[static_cast<std::size_t>(element)];
+  const auto corner = [&](std::size_t i) -> const Vec3& {
+    return elements.mesh.positions[static_cast<std::size_t>(t[i])];
+  };
+  plane.origin = corner(0);
+  plane.frame = facet_frame(elements, element);
+  plane.from_weights.col(0) = plane.flat_direction(corner(1) - corner(0));
+  plane.from_weights.col(1) = plane.flat_direction(corner(2) - corner(0));
+  const double determinant = plane.from_weights.determinant();
+  if (!(determinant > 1e-14 * plane.from_weights.squaredNorm())) return plane;
+  plane.to_weights = plane.from_weights.inverse();
+  plane.scale = core::sqrt(determinant);
+  return plane;
+}
+
+inline std::vector<ElementPlane> make_element_planes(const geometry::ShellElements& elements) {
+  std::vector<ElementPlane> planes;
+  planes.reserve(elements.mesh.triangles.size());
+  for (std::size_t t = 0; t < elements.mesh.triangles.size(); ++t)
+    planes.push_back(make_element_plane(elements, static_cast<int>(t)));
+  return planes;
+}
+
+}  // namespace shatterbox::fracture

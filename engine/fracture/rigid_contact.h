@@ -1,0 +1,35 @@
+// One load on a cracked body: the pieces under an indenter sink together, each taking the share of the force
+// that its stiffness gives it. A fixed load pattern would let one loose piece take all.
+#pragma once
+
+#include <vector>
+
+#include "engine/geometry/shell_mesh.h"
+#include "engine/stress/shell_load.h"
+#include "engine/stress/shell_system.h"
+
+namespace shatterbox::fracture {
+
+struct ContactPress {
+  Vec3 point = Vec3::Zero();      // m
+  Vec3 direction = Vec3::Zero();  // unit
+  double radius = 0.0;            // m, of the patch
+  double hertz_compliance = 0.0;  // m/N
+};
+
+/// Answer to a unit force.
+struct ContactAnswer {
+  VecX displacement;                // |dof|
+  double compliance = 0.0;          // m/N, force . displacement
+  double elastic_compliance = 0.0;  // m/N, displacement . K displacement
+  double residual = 0.0;
+  int groups = 0;  // pieces that carry the load
+};
+
+/// Each load by itself under a unit force, on one factor. `mass` is the lumped mass (|dof|), for the elastic
+/// part of a screened compliance.
+std::vector<ContactAnswer> press(const stress::ShellSystem& system, const geometry::ShellMesh& mesh,
+                                 const std::vector<geometry::CellContact>& contacts, const VecX& mass,
+                                 const std::vector<ContactPress>& loads);
+
+}  // namespace shatterbox::fracture
