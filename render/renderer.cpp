@@ -11,24 +11,25 @@
 #include "render/context/context.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/framebuffer.h"
-#include "render/pass/backdrop.h"
 #include "render/pass/frame_block.h"
 #include "render/pass/glass.h"
-#include "render/pass/ground.h"
+#include "render/pass/light.h"
 #include "render/pass/mesh_store.h"
 #include "render/pass/occlusion.h"
 #include "render/pass/overlay.h"
 #include "render/pass/shadow.h"
 #include "render/pass/surface.h"
+#include "render/pass/tiles.h"
 
 namespace shatterbox::render {
 namespace {
 
 struct Level {
-  int samples, shadow_map, shadow_taps, occlusion_taps;
+  int samples_across;  // a pixel has as many down
+  int shadow_map, shadow_taps, occlusion_taps;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{4, 1280, 20, 10} : Level{1, 768, 8, 5};
+  return quality == Quality::full ? Level{2, 1024, 20, 9} : Level{1, 640, 8, 5};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
@@ -80,30 +81,29 @@ struct Renderer::Rooms {
   Quality quality;
   Level level;
   Context context;
-  gpu::Framebuffer drawn;     // multisampled in full quality
-  gpu::Framebuffer resolved;  // read back
+  gpu::Framebuffer drawn;  // sRGB, read back
   gpu::Buffer block;
   pass::MeshStore meshes;
+  pass::Tiles tiles;
   pass::ShadowPass shadow;
-  pass::OcclusionPass occlusion;
   pass::SurfacePass surface;
-  pass::GroundPass ground;
-  pass::BackdropPass backdrop;
+  pass::OcclusionPass occlusion;
+  pass::LightPass light;
   pass::GlassPass glass;
   PassTimes times;
-  bool is_timed = false;
+  bool is_timed = false, has_shadow = false;
 
   Rooms(Size size_, Quality quality_)
       : size(size_),
         quality(quality_),
         level(level_of(quality_)),
-        drawn(size.width, size.height, level.samples, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT32F),
-        resolved(size.width, size.height, 1, GL_SRGB8_ALPHA8, 0),
+        drawn(size.width, size.height, 1, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT32F),
+        tiles(size.width, size.height),
         shadow(level.shadow_map),
-        occlusion(size.width, size.height, level.occlusion_taps),
-        surface(level.shadow_taps),
-        ground(level.shadow_taps),
-        glass(level.shadow_taps) {
+        surface(size.width * level.samples_across, size.height * level.samples_across),
+        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across),
+        light(level.shadow_taps, level.samples_across, quality_ == Quality::preview),
+        glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
     glEnable(GL_FRAMEBUFFER_SRGB);
@@ -115,32 +115,34 @@ struct Renderer::Rooms {
     pass::FrameBlock values = pass::make_frame_block(frame, size.width, size.height);
     meshes.prepare(frame, values.clip_from_world);
     shadow.fit(frame, meshes, values);
+    tiles.find(meshes, values);
     has_shadow = values.sun_radiance.w > 0.0F;
     block.assign(std::span<const pass::FrameBlock>(&values, 1));
     block.bind_uniform(0);
   }
 
-  void draw_scene(const Frame& frame, PassClock& clock) {
+  void draw(PassClock& clock) {
+    if (has_shadow) shadow.run(meshes);
+    clock.mark("shadow");
+    surface.run(meshes);
+    if (tiles.has_glass()) surface.run_glass(meshes);
+    clock.mark("surface");
+    occlusion.run(surface.opaque().depth);
+    clock.mark("occlusion");
     drawn.bind();
-    glClearColor(0, 0, 0, 1);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     shadow.bind();
     occlusion.bind();
-    surface.run(meshes);
-    clock.mark("surface");
-    if (frame.ground) ground.run();
-    clock.mark("ground");
-    backdrop.run();
-    clock.mark("backdrop");
-    glass.run(meshes);
+    meshes.bind_paints();
+    light.run(surface.opaque(), tiles);
+    clock.mark("light");
+    if (tiles.has_glass()) glass.run(surface, tiles);
     clock.mark("glass");
   }
 
   Image read_back() const {
-    const gpu::Framebuffer& last = level.samples > 1 ? resolved : drawn;
     const auto width = static_cast<std::size_t>(size.width), height = static_cast<std::size_t>(size.height);
     std::vector<std::uint8_t> rgba(width * height * 4);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, last.name());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn.name());
     glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     Image image(size.width, size.height);
     for (std::size_t y = 0; y < height; ++y) {  // GL's rows run from below
@@ -150,8 +152,6 @@ struct Renderer::Rooms {
     }
     return image;
   }
-
-  bool has_shadow = false;
 };
 
 Renderer::Renderer(Size size, Quality quality) {
@@ -168,13 +168,7 @@ Image Renderer::render(const Frame& frame) {
   PassClock clock(r.is_timed, r.times);
   r.fill_block(frame);
   clock.mark("upload");
-  if (r.has_shadow) r.shadow.run(r.meshes);
-  clock.mark("shadow");
-  r.occlusion.run(r.meshes, frame.ground.has_value());
-  clock.mark("occlusion");
-  r.draw_scene(frame, clock);
-  if (r.level.samples > 1) r.drawn.resolve_to(r.resolved);
-  clock.mark("resolve");
+  r.draw(clock);
   Image image = r.read_back();
   clock.mark("read back");
   pass::draw_overlay(image, frame);

@@ -2,7 +2,7 @@
 #include "common/frame.glsl"
 struct DrawRow {
   mat4 world_from_body;
-  uvec4 looks_scalars;
+  uvec4 rows;
 };
 layout(std430, binding = 0) readonly buffer Draws { DrawRow draws[]; };
 layout(location = 0) in vec3 position;

@@ -88,4 +88,8 @@ void Program::set(int location, int value) {
   glUniform1i(location, value);
 }
 
+void Program::set(int location, float value) {
+  glUniform1f(location, value);
+}
+
 }  // namespace shatterbox::render::gpu

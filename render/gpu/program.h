@@ -17,7 +17,9 @@ class Program {
   // as "TAPS 16". Throws std::runtime_error with the compiler's words.
   Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines = {});
   void use() const;
-  static void set(int location, int value);  // a uniform of the program in use
+  // Uniforms of the program in use.
+  static void set(int location, int value);
+  static void set(int location, float value);
 
  private:
   Handle<delete_program> handle_;

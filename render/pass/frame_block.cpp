@@ -74,9 +74,12 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   const float reach = 0.28F * slope * distance;
   block.occlusion_scale = glm::vec4(near, far * near / (far - near), far / (far - near), reach);
   block.view_ray = glm::vec4(slope * w / h, slope, 0.0F, 0.0F);
+  const glm::vec3 right = glm::normalize(glm::cross(forward, up));
+  block.view_forward = glm::vec4(forward, 0.0F);
+  block.view_right = glm::vec4(right * slope * w / h, 0.0F);
+  block.view_up = glm::vec4(glm::cross(right, forward) * slope, 0.0F);
   const float range = frame.overlay.most - frame.overlay.least;
-  block.scalar_range = glm::vec4(frame.overlay.least, range != 0.0F ? 1.0F / range : 0.0F,
-                                 static_cast<float>(frame.overlay.kind), 0.0F);
+  block.scalar_range = glm::vec4(frame.overlay.least, range != 0.0F ? 1.0F / range : 0.0F, 0.0F, 0.0F);
   return block;
 }
 

@@ -17,6 +17,7 @@ struct FrameBlock {
   glm::vec4 ground_colour, ground_place;
   glm::vec4 viewport, glow_centre;
   glm::vec4 occlusion_scale, view_ray;
+  glm::vec4 view_forward, view_right, view_up;
   glm::vec4 shadow_texel;
   glm::vec4 scalar_range;
 };

@@ -6,28 +6,26 @@
 
 namespace shatterbox::render::pass {
 
-GlassPass::GlassPass(int shadow_taps)
-    : program_("surface.vert", "glass.frag", {"SHADOW_TAPS " + std::to_string(shadow_taps)}) {}
+GlassPass::GlassPass(int samples_across) {
+  const std::string side = "SIDE " + std::to_string(samples_across);
+  near_ = gpu::Program("tile.vert", "glass.frag", {side, "GLASS"});
+  far_ = gpu::Program("tile.vert", "glass.frag", {side, "GLASS", "FAR_LAYER"});
+}
 
-void GlassPass::run(const MeshStore& meshes) const {
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
-  glDepthMask(GL_FALSE);
+void GlassPass::run(const SurfacePass& surface, const Tiles& tiles) const {
+  glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC1_COLOR);
-  glEnable(GL_CULL_FACE);
-  meshes.bind_vertices();
-  program_.use();
-  const auto& items = meshes.items();
-  for (auto item = items.rbegin(); item != items.rend(); ++item) {
-    if (!item->is_on_screen || !item->is_glass) continue;
-    // Of a hollow body the inner faces that look here are the far ones.
-    meshes.draw(*item, Part::inner);
-    meshes.draw(*item, Part::outer_and_rim);
+  surface.opaque().depth.bind(7);
+  surface.glass_near().depth.bind(8);
+  for (const bool is_far : {true, false}) {
+    (is_far ? surface.glass_far() : surface.glass_near()).bind(4, 5);
+    (is_far ? far_ : near_).use();
+    tiles.draw_glass();
   }
-  glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  glDepthMask(GL_TRUE);
+  glBlendFunc(GL_ONE,
+              GL_ZERO);  // Mesa refuses passes with two targets while a second source is named, even disabled
 }
 
 }  // namespace shatterbox::render::pass

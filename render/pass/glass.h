@@ -1,17 +1,18 @@
-// Thin glass, far to near, over what is behind it (shaders/surface.vert, glass.frag).
+// Thin glass over the lit picture, the far layer first (shaders/glass.frag).
 #pragma once
 #include "render/gpu/program.h"
-#include "render/pass/mesh_store.h"
+#include "render/pass/surface.h"
+#include "render/pass/tiles.h"
 
 namespace shatterbox::render::pass {
 
 class GlassPass {
  public:
-  explicit GlassPass(int shadow_taps);
-  void run(const MeshStore& meshes) const;
+  explicit GlassPass(int samples_across);
+  void run(const SurfacePass& surface, const Tiles& tiles) const;
 
  private:
-  gpu::Program program_;
+  gpu::Program near_, far_;
 };
 
 }  // namespace shatterbox::render::pass

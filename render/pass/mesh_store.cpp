@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -20,23 +21,70 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffU;
 
-// As surface.vert reads them (std430).
+// As surface.vert reads it (std430).
 struct DrawRow {
   glm::mat4 world_from_body;
-  glm::uvec4 looks_scalars;
-};
-struct LookRow {
-  glm::vec4 outside, inside, crack, finish, pattern, pattern_place, more;
+  glm::uvec4 rows;
 };
 
-LookRow to_row(const Look& look) {
-  return {glm::vec4(look.outside, look.roughness),
-          glm::vec4(look.inside, look.inside_roughness),
-          glm::vec4(look.crack, look.crack_roughness),
-          glm::vec4(look.metalness, look.inside_metalness, look.clear_coat, look.clear_coat_roughness),
-          glm::vec4(look.pattern_colour, look.pattern_metalness),
-          glm::vec4(look.pattern_centre, std::max(look.pattern_size, 1e-9F)),
-          glm::vec4(look.transmission, static_cast<float>(look.pattern), 0.0F, 0.0F)};
+// Four texels as common/paint.glsl reads them: colour, roughness | metalness, coat, its roughness,
+// transmission | pattern colour, kind + metalness / 2 | pattern centre, size.
+struct PaintRow {
+  glm::vec4 paint, finish, pattern, place;
+};
+constexpr float kHeatMap = 8.0F;  // a pattern kind of its own
+constexpr int kRowsAbreast = 256;
+
+PaintRow to_paint(const Look& look, Face face) {
+  PaintRow row{};
+  row.place = glm::vec4(look.pattern_centre, std::max(look.pattern_size, 1e-9F));
+  switch (face) {
+    case Face::outside: {
+      const float metal =
+          std::clamp(look.pattern_metalness, 0.0F, 1.0F) * 0.499F;  // stays below the next kind
+      row.paint = glm::vec4(look.outside, look.roughness);
+      row.finish = {look.metalness, look.clear_coat, look.clear_coat_roughness, look.transmission};
+      row.pattern = glm::vec4(look.pattern_colour, static_cast<float>(look.pattern) + metal);
+      if (look.pattern == Pattern::none) row.pattern.w = 0.0F;
+      break;
+    }
+    case Face::inside:
+      row.paint = glm::vec4(look.inside, look.inside_roughness);
+      row.finish = {look.inside_metalness, 0.5F * look.clear_coat, look.clear_coat_roughness,
+                    look.transmission};
+      break;
+    case Face::crack:  // rims of glass scatter
+      row.paint = glm::vec4(look.crack, look.crack_roughness);
+      row.finish = {0.0F, 0.0F, 0.1F, 0.25F * look.transmission};
+      break;
+  }
+  return row;
+}
+
+// A colour of its own for each piece: hues by the golden ratio, two lightnesses.
+glm::vec3 piece_colour(std::uint32_t index) {
+  const double turn = static_cast<double>(index) * 0.6180339887498949;
+  const auto hue = static_cast<float>(turn - std::floor(turn));
+  glm::vec3 c;
+  for (int k = 0; k < 3; ++k) {
+    const float x = hue + static_cast<float>((3 - k) % 3) / 3.0F;
+    c[k] = std::clamp(std::abs((x - std::floor(x)) * 6.0F - 3.0F) - 1.0F, 0.0F, 1.0F);
+  }
+  return glm::mix(glm::vec3(0.30F), c * c, 0.66F) * ((index & 1U) == 0 ? 0.85F : 0.5F);
+}
+
+void lay_over(PaintRow& row, const Draw& draw, const Overlay& overlay, Face face) {
+  if (overlay.kind == OverlayKind::pieces && draw.colour_index != Draw::kNoColour) {
+    const glm::vec3 own = piece_colour(draw.colour_index);
+    row.paint = glm::vec4(face == Face::crack ? glm::mix(own, glm::vec3(0.85F), 0.7F) : own, 0.5F);
+    row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.0F};
+    row.pattern.w = 0.0F;
+  }
+  if (overlay.kind == OverlayKind::stress && draw.scalars != nullptr && face != Face::crack) {
+    row.paint.w = 0.5F;
+    row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.5F * row.finish.w};
+    row.pattern.w = kHeatMap;
+  }
 }
 
 unsigned create_vertex_array() {
@@ -89,13 +137,41 @@ void MeshStore::drop_unseen() {
   std::erase_if(meshes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
 }
 
+std::uint32_t MeshStore::add_paints(const Draw& draw, const Overlay& overlay) {
+  constexpr std::size_t kFloats = sizeof(PaintRow) / sizeof(float);
+  const auto first = static_cast<std::uint32_t>(paint_rows_.size() / kFloats);
+  const std::vector<Look> plain(1);
+  for (const Look& look : draw.looks.empty() ? plain : draw.looks) {
+    for (const Face face : {Face::outside, Face::inside, Face::crack}) {
+      PaintRow row = to_paint(look, face);
+      lay_over(row, draw, overlay, face);
+      const auto* values = reinterpret_cast<const float*>(&row);
+      paint_rows_.insert(paint_rows_.end(), values, values + kFloats);
+    }
+  }
+  return first;
+}
+
+void MeshStore::upload_paints() {
+  constexpr std::size_t kFloatsAbreast = kRowsAbreast * sizeof(PaintRow) / sizeof(float);
+  const auto lines = static_cast<int>((paint_rows_.size() + kFloatsAbreast - 1) / kFloatsAbreast);
+  paint_rows_.resize(static_cast<std::size_t>(lines) * kFloatsAbreast, 0.0F);
+  if (paints_.height() < std::max(lines, 1)) {
+    paints_ = gpu::Texture(4 * kRowsAbreast, std::max(2 * lines, 1), GL_RGBA32F, gpu::Filter::nearest);
+  }
+  if (lines > 0) {
+    glTextureSubImage2D(paints_.name(), 0, 0, 0, 4 * kRowsAbreast, lines, GL_RGBA, GL_FLOAT,
+                        paint_rows_.data());
+  }
+}
+
 void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
   ++frame_;
   const std::array<glm::vec4, 4> sides = find_sides(clip_from_world);
   std::vector<DrawRow> draws;
-  std::vector<LookRow> looks;
   std::vector<float> scalars;
   items_.clear();
+  paint_rows_.clear();
   for (const Draw& draw : frame.draws) {
     if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
     if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
@@ -105,16 +181,14 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
     stored.last_frame = frame_;
     const bool has_scalars = frame.overlay.kind == OverlayKind::stress && draw.scalars != nullptr;
     draws.push_back({draw.world_from_body,
-                     {looks.size(), std::max<std::size_t>(draw.looks.size(), 1),
-                      has_scalars ? static_cast<std::uint32_t>(scalars.size()) : kNone,
-                      draw.colour_index == Draw::kNoColour ? 0U : draw.colour_index + 1U}});
+                     {add_paints(draw, frame.overlay), std::max<std::size_t>(draw.looks.size(), 1),
+                      has_scalars ? static_cast<std::uint32_t>(scalars.size()) : kNone, 0U}});
     if (has_scalars) scalars.insert(scalars.end(), draw.scalars->begin(), draw.scalars->end());
-    if (draw.looks.empty()) looks.push_back(to_row(Look{}));
-    for (const Look& look : draw.looks) looks.push_back(to_row(look));
 
     Item item;
     item.mesh = draw.mesh->id;
     item.row = static_cast<int>(draws.size()) - 1;
+    item.world_from_body = draw.world_from_body;
     item.centre_world = glm::vec3(draw.world_from_body * glm::vec4(stored.shape.centre, 1.0F));
     item.radius = stored.shape.radius * glm::length(glm::vec3(draw.world_from_body[0]));
     item.eye_distance = glm::distance(item.centre_world, frame.camera.position);
@@ -131,11 +205,10 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
   std::stable_sort(items_.begin(), items_.end(),
                    [](const Item& a, const Item& b) { return a.eye_distance < b.eye_distance; });
   draw_rows_.assign(std::span<const DrawRow>(draws));
-  look_rows_.assign(std::span<const LookRow>(looks));
   scalars_.assign(std::span<const float>(scalars));
+  upload_paints();
   draw_rows_.bind_storage(0);
-  look_rows_.bind_storage(1);
-  scalars_.bind_storage(2);
+  scalars_.bind_storage(1);
 }
 
 void MeshStore::bind_vertices() const {
@@ -148,15 +221,9 @@ void MeshStore::draw(const Item& item, Part part) const {
   glVertexArrayVertexBuffer(vertex_array_.get(), 0, stored.vertices.name(), 0, sizeof(DrawnVertex));
   glVertexArrayElementBuffer(vertex_array_.get(), stored.indices.name());
   gpu::Program::set(0, item.row);
-  const auto draw_range = [](IndexRange range) {
-    if (range.count == 0) return;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::uintptr_t{range.first} * sizeof(std::uint32_t)));
-  };
-  if (part == Part::all) draw_range({0, shape.outer.count + shape.inner.count + shape.rim.count});
-  if (part == Part::outer || part == Part::outer_and_rim) draw_range(shape.outer);
-  if (part == Part::inner) draw_range(shape.inner);
-  if (part == Part::outer_and_rim) draw_range(shape.rim);
+  const std::uint32_t whole = shape.outer.count + shape.inner.count + shape.rim.count;
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part == Part::all ? whole : shape.outer.count),
+                 GL_UNSIGNED_INT, nullptr);
 }
 
 Part MeshStore::shadow_part(const Item& item) const {

@@ -1,4 +1,4 @@
-// The meshes on the GPU, by id, and the rows that the shaders read of this frame's draws, looks and scalars.
+// The meshes on the GPU, by id, and the rows that the shaders read of this frame's draws, paints and scalars.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -8,6 +8,7 @@
 #include "render/frame/frame.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/handle.h"
+#include "render/gpu/texture.h"
 
 namespace shatterbox::render::pass {
 
@@ -17,13 +18,14 @@ void delete_vertex_array(unsigned name);
 struct Item {
   std::uint64_t mesh = 0;
   int row = 0;  // of the draw rows
+  glm::mat4 world_from_body{1.0F};
   glm::vec3 centre_world{0.0F};
   float radius = 0.0F;        // m, world
   float eye_distance = 0.0F;  // m, to the centre
   bool is_glass = false, is_on_screen = false, casts_shadow = false;
 };
 
-enum class Part { all, outer, inner, outer_and_rim };
+enum class Part { all, outer };
 
 class MeshStore {
  public:
@@ -35,6 +37,7 @@ class MeshStore {
 
   const std::vector<Item>& items() const { return items_; }  // near to far
   void bind_vertices() const;
+  void bind_paints() const { paints_.bind(6); }
   void draw(const Item& item, Part part) const;  // the program in use gets the row in uniform 0
   // What draws in the shadow map: solids wholly, shells by one face.
   Part shadow_part(const Item& item) const;
@@ -49,10 +52,14 @@ class MeshStore {
   };
   Stored& find_or_upload(const Mesh& mesh);
   void drop_unseen();
+  std::uint32_t add_paints(const Draw& draw, const Overlay& overlay);  // the first row
+  void upload_paints();
 
   std::map<std::uint64_t, Stored> meshes_;
   std::vector<Item> items_;
-  gpu::Buffer draw_rows_, look_rows_, scalars_;
+  gpu::Buffer draw_rows_, scalars_;
+  gpu::Texture paints_;  // one row a look and face; grows
+  std::vector<float> paint_rows_;
   gpu::Handle<delete_vertex_array> vertex_array_;
   std::uint64_t frame_ = 0;
 };

@@ -17,9 +17,12 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 ground_place;        // x: height, y: fade from, z: fade to (m from the target), w: 1 if there is a ground
   vec4 viewport;            // width, height, 1/width, 1/height (pixels)
   vec4 glow_centre;         // x, y in pixels; z: 1/reach; w unused
-  vec4 occlusion_scale;     // x: clip near; y: near/(far) terms are in z, w: view depth = y / (z - depth)
-  vec4 view_ray;            // x, y: view-space slope of a pixel at the screen's edge
+  vec4 occlusion_scale;     // view depth = y / (z - depth); w: metres that occlusion reaches
+  vec4 view_ray;            // x, y: view-space slope at the picture's edge
+  vec4 view_forward;        // world; a pixel's ray is forward + x * right + y * up, x and y in -1..1
+  vec4 view_right;
+  vec4 view_up;
   vec4 shadow_texel;        // x, y: metres a texel; z: metres of depth range; w: texels across a tile
-  vec4 scalar_range;        // x: least, y: 1/(most - least), z: overlay kind
+  vec4 scalar_range;        // x: least, y: 1/(most - least)
 };
 const float kPi = 3.14159265;

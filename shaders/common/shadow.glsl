@@ -32,10 +32,11 @@ float sun_seen(vec3 position_world, vec3 normal) {
   bool dark = p.z - bias - spread > bounds.y && p.z < 1.0;
   int taps = inside && !lit && !dark ? SHADOW_TAPS : 0;
   float sum = 0.0;
-  for (int i = 0; i < taps; ++i) {  // golden-angle spiral
-    float r = sqrt((float(i) + 0.5) / float(SHADOW_TAPS));
-    float a = float(i) * 2.39996323;
-    vec2 shift = r * radius * vec2(cos(a), sin(a));
+  vec2 way = vec2(1.0, 0.0);  // golden-angle spiral
+  const mat2 kTurn = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
+  for (int i = 0; i < taps; ++i) {
+    vec2 shift = sqrt((float(i) + 0.5) / float(SHADOW_TAPS)) * radius * way;
+    way = kTurn * way;
     sum += texture(shadow_map, vec3(p.xy + shift, p.z - bias + dot(slope, shift)));
   }
   if (!inside || lit) return 1.0;

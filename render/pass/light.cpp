@@ -1,0 +1,59 @@
+#include "render/pass/light.h"
+
+#include <glad/gl.h>
+
+#include <string>
+#include <vector>
+
+namespace shatterbox::render::pass {
+namespace {
+
+std::vector<std::string> defines_of(int shadow_taps, int samples_across, bool is_preview) {
+  std::vector<std::string> defines = {"SHADOW_TAPS " + std::to_string(shadow_taps),
+                                      "SIDE " + std::to_string(samples_across)};
+  if (is_preview) defines.emplace_back("PREVIEW");
+  return defines;
+}
+
+constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
+
+}  // namespace
+
+LightPass::LightPass(int shadow_taps, int samples_across, bool is_preview)
+    : cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
+      bodies_("tile.vert", "light.frag", defines_of(shadow_taps, samples_across, is_preview)),
+      floor_("tile.vert", "floor.frag", {"SHADOW_TAPS " + std::to_string(shadow_taps)}),
+      plain_("tile.vert", "floor.frag", {"SHADOW_TAPS 1", "PLAIN"}) {}
+
+void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
+  opaque.bind(4, 5);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_ALWAYS);
+  glDepthMask(GL_TRUE);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  cover_.use();
+  tiles.draw_bodies();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_FALSE);
+
+  glDepthFunc(GL_GREATER);  // where a body leaves something to see
+  floor_.use();
+  gpu::Program::set(kTileDepth, 0.99F);
+  tiles.draw_bodies();
+  glDepthFunc(GL_LESS);  // where there is one
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  bodies_.use();
+  gpu::Program::set(kTileDepth, 0.01F);
+  tiles.draw_bodies();
+  glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+
+  floor_.use();
+  tiles.draw_shaded_floor();
+  plain_.use();
+  tiles.draw_plain_floor();
+}
+
+}  // namespace shatterbox::render::pass

@@ -1,0 +1,21 @@
+// Light on what the geometry pass saw, pixel by pixel: bodies, floor and backdrop (shaders/cover.frag,
+// light.frag, floor.frag). Lit after the fact because small triangles would run the costly shader for whole
+// blocks of pixels, many times over.
+#pragma once
+#include "render/gpu/program.h"
+#include "render/pass/surface.h"
+#include "render/pass/tiles.h"
+
+namespace shatterbox::render::pass {
+
+class LightPass {
+ public:
+  LightPass(int shadow_taps, int samples_across, bool is_preview);
+  // Into the framebuffer that is bound; its depth is used for the cover.
+  void run(const Layer& opaque, const Tiles& tiles) const;
+
+ private:
+  gpu::Program cover_, bodies_, floor_, plain_;
+};
+
+}  // namespace shatterbox::render::pass

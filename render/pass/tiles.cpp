@@ -1,0 +1,119 @@
+#include "render/pass/tiles.h"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "render/gpu/program.h"
+
+namespace shatterbox::render::pass {
+namespace {
+
+constexpr int kSide = 16;  // pixels
+constexpr char kPlain = 0, kShaded = 1, kBody = 2;
+
+// Along the sun onto the floor; what lies below it stays.
+glm::vec3 shadow_of(glm::vec3 p, const FrameBlock& block) {
+  const float above = std::max(p.y - block.ground_place.x, 0.0F);
+  return p - glm::vec3(block.sun) * (above / std::max(block.sun.y, 1e-3F));
+}
+
+}  // namespace
+
+Tiles::Tiles(int width, int height)
+    : width_(width),
+      height_(height),
+      across_((width + kSide - 1) / kSide),
+      down_((height + kSide - 1) / kSide) {}
+
+void Tiles::mark(const Corners& corners, const FrameBlock& block, float margin_pixels, char kind,
+                 Marks& marks) const {
+  glm::vec2 least(1e9F), most(-1e9F);
+  for (const glm::vec3& corner : corners.at) {
+    const glm::vec4 p = block.clip_from_world * glm::vec4(corner, 1.0F);
+    if (p.z < -p.w || p.w <= 0.0F) {  // reaches behind the eye: may be anywhere
+      least = glm::vec2(-1.0F);
+      most = glm::vec2(1.0F);
+      break;
+    }
+    const glm::vec2 at = glm::vec2(p) / p.w;
+    least = glm::min(least, at);
+    most = glm::max(most, at);
+  }
+  if (least.x > 1.0F || most.x < -1.0F || least.y > 1.0F || most.y < -1.0F) return;
+  const auto tile = [](float ndc, int pixels, float shift, int count) {
+    const float pixel = (std::clamp(ndc, -1.5F, 1.5F) * 0.5F + 0.5F) * static_cast<float>(pixels);
+    return std::clamp(static_cast<int>(std::floor((pixel + shift) / kSide)), 0, count - 1);
+  };
+  const int left = tile(least.x, width_, -margin_pixels, across_);
+  const int right = tile(most.x, width_, margin_pixels, across_);
+  const int bottom = tile(least.y, height_, -margin_pixels, down_);
+  const int top = tile(most.y, height_, margin_pixels, down_);
+  for (int y = bottom; y <= top; ++y) {
+    for (int x = left; x <= right; ++x) {
+      char& here = marks[static_cast<std::size_t>(y * across_ + x)];
+      here = std::max(here, kind);
+    }
+  }
+}
+
+Tiles::Range Tiles::append_runs(const Marks& marks, char wanted) {
+  Range range{static_cast<int>(rectangles_.size()), 0};
+  for (int y = 0; y < down_; ++y) {
+    for (int x = 0; x < across_;) {
+      if (marks[static_cast<std::size_t>(y * across_ + x)] != wanted) {
+        ++x;
+        continue;
+      }
+      const int first = x;
+      while (x < across_ && marks[static_cast<std::size_t>(y * across_ + x)] == wanted) ++x;
+      rectangles_.emplace_back(first * kSide, y * kSide, std::min(x * kSide, width_),
+                               std::min((y + 1) * kSide, height_));
+      ++range.count;
+    }
+  }
+  return range;
+}
+
+void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
+  marks_.assign(static_cast<std::size_t>(across_ * down_), kPlain);
+  glass_marks_.assign(marks_.size(), kPlain);
+  const float pixels_a_slope = 0.5F * static_cast<float>(height_) / block.view_ray.y;
+  for (const Item& item : meshes.items()) {
+    const DrawnMesh& shape = meshes.shape(item);
+    Corners body, shadow;
+    for (int i = 0; i < 8; ++i) {
+      const glm::vec3 corner((i & 1) ? shape.box_most.x : shape.box_least.x,
+                             (i & 2) ? shape.box_most.y : shape.box_least.y,
+                             (i & 4) ? shape.box_most.z : shape.box_least.z);
+      body.at[i] = glm::vec3(item.world_from_body * glm::vec4(corner, 1.0F));
+      shadow.at[i] = shadow_of(body.at[i], block);
+    }
+    if (item.casts_shadow && block.ground_place.w > 0.0F) mark(shadow, block, kSide, kShaded, marks_);
+    if (!item.is_on_screen) continue;
+    if (item.is_glass) {
+      mark(body, block, 1.0F, kBody, glass_marks_);
+    } else {
+      const float nearest = std::max(item.eye_distance - item.radius, block.occlusion_scale.x);
+      mark(body, block, 4.0F + block.occlusion_scale.w / nearest * pixels_a_slope, kShaded, marks_);
+      mark(body, block, 1.0F, kBody, marks_);
+    }
+  }
+  rectangles_.clear();
+  bodies_ = append_runs(marks_, kBody);
+  shaded_ = append_runs(marks_, kShaded);
+  plain_ = append_runs(marks_, kPlain);
+  glass_ = append_runs(glass_marks_, kBody);
+  buffer_.assign(std::span<const glm::uvec4>(rectangles_));
+  buffer_.bind_storage(2);
+}
+
+void Tiles::draw(Range range) {
+  if (range.count == 0) return;
+  gpu::Program::set(0, range.first);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, range.count);
+}
+
+}  // namespace shatterbox::render::pass

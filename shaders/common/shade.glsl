@@ -1,0 +1,52 @@
+// Light from a painted surface towards the eye: sun, sky, soft boxes; linear.
+#include "common/light.glsl"
+#ifndef GLASS
+#include "common/shadow.glsl"
+#include "common/occlusion.glsl"
+#endif
+#include "common/paint.glsl"
+
+// diffuse_share: less for glass. pixel: gl_FragCoord.xy.
+vec3 shade(Surface s, vec2 pixel, float diffuse_share) {
+  vec3 n = s.normal;
+  vec3 v = normalize(eye_exposure.xyz - s.position);
+  float n_dot_v = max(dot(n, v), 1e-3);
+  vec3 l = sun.xyz;
+  float n_dot_l = max(dot(n, l), 0.0);
+  vec3 h = normalize(l + v);
+  float n_dot_h = max(dot(n, h), 0.0);
+  float v_dot_h = max(dot(v, h), 0.0);
+  vec3 r = 2.0 * dot(n, v) * n - v;
+
+#ifdef GLASS  // hardly anything diffuse to darken
+  vec3 sunlight = sun_radiance.rgb;
+  float sky = 1.0;
+#else
+  vec3 sunlight = sun_radiance.rgb * sun_seen(s.position, n);
+  float sky = sky_seen(pixel, s.view_depth);
+#endif
+  float sky_mirrored = clamp(sky * 1.5 - 0.3, 0.06, 1.0);
+
+  vec3 f0 = mix(vec3(0.04), s.colour, s.metalness);
+  vec3 diffuse = s.colour * (1.0 - s.metalness) * diffuse_share;
+  vec2 share = reflected_share(n_dot_v, s.roughness);
+  vec3 mirrored = f0 * share.x + share.y;
+
+  // Light that bounced in the surface's own hollow: occlusion takes the paint's tint instead of going grey.
+  vec3 sky_tinted = sky / (1.0 - 0.6 * s.colour * (1.0 - sky));
+  vec3 light = diffuse * (sunlight * n_dot_l + ambient(n) * sky_tinted * (1.0 - share.y));
+#if defined(PREVIEW) || defined(GLASS)  // one look at the surroundings instead of two
+  vec3 around = surroundings(r, s.coat > 0.3 ? s.coat_roughness : s.roughness);
+  vec3 around_base = around;
+#else
+  vec3 around = surroundings(r, s.coat_roughness), around_base = surroundings(r, s.roughness);
+#endif
+  light += mirrored * around_base * sky_mirrored;
+  light += sunlight * glint(n_dot_l, n_dot_v, n_dot_h, s.roughness) * f0;
+
+  float coat = s.coat * schlick(0.05, n_dot_v);
+  light *= 1.0 - coat;
+  light += coat * around * sky_mirrored;
+  light += sunlight * s.coat * schlick(0.05, v_dot_h) * glint(n_dot_l, n_dot_v, n_dot_h, s.coat_roughness);
+  return light;
+}
