@@ -1,6 +1,8 @@
 #include "engine/collision/collider.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "engine/geometry/edge_topology.h"
 
@@ -99,6 +101,9 @@ std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
   add_neighbours(*collider, topology);
   double reach_squared = 0.0;
   for (const Vec3& v : collider->vertices) reach_squared = std::max(reach_squared, v.squaredNorm());
+  for (const Vec3& v : collider->vertices) collider->box.include(v);
+  collider->box.low.array() -= collider->radius;
+  collider->box.high.array() += collider->radius;
   collider->bounding_radius = std::sqrt(reach_squared) + collider->radius;
   return collider;
 }

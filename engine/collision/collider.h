@@ -28,6 +28,7 @@ struct Collider {
   std::vector<int> owned_vertex_begin, owned_vertices;  // |T| + 1
   std::vector<int> owned_edge_begin, owned_edges;       // |T| + 1
   geometry::TriangleTree tree;
+  geometry::Box box;             // of the vertices, radius included, body space
   double radius = 0.0;           // of a sphere's one vertex, m
   double bounding_radius = 0.0;  // about the origin, m, radius included
 };

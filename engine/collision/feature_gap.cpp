@@ -180,4 +180,20 @@ PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, do
   return result;
 }
 
+Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& start, const FeatureGap& hit) {
+  Contact c;
+  c.key = features.key();
+  c.normal = hit.normal;
+  c.is_time_of_impact = true;
+  const int split = start.is_edge_edge ? 2 : 1;
+  Vec3 first = Vec3::Zero(), second = Vec3::Zero();
+  for (int i = 0; i < 4; ++i) (i < split ? first : second) += hit.weights[at(i)] * start.points[at(i)];
+  c.on_a = start.is_flipped ? second : first;
+  c.on_b = start.is_flipped ? first : second;
+  if (start.radius > 0.0)
+    (start.is_flipped ? c.on_b : c.on_a) += (start.is_flipped ? 1.0 : -1.0) * start.radius * hit.normal;
+  c.gap = c.normal.dot(c.on_a - c.on_b);
+  return c;
+}
+
 }  // namespace shatterbox::collision

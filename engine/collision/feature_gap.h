@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/collision/collider.h"
+#include "engine/collision/contact.h"
 #include "engine/collision/feature_list.h"
 #include "engine/core/vec.h"
 
@@ -50,5 +51,10 @@ struct PathResult {
 /// Follows the straight paths from `start` to `end`. Free means that the gap never falls to `least` (a pair
 /// that starts closer than that must only not approach).
 PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint);
+
+/// A hit on the path as a contact seen from the start: the material points of both bodies that will meet, and
+/// their distance along the direction in which they will. `start` are the pair's points there, `hit` its gap
+/// at the impact.
+Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& start, const FeatureGap& hit);
 
 }  // namespace shatterbox::collision

@@ -1,9 +1,12 @@
 // Scratch of one step: bodies as the stages see them, pairs, contacts. Made anew every step; holds no state.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/body/body.h"
+#include "engine/body/impulse_log.h"
 #include "engine/collision/contact.h"
 #include "engine/collision/feature_list.h"
 #include "engine/core/vec.h"
@@ -16,9 +19,10 @@ struct WorkBody {
   const body::Shape* shape = nullptr;
   const collision::Collider* collider = nullptr;
   PrincipalInertia inertia;
-  double inverse_mass = 0.0;  // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
-  bool is_active = false;     // moves in this step: awake dynamic, or scripted with a velocity
-  double reach = 0.0;         // m: greatest distance of a vertex from the centre
+  Vec3 inverse_moments = Vec3::Zero();  // about the principal axes; zero if nothing can turn it
+  double inverse_mass = 0.0;            // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
+  bool is_active = false;               // moves in this step: awake dynamic, or scripted with a velocity
+  double reach = 0.0;                   // m: greatest distance of a vertex from the centre
 
   Pose start, end;
   Vec3 gravity = Vec3::Zero();          // m/s2; zero unless dynamic and awake
@@ -30,11 +34,12 @@ struct WorkBody {
   Mat3 inverse_inertia = Mat3::Zero();  // world, now
 
   bool is_placed = false;
-  bool is_free = true;               // no contact: end is the predicted end
-  collision::PlacedCollider placed;  // vertices at the start
-  std::vector<Vec3> turned;          // vertices at the end less `end_way`, for swept tests
-  Vec3 end_way = Vec3::Zero();       // m
-  Pose predicted;                    // end pose if nothing touches
+  bool is_free = true;                 // no contact: end is the predicted end
+  collision::PlacedCollider placed;    // vertices at the start
+  std::vector<Vec3> turned;            // vertices at the end less `end_way`, for swept tests
+  Vec3 end_way = Vec3::Zero();         // m
+  Vec3 predicted_spin = Vec3::Zero();  // rad/s, then
+  Pose predicted;                      // end pose if nothing touches
 };
 
 struct SolverContact {
@@ -76,10 +81,18 @@ struct WorkPair {
   int a = 0, b = 0;  // numbers of the bodies, a < b
   int state = 0;     // number in ContactState::pairs
   PairMaterial material;
-  double size = 0.0;               // m
-  double kept_gap = 0.0;           // m, after adaptation
-  double threshold = 0.0;          // m/s
+  double size = 0.0;         // m
+  double kept_gap = 0.0;     // m, after adaptation
+  double threshold = 0.0;    // m/s
+  bool is_plane = false;     // b is the plane
+  bool is_flipped = false;   // the plane has the lower number
+  bool is_analytic = false;  // spheres and boxes
+  bool is_fast = false;      // moves further than a feature list is good for
+  bool needs_list = false;
+  double motion = 0.0;             // m: bound of the relative motion if nothing touches
+  double margin = 0.0;             // m: contacts are felt from this gap on
   bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
+  std::vector<double> gaps;        // m, of `features` at the start
   double list_margin = 0.0;        // m: `features` holds all pairs that were this close at the start
   std::shared_ptr<const collision::FeatureList> features;
   std::vector<collision::Contact> contacts;
@@ -97,18 +110,20 @@ class MotionWork {
   std::vector<WorkPair> pairs;   // ascending
   std::vector<SolverContact> contacts;
   std::vector<Island> islands;
+  std::vector<body::BodyId> to_wake;  // sleepers that something comes down on
+  std::vector<body::BodyId> ids;
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
 };
-
-/// Size that tolerances of a pair are measured by, m.
-double pair_size(const body::Body& a, const WorkBody& work_a, const body::Body& b, const WorkBody& work_b);
 
 /// Fills a body's vertices at the start of the step, once.
 void place(WorkBody& body);
 
 /// Vertices (|V| x 3, world) at a pose.
 void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out);
+
+/// No point of the body moves further than this by its turn from start to `end`, m.
+double turn_bound(const WorkBody& body, const Pose& end);
 
 /// Relative motion of a pair during the step is at most this, m: from ways and turns of end poses.
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b);

@@ -52,12 +52,12 @@ void solve_motion(const std::vector<body::Body>& bodies, const ContactSettings& 
 
 /// Stage: no vertex path may cross another surface; hits are opened again in position and tested again, at
 /// last by cutting steps short.
-void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
-                  MotionWork& work, ContactReport& report);
+void guard_motion(const ContactSettings& settings, ContactState& state, MotionWork& work,
+                  ContactReport& report);
 
 /// Stage: writes end poses and velocities to `bodies`, impulses to `log`, warm start to `state`.
-void finish_motion(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
-                   MotionWork& work, body::ImpulseLog& log, ContactReport& report);
+void finish_motion(std::vector<body::Body>& bodies, ContactState& state, MotionWork& work,
+                   body::ImpulseLog& log, ContactReport& report);
 
 /// Stage: islands that have been quiet for `sleep_time` fall asleep.
 void put_to_sleep(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state);

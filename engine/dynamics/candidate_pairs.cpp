@@ -1,0 +1,527 @@
+// Stage: from bodies to pairs, contacts and islands.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "engine/collision/analytic_contact.h"
+#include "engine/collision/broad_phase.h"
+#include "engine/collision/feature_gap.h"
+#include "engine/core/parallel.h"
+#include "engine/dynamics/motion_work.h"
+#include "engine/dynamics/rest.h"
+#include "engine/dynamics/step_motion.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using body::Body;
+using body::ShapeKind;
+using collision::Contact;
+
+constexpr double kLocalSlack = 0.1;       // sine: neighbouring features may lead closer by this
+constexpr double kManifoldRadius = 0.04;  // share of the pair's size
+constexpr double kBroadSlack = 0.02;      // share of a body's size
+constexpr double kImpactWindow = 0.1;     // share of the step after the first hit in which others count
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+void match_bodies(const std::vector<Body>& bodies, ContactState& state) {
+  std::vector<BodyState> matched;
+  matched.reserve(bodies.size());
+  std::size_t old = 0;
+  for (const Body& b : bodies) {
+    while (old < state.bodies.size() && state.bodies[old].id < b.id) ++old;
+    if (old < state.bodies.size() && state.bodies[old].id == b.id && state.bodies[old].shape == b.shape) {
+      matched.push_back(state.bodies[old]);
+      continue;
+    }
+    const auto same_shape = [&](const BodyState& s) { return s.shape == b.shape; };
+    BodyState fresh{b.id, b.shape, nullptr, {}};
+    if (const auto twin = std::find_if(matched.begin(), matched.end(), same_shape); twin != matched.end()) {
+      fresh.collider = twin->collider;
+      fresh.inertia = twin->inertia;
+    } else {
+      fresh.collider = collision::make_collider(*b.shape);
+      fresh.inertia = find_principal_inertia(b.shape->inertia);
+    }
+    matched.push_back(std::move(fresh));
+  }
+  state.bodies = std::move(matched);
+}
+
+WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSettings& settings) {
+  WorkBody w;
+  w.shape = b.shape.get();
+  w.collider = memory.collider.get();
+  w.inertia = memory.inertia;
+  w.reach = w.collider->bounding_radius;
+  w.start = w.end = w.predicted = b.pose;
+  w.rotation = b.pose.rotation;
+  const double dt = settings.time_step;
+  if (b.motion == body::Motion::scripted) {
+    w.velocity = b.velocity;
+    w.spin = b.angular_velocity;
+    w.is_active = w.velocity.squaredNorm() + w.spin.squaredNorm() > 0.0;
+    w.predicted.translation += dt * w.velocity;
+    w.predicted.rotation = (rotation_by(dt * w.spin) * w.start.rotation).normalized();
+  } else if (b.is_dynamic() && b.is_awake) {
+    w.is_active = true;
+    w.inverse_mass = b.inverse_mass;
+    w.velocity = b.velocity;
+    w.spin = b.angular_velocity;
+    w.gravity = settings.gravity;
+    if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0) w.inverse_moments = w.inertia.moments.cwiseInverse();
+    const Mat3 axes = (w.rotation * w.inertia.body_from_axes).toRotationMatrix();
+    w.inverse_inertia = axes * w.inverse_moments.asDiagonal() * axes.transpose();
+    w.predicted.translation += dt * w.velocity + (0.5 * dt * dt) * w.gravity;
+    Vec3 spin = w.spin;
+    advance_spin(w.inertia, dt, SpinOrder::fourth, w.predicted.rotation, spin);
+    w.predicted_spin = spin;
+  }
+  return w;
+}
+
+collision::SweptBound swept_bound(const WorkBody& w, const ContactSettings& settings) {
+  collision::SweptBound bound;
+  if (w.shape->kind == ShapeKind::plane) return bound;  // planes meet everybody, in their own loop
+  const auto& box = w.collider->box;
+  const Mat3 r = w.start.rotation.toRotationMatrix();
+  const Vec3 centre = w.start.translation + r * (0.5 * (box.low + box.high));
+  const Vec3 half = r.cwiseAbs() * (0.5 * (box.high - box.low));
+  bound.box = {centre - half, centre + half};
+  bound.is_moving = w.is_active;
+  if (!w.is_active) return bound;
+  const Vec3 way = 1.1 * (w.predicted.translation - w.start.translation);
+  const Vec3 low = bound.box.low + way, high = bound.box.high + way;
+  bound.box.low = bound.box.low.cwiseMin(low);
+  bound.box.high = bound.box.high.cwiseMax(high);
+  const double dt = settings.time_step;
+  const double grow =
+      1.1 * (turn_bound(w, w.predicted) + settings.gravity.norm() * dt * dt) + kBroadSlack * 2.0 * w.reach;
+  bound.box.low.array() -= grow;
+  bound.box.high.array() += grow;
+  return bound;
+}
+
+bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& wb) {
+  if (!a.is_dynamic() && !b.is_dynamic()) return false;
+  if (!wa.is_active && !wb.is_active) return false;
+  return a.group < 0 || a.group != b.group;
+}
+
+std::vector<collision::IndexPair> find_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
+                                             const MotionWork& work) {
+  std::vector<collision::SweptBound> bounds;
+  bounds.reserve(bodies.size());
+  for (const WorkBody& w : work.bodies) bounds.push_back(swept_bound(w, settings));
+  auto pairs = collision::find_overlapping_pairs(bounds);
+  for (std::size_t p = 0; p < bodies.size(); ++p) {
+    if (work.bodies[p].shape->kind != ShapeKind::plane) continue;
+    const Vec3 normal = work.bodies[p].start.rotation * Vec3::UnitY();
+    const double level = normal.dot(work.bodies[p].start.translation);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const auto& box = bounds[i].box;
+      if (box.low.x() > box.high.x()) continue;
+      const double lowest =
+          normal.dot(0.5 * (box.low + box.high)) - normal.cwiseAbs().dot(0.5 * (box.high - box.low));
+      if (lowest > level) continue;
+      pairs.push_back({static_cast<int>(std::min(p, i)), static_cast<int>(std::max(p, i))});
+    }
+  }
+  std::erase_if(pairs, [&](const collision::IndexPair& pair) {
+    return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
+                     work.bodies[at(pair.b)]);
+  });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const auto& x, const auto& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
+  return pairs;
+}
+
+// The memory of pairs: of those found, of those of two bodies that both do not move (asleep), and of no
+// others.
+void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::IndexPair>& found,
+                 MotionWork& work, ContactState& state) {
+  std::vector<PairState> matched;
+  matched.reserve(found.size());
+  const auto is_still = [&](body::BodyId id) {
+    const auto place = std::lower_bound(work.ids.begin(), work.ids.end(), id);
+    return place != work.ids.end() && *place == id &&
+           !work.bodies[static_cast<std::size_t>(place - work.ids.begin())].is_active;
+  };
+  std::size_t old = 0;
+  const auto keep_still = [&](const PairState& pair) {
+    if (is_still(pair.body_a) && is_still(pair.body_b)) matched.push_back(pair);
+  };
+  for (const auto& pair : found) {
+    const std::pair key(bodies[at(pair.a)].id, bodies[at(pair.b)].id);
+    while (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) < key) {
+      keep_still(state.pairs[old++]);
+    }
+    WorkPair w;
+    w.a = pair.a;
+    w.b = pair.b;
+    w.state = static_cast<int>(matched.size());
+    if (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) == key) {
+      matched.push_back(std::move(state.pairs[old++]));
+    } else {
+      matched.emplace_back();
+      matched.back().body_a = key.first;
+      matched.back().body_b = key.second;
+    }
+    work.pairs.push_back(std::move(w));
+  }
+  while (old < state.pairs.size()) keep_still(state.pairs[old++]);
+  state.pairs = std::move(matched);
+}
+
+// What kind of pair this is and how far it must be looked at.
+void classify(const std::vector<Body>& bodies, const ContactSettings& settings, const PairState& memory,
+              const MotionWork& work, WorkPair& pair) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  const bool a_is_measure =
+      bodies[at(pair.a)].is_dynamic() && (!bodies[at(pair.b)].is_dynamic() || a.reach <= b.reach);
+  pair.material = pair_material(bodies[at(pair.a)], bodies[at(pair.b)], settings);
+  pair.size = 2.0 * (a_is_measure ? a.reach : b.reach);
+  pair.motion = motion_bound(a, a.predicted, b, b.predicted);
+  const double usual_gap = settings.kept_gap * pair.size;
+  pair.is_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
+  pair.is_flipped = a.shape->kind == ShapeKind::plane;
+  pair.is_analytic = collision::is_analytic_pair(a.shape->kind, b.shape->kind);
+  pair.margin =
+      2.0 * usual_gap +
+      (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));
+  if (pair.is_plane || pair.is_analytic) return;
+  const double slack = settings.search_slack * pair.size;
+  pair.is_fast = pair.motion > slack;
+  const double list_needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
+  pair.needs_list =
+      !pair.is_fast && (!settings.has_caches || !memory.features || memory.list_margin < list_needed);
+}
+
+Vec3 hint(const WorkBody& a, const WorkBody& b) {
+  return a.start.translation - b.start.translation;
+}
+
+Contact make_contact(const collision::FeaturePair& features, const collision::FeatureGap& gap) {
+  Contact c;
+  c.key = features.key();
+  c.on_a = gap.on_a;
+  c.on_b = gap.on_b;
+  c.normal = gap.normal;
+  c.gap = gap.gap;
+  return c;
+}
+
+struct Hit {
+  double time;
+  Contact contact;
+};
+
+void keep_first_hits(std::vector<Hit>& hits, double size, std::vector<Contact>& out) {
+  std::sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) {
+    return x.time < y.time || (x.time == y.time && x.contact.key < y.contact.key);
+  });
+  std::vector<Contact> kept;
+  for (const Hit& hit : hits) {
+    if (hit.time > hits.front().time + kImpactWindow) break;
+    kept.push_back(hit.contact);
+  }
+  for (const Contact& c : out) std::erase_if(kept, [&](const Contact& k) { return k.key == c.key; });
+  collision::reduce_manifold(kept, {}, kManifoldRadius * size, 8);
+  out.insert(out.end(), kept.begin(), kept.end());
+}
+
+double least_on_path(double gap, double kept_gap) {
+  return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
+}
+
+void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
+                   WorkPair& pair) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  collision::FeatureList fresh;
+  if (pair.is_fast) {
+    const Vec3 relative_way = b.end_way - a.end_way;
+    collision::list_swept_features(a.placed, a.turned, b.placed, b.turned, relative_way, pair.margin, fresh);
+    pair.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
+    pair.list_margin = pair.margin;
+    memory.features.reset();
+  } else {
+    if (pair.needs_list) {
+      memory.list_margin = pair.margin + settings.search_slack * pair.size;
+      collision::list_near_features(a.placed, b.placed, memory.list_margin, fresh);
+      memory.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
+    }
+    pair.features = memory.features;
+    pair.list_margin = memory.list_margin;
+  }
+  const double usual_gap = settings.kept_gap * pair.size;
+  std::vector<Vec3> end_a, end_b;
+  if (pair.is_fast && !pair.features->empty()) {
+    place_at(a, a.predicted, end_a);
+    place_at(b, b.predicted, end_b);
+  }
+  std::vector<Hit> hits;
+  pair.is_free_certified = true;
+  pair.gaps.reserve(pair.features->size());
+  for (const auto& features : *pair.features) {
+    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    const auto gap = collision::measure(start, hint(a, b));
+    pair.gaps.push_back(gap.gap);
+    if (gap.gap <= pair.margin) {
+      if (collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
+                                      kLocalSlack)) {
+        pair.contacts.push_back(make_contact(features, gap));
+        pair.is_free_certified = false;
+        continue;
+      }
+    }
+    if (!pair.is_fast) {
+      if (gap.gap <= pair.motion + usual_gap) pair.is_free_certified = false;
+      continue;
+    }
+    const auto end = collision::gather(features, *a.collider, end_a, *b.collider, end_b);
+    const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap), hint(a, b));
+    if (path.has_hit) hits.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
+  }
+  if (!hits.empty()) {
+    pair.is_free_certified = false;
+    keep_first_hits(hits, pair.size, pair.contacts);
+  }
+}
+
+Pose pose_on_path(const WorkBody& w, double time) {
+  if (!w.is_active) return w.start;
+  Pose pose;
+  pose.translation = w.start.translation + time * (w.predicted.translation - w.start.translation);
+  const Quat& p = w.start.rotation;
+  const Quat& q = w.predicted.rotation;
+  const double sign = p.dot(q) < 0.0 ? -1.0 : 1.0;
+  pose.rotation = Quat(Quat::Coefficients((1.0 - time) * p.coeffs() + time * sign * q.coeffs())).normalized();
+  return pose;
+}
+
+// Spheres and boxes: contacts at the start, and the first touch on the way if the pair moves further than
+// they look.
+void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPair& pair) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  collision::find_analytic_contacts(*a.shape, a.start, *b.shape, b.start, pair.margin, pair.contacts);
+  const double usual_gap = settings.kept_gap * pair.size;
+  if (!pair.contacts.empty() || pair.motion + 2.0 * usual_gap <= pair.margin) return;
+  const bool a_turns = a.shape->kind == ShapeKind::box, b_turns = b.shape->kind == ShapeKind::box;
+  // While a body turns by `time` of its way its points swing by no more than this share of twice the bound.
+  const double turning =
+      2.0 * ((a_turns ? turn_bound(a, a.predicted) : 0.0) + (b_turns ? turn_bound(b, b.predicted) : 0.0));
+  const Vec3 way =
+      (a.predicted.translation - a.start.translation) - (b.predicted.translation - b.start.translation);
+  double time = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose pose_a = pose_on_path(a, time), pose_b = pose_on_path(b, time);
+    Vec3 normal;
+    const double gap = collision::analytic_gap(*a.shape, pose_a, *b.shape, pose_b, normal);
+    const double closing = std::max(0.0, -normal.dot(way)) + turning;
+    const double room = gap - usual_gap;
+    if (room <= 0.1 * usual_gap) {
+      std::vector<Contact> touching;
+      collision::find_analytic_contacts(*a.shape, pose_a, *b.shape, pose_b, pair.margin, touching);
+      for (Contact& c : touching) {
+        c.on_a = a.start.apply(pose_a.apply_inverse(c.on_a));
+        c.on_b = b.start.apply(pose_b.apply_inverse(c.on_b));
+        c.gap = c.normal.dot(c.on_a - c.on_b);
+        c.is_time_of_impact = true;
+        pair.contacts.push_back(c);
+      }
+      return;
+    }
+    if (closing * (1.0 - time) < room) return;
+    time += 0.999 * room / closing;
+  }
+}
+
+void meet_plane(const MotionWork& work, WorkPair& pair) {
+  const WorkBody& plane = work.bodies[at(pair.is_flipped ? pair.a : pair.b)];
+  const WorkBody& other = work.bodies[at(pair.is_flipped ? pair.b : pair.a)];
+  collision::find_plane_contacts(*other.collider, other.placed.start, plane.start, pair.margin,
+                                 pair.contacts);
+  if (!pair.is_flipped) return;
+  for (Contact& c : pair.contacts) {
+    std::swap(c.on_a, c.on_b);
+    c.normal = -c.normal;
+  }
+}
+
+// The gap that is kept is the usual one unless the pair was found closer: it never pushes newborn pieces
+// apart.
+void adapt_gap(const ContactSettings& settings, PairState& memory, WorkPair& pair) {
+  const double usual = settings.kept_gap * pair.size;
+  double least = usual;
+  for (const Contact& c : pair.contacts) {
+    if (!c.is_time_of_impact) least = std::min(least, c.gap);
+  }
+  const bool is_new = memory.kept_gap <= 0.0;
+  least = std::max(least, 0.02 * usual);
+  memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
+  pair.kept_gap = memory.kept_gap;
+  pair.threshold = impact_threshold(settings, memory.kept_gap);
+}
+
+void meet(const ContactSettings& settings, const MotionWork& work, PairState& memory, WorkPair& pair) {
+  if (pair.is_plane) {
+    meet_plane(work, pair);
+  } else if (pair.is_analytic) {
+    meet_solids(settings, work, pair);
+  } else {
+    meet_features(settings, work, memory, pair);
+  }
+  adapt_gap(settings, memory, pair);
+  std::vector<std::uint64_t> loaded;
+  for (const auto& c : memory.contacts) {
+    if (c.was_loaded) loaded.push_back(c.feature_key);
+  }
+  const bool is_in_trouble = memory.trouble_age < 30;
+  const double radius = kManifoldRadius * pair.size * (is_in_trouble ? 0.5 : 1.0);
+  collision::reduce_manifold(pair.contacts, loaded, radius, is_in_trouble ? 64 : 16);
+}
+
+void add_solver_contacts(const ContactState& state, MotionWork& work) {
+  for (std::size_t p = 0; p < work.pairs.size(); ++p) {
+    const WorkPair& pair = work.pairs[p];
+    const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+    if (a.inverse_mass == 0.0 && b.inverse_mass == 0.0) continue;
+    const PairState& memory = state.pairs[at(pair.state)];
+    for (const Contact& found : pair.contacts) {
+      SolverContact c;
+      c.a = pair.a;
+      c.b = pair.b;
+      c.pair = static_cast<int>(p);
+      c.key = found.key;
+      c.friction = pair.material.friction;
+      c.restitution = pair.material.restitution;
+      c.rolling = pair.material.rolling_friction;
+      c.kept_gap = pair.kept_gap;
+      c.threshold = pair.threshold;
+      c.normal = found.normal;
+      int axis = 0;
+      c.normal.cwiseAbs().minCoeff(&axis);
+      c.tangent_u = c.normal.cross(Vec3::Unit(axis)).normalized();
+      c.tangent_v = c.normal.cross(c.tangent_u);
+      c.arm_a_start = found.on_a - a.start.translation;
+      c.arm_b_start = found.on_b - b.start.translation;
+      c.gap_start = found.gap;
+      const auto known =
+          std::lower_bound(memory.contacts.begin(), memory.contacts.end(), found.key,
+                           [](const RememberedContact& r, std::uint64_t key) { return r.feature_key < key; });
+      if (known != memory.contacts.end() && known->feature_key == found.key) {
+        c.was_loaded = known->was_loaded;
+        c.arrival_speed = known->arrival_speed;
+        c.warm = {known->normal_impulse, c.tangent_u.dot(known->friction_impulse),
+                  c.tangent_v.dot(known->friction_impulse)};
+      }
+      work.contacts.push_back(c);
+    }
+  }
+}
+
+void build_islands(MotionWork& work) {
+  std::vector<int> parent(work.bodies.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
+    return i;
+  };
+  for (const SolverContact& c : work.contacts) {
+    WorkBody &a = work.bodies[at(c.a)], &b = work.bodies[at(c.b)];
+    if (a.inverse_mass > 0.0) a.is_free = false;
+    if (b.inverse_mass > 0.0) b.is_free = false;
+    if (a.is_free || b.is_free) continue;
+    const int ra = root(c.a), rb = root(c.b);
+    parent[at(std::max(ra, rb))] = std::min(ra, rb);
+  }
+  std::vector<int> number(work.bodies.size(), -1);
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    if (work.bodies[i].is_free) continue;
+    int& island = number[at(root(static_cast<int>(i)))];
+    if (island < 0) {
+      island = static_cast<int>(work.islands.size());
+      work.islands.emplace_back();
+    }
+    work.islands[at(island)].bodies.push_back(static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < work.contacts.size(); ++i) {
+    const SolverContact& c = work.contacts[i];
+    const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
+    work.islands[at(number[at(root(member))])].contacts.push_back(static_cast<int>(i));
+  }
+}
+
+// Sleepers that something touches or is about to reach, unless that moves hardly at all.
+void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSettings& settings,
+                           MotionWork& work) {
+  for (const WorkPair& pair : work.pairs) {
+    const Body &a = bodies[at(pair.a)], &b = bodies[at(pair.b)];
+    const bool a_sleeps = a.is_dynamic() && !a.is_awake, b_sleeps = b.is_dynamic() && !b.is_awake;
+    if (a_sleeps == b_sleeps || pair.contacts.empty()) continue;
+    const int mover = a_sleeps ? pair.b : pair.a;
+    const WorkBody& w = work.bodies[at(mover)];
+    if (!w.is_active || is_quiet(settings, w.velocity, w.spin, w.reach)) continue;
+    for (const Contact& c : pair.contacts) {
+      const Vec3 arm = (a_sleeps ? c.on_b : c.on_a) - w.start.translation;
+      const Vec3 towards = a_sleeps ? c.normal : Vec3(-c.normal);
+      const double closing = towards.dot(w.velocity + w.spin.cross(arm)) * settings.time_step;
+      if (c.gap > 2.0 * pair.kept_gap + std::max(0.0, closing)) continue;
+      work.to_wake.push_back(a_sleeps ? a.id : b.id);
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
+                          ContactState& state, MotionWork& work) {
+  work = MotionWork();
+  match_bodies(bodies, state);
+  bool anything_moves = false;
+  work.bodies.reserve(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    work.bodies.push_back(make_work_body(bodies[i], state.bodies[i], settings));
+    work.ids.push_back(bodies[i].id);
+    anything_moves = anything_moves || work.bodies.back().is_active;
+  }
+  if (!anything_moves) return;
+  match_pairs(bodies, find_pairs(bodies, settings, work), work, state);
+
+  struct Needs {
+    bool place = false, boxes = false, swept = false;
+  };
+  std::vector<Needs> needs(bodies.size());
+  for (WorkPair& pair : work.pairs) {
+    classify(bodies, settings, state.pairs[at(pair.state)], work, pair);
+    for (const int i : {pair.a, pair.b}) {
+      Needs& n = needs[at(i)];
+      n.place = n.place || !pair.is_analytic;
+      n.boxes = n.boxes || pair.needs_list;
+      n.swept = n.swept || pair.is_fast;
+    }
+  }
+  core::parallel_for(bodies.size(), 8, [&](std::size_t i) {
+    WorkBody& w = work.bodies[i];
+    if (w.shape->kind == ShapeKind::plane) return;
+    if (needs[i].place) place(w);
+    if (needs[i].boxes) collision::refit_boxes(w.placed);
+    if (!needs[i].swept) return;
+    w.end_way = w.predicted.translation - w.start.translation;
+    place_at(w, {w.predicted.rotation, w.start.translation}, w.turned);
+    collision::refit_swept_boxes(w.placed, w.turned);
+  });
+  core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
+    meet(settings, work, state.pairs[at(work.pairs[p].state)], work.pairs[p]);
+  });
+  find_sleepers_to_wake(bodies, settings, work);
+  add_solver_contacts(state, work);
+  build_islands(work);
+}
+
+}  // namespace shatterbox::dynamics

@@ -1,0 +1,316 @@
+#include "engine/dynamics/contact_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shatterbox::dynamics {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Bodies that no impulse moves are not written to (islands share them): their motion is known at any time.
+struct Moved {
+  Vec3 way;
+  Mat3 turn;
+};
+
+Moved moved(const WorkBody& body, double time) {
+  if (body.inverse_mass > 0.0) return {body.way, body.turn};
+  if (!body.is_active) return {Vec3::Zero(), Mat3::Identity()};
+  return {body.velocity * time, rotation_by(body.spin * time).toRotationMatrix()};
+}
+
+class IslandSolver {
+ public:
+  IslandSolver(const ContactSettings& settings, const Island& island, MotionWork& work)
+      : settings_(settings), island_(island), work_(work), step_(settings.time_step / settings.substeps) {}
+
+  void run() {
+    for (int i = 0; i < settings_.substeps; ++i) {
+      kick();
+      prepare(i * step_);
+      find_arrivals();
+      start_warm(0.5);
+      sweep_before_drift();
+      drift();
+      kick();
+      prepare((i + 1) * step_);
+      start_warm(0.5);
+      sweep_after_drift();
+      bounce();
+      book(has_arrivals_);
+    }
+  }
+
+ private:
+  WorkBody& body(int i) { return work_.bodies[at(i)]; }
+
+  void kick() {
+    for (const int i : island_.bodies) body(i).velocity += body(i).gravity * (0.5 * step_);
+  }
+
+  void drift() {
+    for (const int i : island_.bodies) {
+      WorkBody& b = body(i);
+      b.way += b.velocity * step_;
+      advance_spin(b.inertia, step_, SpinOrder::second, b.rotation, b.spin);
+      const Mat3 r = b.rotation.toRotationMatrix();
+      b.turn = r * b.start.rotation.toRotationMatrix().transpose();
+      const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
+      b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
+    }
+  }
+
+  // Arms, gap and response at the present pose. Both bodies feel the impulse at one and the same point:
+  // angular momentum is kept to rounding.
+  void prepare(double time) {
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      const WorkBody &a = body(c.a), &b = body(c.b);
+      const Moved ma = moved(a, time), mb = moved(b, time);
+      const Vec3 turned_a = ma.turn * c.arm_a_start, turned_b = mb.turn * c.arm_b_start;
+      const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
+      const double gap = c.gap_start + c.normal.dot(change);
+      c.slack = gap - c.kept_gap;
+      // Half way between the surfaces, seen from both centres.
+      const Vec3 centre_a = a.start.translation + ma.way, centre_b = b.start.translation + mb.way;
+      c.point = 0.5 * ((centre_a + turned_a) + (centre_b + turned_b));
+      c.arm_a = c.point - centre_a;
+      c.arm_b = c.point - centre_b;
+      const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
+      Vec3 moment_a[3], moment_b[3];
+      for (int k = 0; k < 3; ++k) {
+        moment_a[k] = c.arm_a.cross(axes[k]);
+        moment_b[k] = c.arm_b.cross(axes[k]);
+      }
+      const double both = a.inverse_mass + b.inverse_mass;
+      for (int k = 0; k < 3; ++k) {
+        Vec3 spin_a = Vec3::Zero(), spin_b = Vec3::Zero();
+        if (a.inverse_mass > 0.0) spin_a = a.inverse_inertia * moment_a[k];
+        if (b.inverse_mass > 0.0) spin_b = b.inverse_inertia * moment_b[k];
+        for (int l = 0; l <= k; ++l) {
+          const double value = spin_a.dot(moment_a[l]) + spin_b.dot(moment_b[l]) + (k == l ? both : 0.0);
+          c.response(k, l) = c.response(l, k) = value;
+        }
+        c.weights[k] = 1.0 / c.response(k, k);
+      }
+    }
+  }
+
+  Vec3 relative_velocity(const SolverContact& c) {
+    const WorkBody &a = body(c.a), &b = body(c.b);
+    const Vec3 u = a.velocity + a.spin.cross(c.arm_a) - b.velocity - b.spin.cross(c.arm_b);
+    return {c.normal.dot(u), c.tangent_u.dot(u), c.tangent_v.dot(u)};
+  }
+
+  // `impulse` in the contact's axes; books its work, from the relative velocity before it.
+  void apply(SolverContact& c, const Vec3& impulse, const Vec3& velocity_before) {
+    const Vec3 p = impulse[0] * c.normal + impulse[1] * c.tangent_u + impulse[2] * c.tangent_v;
+    WorkBody &a = body(c.a), &b = body(c.b);
+    if (a.inverse_mass > 0.0) {
+      a.velocity += a.inverse_mass * p;
+      a.spin += a.inverse_inertia * c.arm_a.cross(p);
+    }
+    if (b.inverse_mass > 0.0) {
+      b.velocity -= b.inverse_mass * p;
+      b.spin -= b.inverse_inertia * c.arm_b.cross(p);
+    }
+    c.impulse += impulse;
+    c.total += p;
+    work_.pairs[at(c.pair)].work += impulse.dot(velocity_before) + 0.5 * impulse.dot(c.response * impulse);
+  }
+
+  // What closes within this substep, and how fast it will be when it touches. From the energy at the
+  // substep's start: gravity's share of the way down is in it, whatever the part of the substep.
+  void find_arrivals() {
+    has_arrivals_ = false;
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      c.impulse.setZero();
+      c.rolling_impulse.setZero();
+      c.is_arriving = false;
+      work_.pairs[at(c.pair)].work = 0.0;
+      const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
+      const double after_kick = relative_velocity(c)[0];
+      const double before = after_kick - 0.5 * drive * step_;
+      const double way = std::max(0.0, c.slack);
+      if (after_kick >= 0.0 || way + after_kick * step_ > 0.0) continue;
+      const double speed_squared = before * std::abs(before) + 2.0 * drive * way;  // closing is negative
+      if (speed_squared >= 0.0) continue;
+      const double speed = std::sqrt(-speed_squared);
+      if (speed <= c.threshold) continue;
+      c.is_arriving = true;
+      has_arrivals_ = true;
+      c.arrival_speed = std::max(c.arrival_speed, speed);
+      if (speed > c.closing_speed) {
+        c.closing_speed = speed;
+        c.effective_mass = c.weights[0];
+      }
+    }
+  }
+
+  void start_warm(double share) {
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      if (c.warm[0] > 0.0) apply(c, share * settings_.warm_start * c.warm, relative_velocity(c));
+    }
+  }
+
+  // Friction on the present normal impulse, in a circular cone.
+  void rub(SolverContact& c, Vec3& u, Vec3& change) {
+    if (c.friction <= 0.0) return;
+    Vec2 wanted(c.impulse[1] - u[1] * c.weights[1], c.impulse[2]);
+    const double cross = c.response(1, 2) * (wanted[0] - c.impulse[1]);
+    wanted[1] -= (u[2] + cross) * c.weights[2];
+    const double bound = c.friction * (c.impulse[0] + change[0]);
+    const double length = wanted.norm();
+    if (length > bound) wanted *= bound / length;
+    change[1] = wanted[0] - c.impulse[1];
+    change[2] = wanted[1] - c.impulse[2];
+  }
+
+  // Rolling friction: a couple that slows the part of the relative spin along the tangents.
+  void resist_rolling(SolverContact& c) {
+    if (c.rolling <= 0.0 || c.impulse[0] <= 0.0) return;
+    WorkBody &a = body(c.a), &b = body(c.b);
+    const Vec3 axes[2] = {c.tangent_u, c.tangent_v};
+    Vec2 wanted = c.rolling_impulse;
+    for (int k = 0; k < 2; ++k) {
+      double response = 0.0;
+      if (a.inverse_mass > 0.0) response += axes[k].dot(a.inverse_inertia * axes[k]);
+      if (b.inverse_mass > 0.0) response += axes[k].dot(b.inverse_inertia * axes[k]);
+      if (response > 0.0) wanted[k] -= axes[k].dot(a.spin - b.spin) / response;
+    }
+    const double bound = c.rolling * c.impulse[0];
+    if (wanted.norm() > bound) wanted *= bound / wanted.norm();
+    const Vec2 change = wanted - c.rolling_impulse;
+    const Vec3 couple = change[0] * axes[0] + change[1] * axes[1];
+    if (a.inverse_mass > 0.0) a.spin += a.inverse_inertia * couple;
+    if (b.inverse_mass > 0.0) b.spin -= b.inverse_inertia * couple;
+    c.rolling_impulse = wanted;
+  }
+
+  // One visit: at least `target` along the normal, then friction. Returns how much closing it found, m/s.
+  double visit(SolverContact& c, double target) {
+    const Vec3 before = relative_velocity(c);
+    if (before[0] >= target && c.impulse[0] <= 0.0) return 0.0;
+    Vec3 change = Vec3::Zero(), u = before;
+    change[0] = std::max(-c.impulse[0], (target - u[0]) * c.weights[0]);
+    u += c.response.col(0) * change[0];
+    rub(c, u, change);
+    apply(c, change, before);
+    resist_rolling(c);
+    return change[0] > 0.0 ? target - before[0] : -change[0] * c.response(0, 0);
+  }
+
+  double target_before_drift(const SolverContact& c) const {
+    if (c.slack > 0.0) return -c.slack / step_;
+    return std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
+  }
+
+  // One sweep is enough at rest; what arrives must not overshoot the gap.
+  void sweep_before_drift() {
+    const int most = has_arrivals_ ? 16 : 1;
+    for (int sweep = 0; sweep < most; ++sweep) {
+      double excess = 0.0;
+      for (const int i : island_.contacts) {
+        SolverContact& c = work_.contacts[at(i)];
+        const double found = visit(c, target_before_drift(c));
+        excess = std::max(excess, found * step_ / (kTouching * c.kept_gap));
+      }
+      if (excess < 1.0) break;
+    }
+  }
+
+  static bool is_touching(const SolverContact& c) {
+    return c.slack <= kTouching * c.kept_gap || (c.impulse[0] > 0.0 && c.slack <= c.kept_gap);
+  }
+
+  void sweep_after_drift() {
+    for (int sweep = 0; sweep < (has_arrivals_ ? 8 : 2); ++sweep) {
+      double excess = 0.0;
+      for (const int i : island_.contacts) {
+        SolverContact& c = work_.contacts[at(i)];
+        if (is_touching(c)) excess = std::max(excess, visit(c, 0.0) / c.threshold);
+      }
+      if (sweep > 0 && excess < 1e-2) break;
+    }
+  }
+
+  // Newton's rule with the speed before the impact; the pair's impulses of this substep may not do work in
+  // sum.
+  void bounce() {
+    bool is_due = false;
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      c.target = 0.0;
+      if (c.arrival_speed <= 0.0 || !is_touching(c)) continue;
+      if (c.impulse[0] <= 0.0 && !c.is_arriving) {  // turned away by others before it touched
+        c.arrival_speed = 0.0;
+        continue;
+      }
+      c.target = c.restitution * c.arrival_speed;
+      is_due = true;
+    }
+    if (!is_due) return;
+    for (int sweep = 0; sweep < 40; ++sweep) {
+      double excess = 0.0;
+      for (const int i : island_.contacts) {
+        SolverContact& c = work_.contacts[at(i)];
+        if (!is_touching(c)) continue;
+        const double found = c.target > 0.0 ? visit_bounce(c) : visit(c, 0.0);
+        excess = std::max(excess, found / std::max(c.target, c.threshold));
+      }
+      if (excess < 1e-9) break;
+    }
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      if (is_touching(c)) c.arrival_speed = 0.0;
+    }
+  }
+
+  double visit_bounce(SolverContact& c) {
+    const Vec3 before = relative_velocity(c);
+    const double wanted = std::max(-c.impulse[0], (c.target - before[0]) * c.weights[0]);
+    Vec3 change(wanted, 0.0, 0.0);
+    if (wanted > 0.0) {
+      const double budget = std::max(0.0, -work_.pairs[at(c.pair)].work);
+      const double root = before[0] * before[0] + 2.0 * c.response(0, 0) * budget;
+      const double most = (std::sqrt(root) - before[0]) * c.weights[0];
+      change[0] = std::min(wanted, std::max(0.0, most));
+    }
+    Vec3 u = before + c.response.col(0) * change[0];
+    rub(c, u, change);
+    apply(c, change, before);
+    resist_rolling(c);
+    return std::abs(change[0]) * c.response(0, 0);
+  }
+
+  // An impact's impulse says nothing about the next substep: start that one from what was before.
+  void book(bool was_impact) {
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      if (!was_impact) c.warm = c.impulse;
+      c.moment_point += c.impulse[0] * c.point;
+      c.moment_weight += c.impulse[0];
+    }
+  }
+
+  static constexpr double kTouching = 0.05;  // of the kept gap
+
+  const ContactSettings& settings_;
+  const Island& island_;
+  MotionWork& work_;
+  const double step_;
+  bool has_arrivals_ = false;
+};
+
+}  // namespace
+
+void solve_island(const ContactSettings& settings, const Island& island, MotionWork& work) {
+  IslandSolver(settings, island, work).run();
+}
+
+}  // namespace shatterbox::dynamics

@@ -1,0 +1,57 @@
+#include "engine/dynamics/contact_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/dynamics/contact_settings.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+template <class Pairs>
+auto* find_in(Pairs& pairs, body::BodyId a, body::BodyId b) {
+  if (a > b) std::swap(a, b);
+  const auto place = std::lower_bound(
+      pairs.begin(), pairs.end(), std::pair(a, b),
+      [](const PairState& p, const auto& key) { return std::pair(p.body_a, p.body_b) < key; });
+  return place != pairs.end() && place->body_a == a && place->body_b == b ? &*place : nullptr;
+}
+
+}  // namespace
+
+PairState* ContactState::find_pair(body::BodyId a, body::BodyId b) {
+  return find_in(pairs, a, b);
+}
+const PairState* ContactState::find_pair(body::BodyId a, body::BodyId b) const {
+  return find_in(pairs, a, b);
+}
+
+void add_to_hash(const ContactState& state, core::Hash& hash) {
+  for (const PairState& pair : state.pairs) {
+    hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
+    hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));
+    hash.add(static_cast<std::uint64_t>(pair.trouble_age));
+    for (const RememberedContact& c : pair.contacts) {
+      hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.arrival_speed);
+      hash.add(static_cast<std::uint64_t>(c.was_loaded));
+    }
+  }
+}
+
+PairMaterial pair_material(const body::Body& a, const body::Body& b, const ContactSettings& settings) {
+  PairMaterial result;
+  result.rolling_friction = std::max(a.rolling_friction, b.rolling_friction);
+  for (const PairOverride& o : settings.overrides) {
+    if ((o.material_a == a.material && o.material_b == b.material) ||
+        (o.material_a == b.material && o.material_b == a.material)) {
+      result.friction = o.friction;
+      result.restitution = o.restitution;
+      return result;
+    }
+  }
+  result.friction = std::sqrt(std::max(0.0, a.friction * b.friction));
+  result.restitution = std::min(a.restitution, b.restitution);
+  return result;
+}
+
+}  // namespace shatterbox::dynamics

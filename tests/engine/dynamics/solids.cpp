@@ -1,0 +1,229 @@
+// Planes, boxes and spheres against closed forms.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "engine/core/parallel.h"
+#include "tests/engine/dynamics/bodies.h"
+
+namespace shatterbox {
+namespace {
+
+using body::ImpulseKind;
+
+test::Scene ground_scene() {
+  test::Scene scene;
+  scene.add(test::make_plane());
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a ball bounces to e^2 of its height and never gains") {
+  for (const double e : {0.0, 0.5, 0.9, 1.0}) {
+    auto scene = ground_scene();
+    const double radius = 0.1, gap = 2.0 * radius * scene.settings.kept_gap;
+    auto& ball = scene.add(test::make_sphere(radius, Vec3(0, 1.0 + radius + gap, 0)));
+    ball.restitution = 1.0;
+    scene.bodies[0].restitution = e;
+    std::vector<double> peaks;
+    double last_velocity = 0.0, highest = 0.0;
+    const double start = scene.energy();
+    double most = start;
+    for (int i = 0; i < 240 * 4; ++i) {
+      scene.step();
+      const auto& b = scene.bodies[1];
+      most = std::max(most, scene.energy());
+      highest = std::max(highest, last_velocity > 0.0 || b.velocity.y() > 0.0 ? b.pose.translation.y() : 0.0);
+      if (last_velocity > 0.0 && b.velocity.y() <= 0.0) {
+        peaks.push_back(highest - radius - gap);
+        highest = 0.0;
+      }
+      last_velocity = b.velocity.y();
+    }
+    INFO("e " << e);
+    CHECK(most <= start * (1.0 + 1e-12));
+    if (e == 0.0) {
+      CHECK(scene.bodies[1].pose.translation.y() == Approx(radius + gap).epsilon(1e-4));
+      CHECK(!scene.bodies[1].is_awake);
+      continue;
+    }
+    REQUIRE(peaks.size() >= 3);
+    for (int n = 0; n < 3; ++n) {
+      CHECK(peaks[static_cast<std::size_t>(n)] == Approx(std::pow(e, 2 * (n + 1))).epsilon(0.02));
+    }
+  }
+}
+
+TEST_CASE("a falling ball is seen to touch before it bounces, and its impact is logged as a collision") {
+  auto scene = ground_scene();
+  auto& ball = scene.add(test::make_sphere(0.1, Vec3(0, 1.0, 0)));
+  ball.velocity.y() = -4.0;
+  double lowest = 1.0, closing = 0.0;
+  int collisions = 0;
+  for (int i = 0; i < 120; ++i) {
+    const double before = scene.bodies[1].velocity.y();
+    scene.step();
+    lowest = std::min(lowest, scene.bodies[1].pose.translation.y());
+    Vec3 sum = Vec3::Zero();
+    for (const auto& entry : scene.log) {
+      sum += entry.body_a == 2 ? entry.impulse_world : Vec3(-entry.impulse_world);
+      if (entry.kind != ImpulseKind::collision) continue;
+      ++collisions;
+      closing = std::max(closing, entry.closing_speed);
+      CHECK(entry.effective_mass == Approx(scene.bodies[1].shape->mass));
+      CHECK(entry.impulse_world.norm() ==
+            Approx(1.3 * entry.closing_speed * entry.effective_mass).epsilon(1e-3));
+    }
+    const double gained = scene.bodies[1].velocity.y() - before + 9.81 / 240.0;
+    CHECK(std::abs(sum.y() * scene.bodies[1].inverse_mass - gained) < 1e-12);
+  }
+  CHECK(collisions == 1);
+  CHECK(closing == Approx(std::sqrt(16.0 + 2.0 * 9.81 * 0.9)).epsilon(1e-3));
+  CHECK(lowest < 0.102);
+  CHECK(lowest > 0.1);
+}
+
+TEST_CASE("a block sticks below the friction angle and slides above it") {
+  const double tilt = 0.4;
+  for (const double share : {1.05, 0.95}) {
+    auto scene = ground_scene();
+    const Quat turn(core::cos(tilt / 2), 0, 0, core::sin(tilt / 2));
+    scene.bodies[0].pose.rotation = turn;
+    const double mu = share * std::tan(tilt);
+    auto& block = scene.add(test::make_box(Vec3(0.2, 0.05, 0.2), turn * Vec3(0, 0.0504, 0)));
+    block.pose.rotation = turn;
+    block.friction = scene.bodies[0].friction = mu;
+    scene.settings.has_sleep = false;
+    const Vec3 start = block.pose.translation;
+    for (int i = 0; i < 480; ++i) scene.step();
+    const double way = (scene.bodies[1].pose.translation - start).norm();
+    const double slide = 0.5 * 9.81 * (std::sin(tilt) - mu * std::cos(tilt)) * 4.0;
+    INFO("share " << share << " way " << way << " closed form " << slide);
+    if (share > 1.0) {
+      CHECK(way < 1e-3);
+      CHECK(scene.bodies[1].velocity.norm() < 1e-6);
+    } else {
+      CHECK(way == Approx(slide).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("a sliding ball comes to roll") {
+  auto scene = ground_scene();
+  const double v0 = 3.0, mu = 0.3;
+  auto& ball = scene.add(test::make_sphere(0.1, Vec3(0, 0.1001, 0)));
+  ball.velocity.x() = v0;
+  ball.friction = scene.bodies[0].friction = mu;
+  const double rolls_at = 2.0 * v0 / (7.0 * mu * 9.81);
+  double found = 0.0;
+  for (int i = 1; i <= 480; ++i) {
+    scene.step();
+    const auto& b = scene.bodies[1];
+    const double slip = b.velocity.x() + b.angular_velocity.z() * 0.1;
+    if (found == 0.0 && slip < 1e-3) found = i / 240.0;
+  }
+  CHECK(found == Approx(rolls_at).margin(1.0 / 240.0).epsilon(0.01));
+  CHECK(scene.bodies[1].velocity.x() == Approx(5.0 / 7.0 * v0).epsilon(0.01));
+}
+
+TEST_CASE("colliding bodies keep momentum and lose what Newton's rule says") {
+  core::Random random(7);
+  const auto draw = [&] {
+    const double x = random.uniform(-1, 1);
+    const double y = random.uniform(-1, 1);
+    const double z = random.uniform(-1, 1);
+    return Vec3(x, y, z);
+  };
+  int seen = 0;
+  for (int n = 0; n < 60; ++n) {
+    test::Scene scene;
+    scene.settings.gravity.setZero();
+    const bool has_boxes = n % 2 == 1;
+    const double e = 0.25 * (n % 5);
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 place = (k == 0 ? -1.0 : 1.0) * (Vec3(0.4, 0, 0) + 0.05 * draw());
+      auto b = has_boxes ? test::make_box(Vec3(0.1, 0.15, 0.2), place, true, 500.0 + 1500.0 * k)
+                         : test::make_sphere(0.1 + 0.05 * k, place, 500.0 + 1500.0 * k);
+      b.velocity = (k == 0 ? 1.0 : -1.0) * Vec3(2.0, 0, 0) + 0.2 * draw();
+      b.angular_velocity = 0.5 * draw();
+      b.pose.rotation = dynamics::rotation_by(draw());
+      b.restitution = e;
+      b.friction = has_boxes ? 0.4 : 0.0;
+      scene.add(b);
+    }
+    const Vec3 momentum = scene.momentum(), spin = scene.spin();
+    const double scale = 2.0 * scene.bodies[1].shape->mass;
+    for (int i = 0; i < 120; ++i) {
+      const double before = scene.kinetic();
+      scene.step();
+      INFO("pair " << n << " step " << i);
+      CHECK((scene.momentum() - momentum).norm() < 1e-12 * scale);
+      CHECK((scene.spin() - spin).norm() < 1e-12 * scale);
+      CHECK(scene.kinetic() <= before * (1.0 + 1e-12));
+      if (has_boxes || scene.log.empty()) continue;
+      ++seen;
+      REQUIRE(scene.log.size() == 1);
+      const auto& entry = scene.log[0];
+      CHECK(entry.kind == ImpulseKind::collision);
+      const double lost =
+          0.5 * (1.0 - e * e) * entry.effective_mass * entry.closing_speed * entry.closing_speed;
+      // The centres turn about each other by a little between the approach and the bounce of a substep.
+      CHECK(before - scene.kinetic() == Approx(lost).margin(1e-12 * before).epsilon(1e-9));
+    }
+  }
+  CHECK(seen >= 20);
+}
+
+TEST_CASE("a stack of five boxes stands, and the ground carries its weight") {
+  auto scene = ground_scene();
+  const double half = 0.1;
+  for (int k = 0; k < 5; ++k)
+    scene.add(test::make_box(Vec3::Constant(half), Vec3(0, half + 2 * half * k, 0)));
+  scene.settings.has_sleep = false;
+  const double weight = 5.0 * scene.bodies[1].shape->mass * 9.81;
+  double carried = 0.0;
+  for (int i = 0; i < 960; ++i) {
+    scene.step();
+    for (const auto& entry : scene.log) {
+      if (i >= 480 && (entry.body_a == 1 || entry.body_b == 1)) carried += std::abs(entry.impulse_world.y());
+      if (i >= 480) CHECK(entry.kind == ImpulseKind::contact);
+    }
+  }
+  CHECK(carried / 2.0 == Approx(weight).epsilon(1e-3));
+  for (int k = 0; k < 5; ++k) {
+    const Vec3 place = scene.bodies[static_cast<std::size_t>(k) + 1].pose.translation;
+    INFO("box " << k << " at " << place.transpose());
+    CHECK(std::abs(place.x()) + std::abs(place.z()) < 2e-3);
+    CHECK(place.y() == Approx(half + 2 * half * k).margin(2e-3));
+  }
+  CHECK(scene.kinetic() < 1e-9);
+  scene.settings.has_sleep = true;
+  for (int i = 0; i < 240; ++i) scene.step();
+  for (std::size_t k = 1; k < 6; ++k) CHECK(!scene.bodies[k].is_awake);
+  // The lowest is taken away: the others wake and fall.
+  scene.bodies.erase(scene.bodies.begin() + 1);
+  for (int i = 0; i < 120; ++i) scene.step();
+  CHECK(scene.bodies[1].pose.translation.y() == Approx(half).margin(2e-3));
+}
+
+TEST_CASE("fast spheres and boxes do not pass each other") {
+  for (const double speed : {10.0, 100.0, 500.0}) {
+    test::Scene scene;
+    scene.settings.gravity.setZero();
+    scene.add(test::make_box(Vec3(1, 1, 0.01), Vec3::Zero(), false));
+    auto& ball = scene.add(test::make_sphere(0.05, Vec3(0.1, 0.2, 3.3)));
+    ball.velocity.z() = -speed;
+    auto& box = scene.add(test::make_box(Vec3(0.05, 0.06, 0.07), Vec3(-0.3, 0.1, 3.1)));
+    box.velocity.z() = -speed;
+    box.angular_velocity = Vec3(5, 7, 3);
+    auto& miss = scene.add(test::make_sphere(0.05, Vec3(1.06, 0, 3.2)));
+    miss.velocity.z() = -speed;
+    for (int i = 0; i < 120; ++i) scene.step();
+    INFO("speed " << speed);
+    CHECK(scene.bodies[1].pose.translation.z() > 0.05);
+    CHECK(scene.bodies[2].pose.translation.z() > 0.05);
+    CHECK(scene.bodies[3].velocity.z() == Approx(-speed).epsilon(1e-12));
+  }
+}
+
+}  // namespace shatterbox
