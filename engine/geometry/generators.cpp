@@ -152,7 +152,7 @@ std::vector<double> row_places(int row, int columns, double width) {
 std::optional<std::string> find_fault(const Meshing& meshing, double extent) {
   if (!std::isfinite(meshing.edge_length) || meshing.edge_length <= 0.0)
     return "the edge length must be greater than 0 (it is " + metres(meshing.edge_length) + ")";
-  if (!(meshing.jitter >= 0.0 && meshing.jitter <= 0.5)) {
+  if (!(std::isfinite(meshing.jitter) && meshing.jitter >= 0.0 && meshing.jitter <= 0.5)) {
     std::ostringstream text;
     text << "jitter must be from 0 to 0.5 (it is " << meshing.jitter << ")";
     return text.str();
@@ -226,7 +226,8 @@ core::Result<TriangleMesh> make_bowl(const BowlSizes& sizes, const Meshing& mesh
   if (const auto fault = find_size_fault("a bowl's foot_radius", sizes.foot_radius))
     return core::Error{*fault};
   if (const auto fault = find_size_fault("a bowl's height", sizes.height)) return core::Error{*fault};
-  if (!(sizes.foot_height >= 0.0 && sizes.foot_height < 0.5 * sizes.height))
+  if (!(std::isfinite(sizes.foot_height) && sizes.foot_height >= 0.0 &&
+        sizes.foot_height < 0.5 * sizes.height))
     return core::Error{"a bowl's foot_height must be from 0 to half its height (it is " +
                        metres(sizes.foot_height) + ")"};
   const Vec2 foot(sizes.foot_radius, 0.0);

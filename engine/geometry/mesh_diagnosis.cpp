@@ -1,6 +1,7 @@
 #include "engine/geometry/mesh_diagnosis.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -24,6 +25,13 @@ std::string at_place(const Vec3& place) {
   std::ostringstream text;
   text << "(" << place.x() << ", " << place.y() << ", " << place.z() << ")";
   return text.str();
+}
+
+/// Eigen's own test for finiteness subtracts, which traps on what it looks for.
+bool is_usable(const Vec3& p) {
+  for (const double x : {p.x(), p.y(), p.z()})
+    if (!std::isfinite(x) || std::abs(x) >= kMostCoordinate) return false;
+  return true;
 }
 
 /// "1 vertex", "3 vertices".
@@ -109,7 +117,7 @@ class Mender {
     int first = -1;
     for (std::size_t v = 0; v < given_.positions.size(); ++v) {
       const Vec3& p = given_.positions[v];
-      if (p.allFinite() && p.cwiseAbs().maxCoeff() < kMostCoordinate) continue;
+      if (is_usable(p)) continue;
       if (count++ == 0) first = static_cast<int>(v);
     }
     if (count == 0) return true;

@@ -68,8 +68,8 @@ MeshDiagnosis diagnose(const TriangleMesh& mesh, const MendOptions& options = {}
 
 /// The mesh, mended: every edge has one or two triangles of agreeing winding, every vertex one fan, no
 /// triangle is without area. No vertex is moved; one that is nearer to its neighbour than 1e-12 of the
-/// triangle joins it. A single closed surface that was inside out is turned. Mending a mended mesh changes
-/// nothing. Refused meshes come back empty; diagnosis.refused() tells.
+/// triangle joins it. A single closed surface that was inside out is turned. Mending a mended mesh gives the
+/// same mesh. Refused meshes come back empty; diagnosis.refused() tells.
 MendedMesh mend(const TriangleMesh& mesh, const MendOptions& options = {});
 
 }  // namespace shatterbox::geometry

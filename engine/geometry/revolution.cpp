@@ -2,6 +2,7 @@
 // loosened.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "engine/core/elementary.h"
@@ -34,8 +35,8 @@ std::optional<std::string> find_profile_fault(const std::vector<ProfileSegment>&
   for (std::size_t i = 0; i < profile.size(); ++i) {
     const ProfileSegment& s = profile[i];
     const std::string name = "segment " + std::to_string(i + 1) + " of the profile ";
-    if (!s.from.allFinite() || !s.to.allFinite() || !s.centre.allFinite())
-      return name + "has a number that is none";
+    for (const double x : {s.from.x(), s.from.y(), s.to.x(), s.to.y(), s.centre.x(), s.centre.y()})
+      if (!std::isfinite(x)) return name + "has a number that is none";
     if (s.from.x() < 0.0 || s.to.x() < 0.0) return name + "goes to the other side of the axis (r < 0)";
     if (s.from == s.to) return name + "has no length";
     if (i > 0 && s.from != profile[i - 1].to) return name + "does not begin where the one before it ends";
@@ -168,10 +169,7 @@ core::Result<PartedMesh> make_surface_of_revolution(const std::vector<ProfileSeg
 
   const Profile profile(segments, meshing.edge_length);
   const std::vector<Ring> rings = lay_rings(profile, meshing);
-  if (rings.empty())
-    return core::Error{"an edge length of " + std::to_string(meshing.edge_length) +
-                       " m would make more than " + std::to_string(kMostTriangles) +
-                       " triangles; make it larger"};
+  if (rings.empty()) return core::Error{find_fault(meshing, std::numeric_limits<double>::max()).value_or("")};
   for (const Ring& ring : rings)
     if (!ring.is_end && profile.point(ring.segment, ring.s).x() <= 0.0)
       return core::Error{"segment " + std::to_string(ring.segment + 1) + " of the profile crosses the axis"};

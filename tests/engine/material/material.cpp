@@ -1,0 +1,67 @@
+#include "engine/material/material.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+namespace shatterbox::material {
+
+TEST_CASE("presets are sound, sorted, sourced and found by name") {
+  REQUIRE(presets().size() >= 6);
+  for (std::size_t i = 0; i < presets().size(); ++i) {
+    const Preset& preset = presets()[i];
+    INFO(preset.material.name);
+    CHECK(find_fault(preset.material).value_or("") == "");
+    CHECK(preset.source.size() > 40);
+    if (i > 0) CHECK(presets()[i - 1].material.name < preset.material.name);
+    REQUIRE(find_preset(preset.material.name));
+    CHECK(find_preset(preset.material.name)->density == preset.material.density);
+  }
+  CHECK_FALSE(find_preset("unobtainium"));
+  for (const char* name : {"glass", "ceramic", "porcelain", "eggshell", "steel"}) CHECK(find_preset(name));
+}
+
+TEST_CASE("the fracture energy of brittle presets is that of a known toughness") {
+  // Plane strain: K_Ic = sqrt(E G_c / (1 - nu^2)), MPa sqrt(m).
+  const auto toughness = [](const char* name) {
+    const Material m = *find_preset(name);
+    return std::sqrt(m.young * m.fracture_energy / (1.0 - m.poisson * m.poisson)) * 1e-6;
+  };
+  CHECK(toughness("glass") == Approx(0.75).epsilon(0.05));
+  CHECK(toughness("porcelain") == Approx(1.3).epsilon(0.05));
+  CHECK(toughness("ceramic") == Approx(1.25).epsilon(0.05));
+}
+
+TEST_CASE("every value outside its range is told with the range") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  struct Wrong {
+    double Material::*value;
+    const char* name;
+    double wrong;
+  };
+  for (const Wrong& w :
+       {Wrong{&Material::density, "density", 0.0}, Wrong{&Material::density, "density", nan},
+        Wrong{&Material::young, "young", -1.0}, Wrong{&Material::young, "young", infinite},
+        Wrong{&Material::poisson, "poisson", 0.5}, Wrong{&Material::poisson, "poisson", -0.1},
+        Wrong{&Material::strength, "strength", 0.0},
+        Wrong{&Material::fracture_energy, "fracture_energy", 0.0},
+        Wrong{&Material::weibull_modulus, "weibull_modulus", 0.5},
+        Wrong{&Material::flaw_area, "flaw_area", 0.0}, Wrong{&Material::crack_spacing, "crack_spacing", -1.0},
+        Wrong{&Material::grain_size, "grain_size", -1.0},
+        Wrong{&Material::grain_strength, "grain_strength", 1.5}, Wrong{&Material::friction, "friction", -0.1},
+        Wrong{&Material::rolling_friction, "rolling_friction", nan},
+        Wrong{&Material::restitution, "restitution", 1.01}, Wrong{&Material::thickness, "thickness", 0.0}}) {
+    Material material;
+    CHECK_FALSE(find_fault(material));
+    material.*w.value = w.wrong;
+    const auto fault = find_fault(material);
+    REQUIRE(fault);
+    INFO(*fault);
+    CHECK(fault->find(w.name) == 0);
+    CHECK(fault->find("must be") != std::string::npos);
+  }
+}
+
+}  // namespace shatterbox::material
