@@ -1,0 +1,66 @@
+#include "engine/core/parallel.h"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <mutex>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "engine/core/elementary.h"
+
+namespace shatterbox::core {
+
+TEST_CASE("chunks cover every index once and do not depend on the number of threads") {
+  std::vector<std::set<std::pair<std::size_t, std::size_t>>> all;
+  for (const int threads : {1, 2, 4, 7}) {
+    set_thread_count(threads);
+    CHECK(thread_count() == threads);
+    for (const std::size_t count :
+         {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{1001}}) {
+      std::vector<int> visits(count, 0);
+      std::set<std::pair<std::size_t, std::size_t>> chunks;
+      std::mutex mutex;
+      parallel_chunks(count, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+        const std::lock_guard lock(mutex);
+        chunks.emplace(begin, end);
+      });
+      for (const int v : visits) CHECK(v == 1);
+      CHECK(chunks.size() == (count + 63) / 64);
+      for (const auto& [begin, end] : chunks) {
+        CHECK(begin % 64 == 0);
+        CHECK(end - begin <= 64);
+      }
+    }
+  }
+  set_thread_count(0);
+  CHECK(thread_count() >= 1);
+}
+
+TEST_CASE("a loop gives the same bits on any number of threads") {
+  std::vector<std::vector<double>> results;
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    std::vector<double> values(5000);
+    parallel_for(values.size(), 16, [&](std::size_t i) {
+      double sum = 0.0;
+      for (int k = 1; k < 50; ++k) sum += sin(static_cast<double>(i) * k) / k;
+      values[i] = sum;
+    });
+    results.push_back(values);
+  }
+  set_thread_count(0);
+  CHECK(results[0] == results[1]);
+  CHECK(results[0] == results[2]);
+}
+
+TEST_CASE("a loop inside a loop ends, and a grain of zero counts as one") {
+  set_thread_count(2);
+  std::atomic<int> visits{0};
+  parallel_for(8, 1, [&](std::size_t) { parallel_for(8, 0, [&](std::size_t) { ++visits; }); });
+  set_thread_count(0);
+  CHECK(visits == 64);
+}
+
+}  // namespace shatterbox::core
