@@ -41,8 +41,6 @@ void add_run_options(CLI::App& command, Options& options) {
   command.add_flag("!--no-render", options.has_pictures, "simulate only");
 }
 
-}  // namespace
-
 /// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.
 bool is_known_verb(const std::string& verb) {
   const std::vector<std::string> verbs{"run", "check", "list"};

@@ -33,7 +33,8 @@ void check_file(const char* option, const std::string& file, scene::Problems& pr
   if (file.empty()) return;
   const std::string fault = file_fault(file);
   if (!fault.empty())
-    problems.push_back({{option, 0, 0}, fmt::format("{} cannot be written: {}", file, fault), ""});
+    scene::book(problems, scene::Place{option, 0, 0}, fmt::format("{} cannot be written: {}", file, fault),
+                "");
 }
 
 void make_folder(const char* option, const std::string& folder, scene::Problems& problems) {
@@ -41,12 +42,11 @@ void make_folder(const char* option, const std::string& folder, scene::Problems&
   std::error_code code;
   fs::create_directories(folder, code);
   if (code || !fs::is_directory(folder)) {
-    problems.push_back(
-        {{option, 0, 0},
-         fmt::format("folder {} cannot be made: {}", folder, code ? code.message() : "it is a file"),
-         ""});
+    scene::book(problems, scene::Place{option, 0, 0},
+                fmt::format("folder {} cannot be made: {}", folder, code ? code.message() : "it is a file"));
   } else if (access(folder.c_str(), W_OK) != 0) {
-    problems.push_back({{option, 0, 0}, fmt::format("folder {}: {}", folder, std::strerror(errno)), ""});
+    scene::book(problems, scene::Place{option, 0, 0},
+                fmt::format("folder {}: {}", folder, std::strerror(errno)), "");
   }
 }
 
@@ -63,9 +63,8 @@ std::optional<render::Size> parse_size(const std::string& text, scene::Problems&
   }
   const auto fits = [](int side) { return side >= 16 && side <= 8192 && side % 2 == 0; };
   if (is_good && fits(size.width) && fits(size.height)) return size;
-  problems.push_back({{"--size", 0, 0},
-                      fmt::format("\"{}\" is no picture size", text),
-                      "write WIDTHxHEIGHT, for example 640x360: even numbers from 16 to 8192"});
+  scene::book(problems, scene::Place{"--size", 0, 0}, fmt::format("\"{}\" is no picture size", text),
+              "write WIDTHxHEIGHT, for example 640x360: even numbers from 16 to 8192");
   return std::nullopt;
 }
 
@@ -81,7 +80,7 @@ scene::SceneChanges changes_of(const Options& options) {
 void prepare_outputs(const Options& options, scene::Problems& problems) {
   if (!options.video.empty()) {
     const render::Status status = render::can_write_video(options.video);
-    if (!status) problems.push_back({{"-o", 0, 0}, status.error, ""});
+    if (!status) scene::book(problems, scene::Place{"-o", 0, 0}, status.error, "");
   }
   check_file("-o", options.video, problems);
   check_file("--report", options.report, problems);

@@ -59,8 +59,8 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   job.painter.video = job.options.video;
   job.painter.frames_folder = options.frames_folder;
   if (!options.has_pictures && (!options.video.empty() || !options.frames_folder.empty())) {
-    problems.push_back(
-        {{"--no-render", 0, 0}, "no pictures, but -o or --frames asks for some", "leave one of them out"});
+    scene::book(problems, scene::Place{"--no-render", 0, 0}, "no pictures, but -o or --frames asks for some",
+                "leave one of them out");
   }
   if (file.empty()) return job;
   job.scene = scene::read_scene_file(file, changes_of(options), problems);
@@ -194,7 +194,10 @@ int run_scene(const Options& options) {
   std::optional<Painter> painter;
   if (options.has_pictures && !(job.painter.video.empty() && job.painter.frames_folder.empty())) {
     painter.emplace(job.painter);
-    if (!painter->error().empty()) return refuse({{{"-o", 0, 0}, painter->error(), ""}});
+    if (!painter->error().empty()) {
+      scene::book(problems, scene::Place{"-o", 0, 0}, painter->error());
+      return refuse(problems);
+    }
   }
   Painter* const hand = painter ? &*painter : nullptr;
   std::string fault;

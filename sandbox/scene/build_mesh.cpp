@@ -86,7 +86,7 @@ std::optional<geometry::PartedMesh> read_files(const MeshFileShape& shape, const
   for (const std::string& file : shape.files) {
     auto mesh = read_mesh(file, &notes);
     if (!mesh) {
-      problems.push_back({place, mesh.error(), ""});
+      book(problems, place, mesh.error(), "");
       return std::nullopt;
     }
     append(whole, mesh.value());
@@ -96,8 +96,8 @@ std::optional<geometry::PartedMesh> read_files(const MeshFileShape& shape, const
   options.allow_loose_parts = true;
   geometry::MendedMesh mended = geometry::mend(whole, options);
   if (mended.diagnosis.refused()) {
-    problems.push_back({place, fmt::format("the mesh {} cannot be used", names),
-                        mended.diagnosis.sentences(geometry::Severity::refused)});
+    book(problems, place, fmt::format("the mesh {} cannot be used", names),
+         mended.diagnosis.sentences(geometry::Severity::refused));
     return std::nullopt;
   }
   for (const geometry::MeshFinding& finding : mended.diagnosis.findings) {
@@ -138,8 +138,8 @@ bool fit(geometry::TriangleMesh& mesh, const ShellForm& form, const Place& place
   const Bounds bounds = bounds_of(mesh.positions);
   const double extent = (bounds.most - bounds.least).maxCoeff();
   if (extent >= 1e-4 && extent <= 1e4) return true;
-  problems.push_back({place, fmt::format("the mesh is {:g} m across", extent),
-                      "bodies are from 1e-4 to 1e4 m; if the file is in millimetres, write scale = 0.001"});
+  book(problems, place, fmt::format("the mesh is {:g} m across", extent),
+       "bodies are from 1e-4 to 1e4 m; if the file is in millimetres, write scale = 0.001");
   return false;
 }
 
@@ -154,7 +154,7 @@ std::optional<BuiltMesh> build_mesh(const ShellForm& form, const Place& place, P
   } else {
     auto generated = generate(form);
     if (!generated) {
-      problems.push_back({place, generated.error(), ""});
+      book(problems, place, generated.error(), "");
       return std::nullopt;
     }
     parted = std::move(generated.value());
@@ -200,7 +200,7 @@ std::vector<int> find_clamped(const geometry::TriangleMesh& mesh, const Quat& ro
   for (std::size_t v = 0; v < is_clamped.size(); ++v) {
     if (is_clamped[v]) clamped.push_back(static_cast<int>(v));
   }
-  if (clamped.empty() && !fault.empty()) problems.push_back({place, fault, hint});
+  if (clamped.empty() && !fault.empty()) book(problems, place, fault, hint);
   return clamped;
 }
 

@@ -79,7 +79,7 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
 void add_materials(const SceneDescription& scene, world::World& world, Problems& problems) {
   for (const MaterialEntry& entry : scene.materials) {
     const auto number = world.add_material(entry.material);
-    if (!number) problems.push_back({entry.place, number.error(), ""});
+    if (!number) book(problems, entry.place, number.error(), "");
   }
   for (const PairEntry& pair : scene.pairs) {
     world.add_pair({pair.materials[0], pair.materials[1], pair.friction, pair.restitution});
@@ -149,7 +149,7 @@ std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& p
       if (poses.size() > 1) description.name = fmt::format("{}[{}]", body.name, copy + 1);
       const auto id = built.world.add_body(description);
       if (!id) {
-        problems.push_back({body.place, fmt::format("body \"{}\": {}", description.name, id.error()), ""});
+        book(problems, body.place, fmt::format("body \"{}\": {}", description.name, id.error()), "");
         break;
       }
       built.entries[id.value()] = static_cast<int>(i);

@@ -61,9 +61,8 @@ std::string find_scene(const std::string& scene, Problems& problems) {
     names.push_back(known.name);
   }
   const std::string stem = fs::path(scene).stem().string();
-  problems.push_back({{scene, 0, 0},
-                      "there is no such scene: neither a file nor a name",
-                      hint_for_name(stem, names, "scenes")});
+  book(problems, Place{scene, 0, 0}, "there is no such scene: neither a file nor a name",
+       hint_for_name(stem, names, "scenes"));
   return {};
 }
 

@@ -50,7 +50,9 @@ core::Result<geometry::TriangleMesh> read_by_ending(const std::filesystem::path&
 }  // namespace
 
 core::Error mesh_fault(const std::filesystem::path& path, std::size_t line, const std::string& sentence) {
-  return core::Error{path.string() + (line > 0 ? ":" + std::to_string(line) : "") + ": " + sentence};
+  std::string place = path.string();
+  if (line > 0) place += ':' + std::to_string(line);
+  return core::Error{place + ": " + sentence};
 }
 
 std::vector<std::string_view> split_words(std::string_view line) {

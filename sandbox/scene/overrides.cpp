@@ -10,14 +10,18 @@ namespace {
 
 constexpr const char* kForm = "write --set NAME.key=value, for example --set ball.speed=12";
 
+std::string without_outer_blanks(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
 std::vector<std::string> split_at_dots(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == '.') {
-      parts.emplace_back();
-    } else if (c != ' ') {
-      parts.back() += c;
-    }
+  std::vector<std::string> parts;
+  std::size_t first = 0;
+  for (std::size_t dot = 0; dot != std::string::npos; first = dot + 1) {
+    dot = text.find('.', first);
+    parts.push_back(without_outer_blanks(text.substr(first, dot == std::string::npos ? dot : dot - first)));
   }
   return parts;
 }
@@ -39,7 +43,7 @@ const TomlValue* parse_value(const std::string& text, const Place& place, TomlVa
       return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/' || c == '.';
     });
     if (is_word) hint = "if you mean a text, quote it twice, for the shell and for TOML: '\"" + text + "\"'";
-    problems.push_back({place, "\"" + text + "\" is not a value", hint});
+    book(problems, place, "\"" + text + "\" is not a value", hint);
     return nullptr;
   }
   move_to(storage, place);
@@ -83,7 +87,7 @@ void apply_override(TomlValue& scene, const std::string& change, Problems& probl
   const bool has_hole =
       std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); });
   if (equals == std::string::npos || path.size() < 2 || has_hole) {
-    problems.push_back({place, "is not NAME.key=value", kForm});
+    book(problems, place, "is not NAME.key=value", kForm);
     return;
   }
   TomlValue storage;
@@ -93,8 +97,8 @@ void apply_override(TomlValue& scene, const std::string& change, Problems& probl
   std::vector<std::string> known;
   TomlValue* table = find_named(scene, path.front(), known);
   if (table == nullptr) {
-    problems.push_back({place, "nothing is named \"" + path.front() + "\"",
-                        hint_for_name(path.front(), known, "names in this scene")});
+    book(problems, place, "nothing is named \"" + path.front() + "\"",
+         hint_for_name(path.front(), known, "names in this scene"));
     return;
   }
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
@@ -107,9 +111,8 @@ void apply_override(TomlValue& scene, const std::string& change, Problems& probl
     table = table->find(path[i]);
   }
   if (!table->is_table()) {
-    problems.push_back({place,
-                        "\"" + path[path.size() - 2] + "\" is " + kind_in_words(*table) + ", not a table",
-                        "set it as a whole"});
+    book(problems, place, "\"" + path[path.size() - 2] + "\" is " + kind_in_words(*table) + ", not a table",
+         "set it as a whole");
     return;
   }
   if (TomlValue* old = table->find(path.back())) {

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace shatterbox::sandbox::scene {
+
+void book(Problems& problems, Place place, std::string message, std::string hint) {
+  problems.push_back({std::move(place), std::move(message), std::move(hint)});
+}
 
 std::string describe(const Place& place) {
   if (place.line <= 0) return place.file;
@@ -26,7 +31,10 @@ std::string describe(Problems problems) {
                              [&key](const Problem& a, const Problem& b) { return key(a) == key(b); }),
                  problems.end());
   std::string text;
-  for (const Problem& problem : problems) text += (text.empty() ? "" : "\n") + describe(problem);
+  for (const Problem& problem : problems) {
+    if (!text.empty()) text += '\n';
+    text += describe(problem);
+  }
   return text;
 }
 

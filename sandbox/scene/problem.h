@@ -21,6 +21,9 @@ struct Problem {
 
 using Problems = std::vector<Problem>;
 
+/// Adds one.
+void book(Problems& problems, Place place, std::string message, std::string hint = "");
+
 /// "file:line:column", or the file alone.
 std::string describe(const Place& place);
 

@@ -351,7 +351,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
       reader.add_problem_at("support", "only a breakable body has a support", "use motion = \"static\"");
     }
   }
-  const std::string fallback = form_kind == "shell" ? "glass" : form_kind == "plane" ? "concrete" : "steel";
+  const std::string fallback = form_kind == "shell" ? "glass" : form_kind == "plane" ? "ceramic" : "steel";
   const std::string material = reader.text("material").value_or(fallback);
   const TomlValue* material_value = table.find("material");
   body.material = find_material(material, material_value != nullptr ? material_value->place : table.place,

@@ -69,8 +69,8 @@ int find_material(const std::string& name, const Place& place, SceneDescription&
     scene.materials.push_back({place, name, *preset});
     return static_cast<int>(scene.materials.size()) - 1;
   }
-  problems.push_back({place, fmt::format("there is no material \"{}\"", name),
-                      hint_for_name(name, material_names(scene), "materials")});
+  book(problems, place, fmt::format("there is no material \"{}\"", name),
+       hint_for_name(name, material_names(scene), "materials"));
   return -1;
 }
 

@@ -5,7 +5,9 @@
 #include <optional>
 #include <sstream>
 
+#ifndef TINYOBJLOADER_USE_DOUBLE  // the library's CMake target may have said so already
 #define TINYOBJLOADER_USE_DOUBLE
+#endif
 #include <tiny_obj_loader.h>
 
 #include "sandbox/scene/mesh_text.h"

@@ -76,37 +76,49 @@ void read_settings(const TomlValue& table, SceneDescription& scene, Problems& pr
   reader.finish();
 }
 
-/// Names share one space: bodies, materials, events and the words that --set knows.
-void check_names(TableReader& root, Problems& problems) {
-  std::vector<std::pair<std::string, Place>> seen;
-  for (const char* word : {"scene", "camera", "light", "render", "pair"}) seen.push_back({word, {}});
+/// All names given, in the order of the text.
+std::vector<const TomlValue*> names_in(const TomlValue& tree) {
+  std::vector<const TomlValue*> names;
   for (const char* list_name : {"body", "material", "event"}) {
-    const TomlValue* list = root.table().find(list_name);
+    const TomlValue* list = tree.find(list_name);
     if (list == nullptr || !list->is_array()) continue;
     for (const TomlValue& item : list->items) {
       const TomlValue* name = item.find("name");
-      if (name == nullptr || !name->is_text()) continue;
-      const auto bad = name->text.find_first_of(".[]=\"");
-      if (name->text.empty() || bad != std::string::npos) {
-        const std::string what =
-            name->text.empty() ? "is empty" : fmt::format("contains '{}'", name->text[bad]);
-        problems.push_back(
-            {name->place, fmt::format("the name \"{}\" {}", name->text, what),
-             "names are used as in --set NAME.key=value and name[2]: use letters, digits, - and _"});
-        continue;
-      }
-      const auto twin = std::find_if(seen.begin(), seen.end(),
-                                     [name](const auto& other) { return other.first == name->text; });
-      if (twin == seen.end()) {
-        seen.emplace_back(name->text, name->place);
-      } else if (twin->second.file.empty()) {
-        problems.push_back({name->place, fmt::format("nothing can be named \"{}\"", name->text),
-                            "it is the name of a part of the scene file"});
-      } else {
-        problems.push_back({name->place, fmt::format("the name \"{}\" is taken", name->text),
-                            fmt::format("the first is at {}; bodies, materials and events share their names",
-                                        describe(twin->second))});
-      }
+      if (name != nullptr && name->is_text()) names.push_back(name);
+    }
+  }
+  std::stable_sort(names.begin(), names.end(), [](const TomlValue* a, const TomlValue* b) {
+    return a->place.file == b->place.file && a->place.line < b->place.line;
+  });
+  return names;
+}
+
+/// Names share one space: bodies, materials, events and the words that --set knows.
+void check_names(const TomlValue& tree, Problems& problems) {
+  const std::vector<std::string> words{"scene", "camera", "light", "render", "pair"};
+  std::vector<const TomlValue*> seen;
+  for (const TomlValue* name : names_in(tree)) {
+    const auto bad = name->text.find_first_of(".[]=\"");
+    if (name->text.empty() || bad != std::string::npos) {
+      const std::string what =
+          name->text.empty() ? "is empty" : fmt::format("contains '{}'", name->text[bad]);
+      book(problems, name->place, fmt::format("the name \"{}\" {}", name->text, what),
+           "names are used as in --set NAME.key=value and name[2]: use letters, digits, - and _");
+      continue;
+    }
+    if (std::find(words.begin(), words.end(), name->text) != words.end()) {
+      book(problems, name->place, fmt::format("nothing can be named \"{}\"", name->text),
+           "it is the name of a part of the scene file");
+      continue;
+    }
+    const auto twin = std::find_if(seen.begin(), seen.end(),
+                                   [name](const TomlValue* other) { return other->text == name->text; });
+    if (twin == seen.end()) {
+      seen.push_back(name);
+    } else {
+      book(problems, name->place, fmt::format("the name \"{}\" is taken", name->text),
+           fmt::format("the first is at {}; bodies, materials and events share their names",
+                       describe((*twin)->place)));
     }
   }
 }
@@ -136,7 +148,7 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
   scene.file = file;
   TableReader root(tree, "the scene", problems);
   read_settings(table_of(root, "scene"), scene, problems);
-  check_names(root, problems);
+  check_names(tree, problems);
   const auto& materials = tables_of(root, "material");
   for (std::size_t i = 0; i < materials.size(); ++i) read_material(materials[i], i, scene, problems);
   const auto& bodies = tables_of(root, "body");
@@ -152,7 +164,7 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
   root.later({"joint"}, "bodies cannot be joined yet");
   root.finish();
   if (scene.bodies.empty() && problems.empty()) {
-    problems.push_back({{file, 0, 0}, "the scene has no body", "add a [[body]] with kind = \"shell\""});
+    book(problems, Place{file, 0, 0}, "the scene has no body", "add a [[body]] with kind = \"shell\"");
   }
   std::stable_sort(scene.events.begin(), scene.events.end(),
                    [](const EventEntry& a, const EventEntry& b) { return a.at < b.at; });

@@ -107,8 +107,8 @@ TomlValue parse_toml(std::string_view text, const std::string& file, Problems& p
     value.place = {file, 1, 1};
     return value;
   } catch (const toml::parse_error& error) {
-    problems.push_back({place_of(error.source(), file), std::string(error.description()),
-                        "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}"});
+    book(problems, place_of(error.source(), file), std::string(error.description()),
+         "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}");
     TomlValue empty;
     empty.place = {file, 0, 0};
     return empty;
@@ -119,12 +119,12 @@ std::optional<std::string> read_text_file(const std::string& path, Problems& pro
   const Place place{path, 0, 0};
   std::error_code code;
   if (std::filesystem::is_directory(path, code)) {
-    problems.push_back({place, "is a folder, not a file", "name a .toml file in it"});
+    book(problems, place, "is a folder, not a file", "name a .toml file in it");
     return std::nullopt;
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    problems.push_back({place, std::string("cannot be read: ") + std::strerror(errno), ""});
+    book(problems, place, std::string("cannot be read: ") + std::strerror(errno), "");
     return std::nullopt;
   }
   std::ostringstream content;

@@ -76,7 +76,7 @@ std::string usual_look(const std::string& preset) {
        {"glass", "ceramic", "porcelain", "steel", "concrete", "brick", "plaster", "ice", "eggshell"}) {
     if (preset == same) return same;
   }
-  return "matt";
+  return preset == "ornament_glass" ? "ornament" : "matt";
 }
 
 std::optional<render::Ground> make_ground(const std::string& name, double height) {

@@ -1,0 +1,188 @@
+// The corpus of broken scenes: each must be refused at the right place, in words that help.
+#include <catch2/catch.hpp>
+
+#include "tests/sandbox/scene/reading.h"
+
+using namespace shatterbox::sandbox::scene;
+
+namespace {
+
+struct Broken {
+  const char* text;
+  const char* place;    // file:line:column of the complaint
+  const char* message;  // a part of it
+  const char* hint;     // a part of how to mend it
+};
+
+const Broken kCorpus[] = {
+    // Not TOML at all.
+    {"[scene\n", "t.toml:1:", "", "this is not TOML"},
+    {"[scene]\nseconds = 1\nseconds = 2\n", "t.toml:3:", "seconds", ""},
+    {"[[body]]\nkind = \"sphere\"\nposition = [0, 1\n", "t.toml:", "", "this is not TOML"},
+    {"[scene]\nseconds = 3 m\n", "t.toml:2:", "", "this is not TOML"},
+    // Unknown keys and tables.
+    {"[scene]\nsecond = 3\n", "t.toml:2:1", "unknown key \"second\"", "did you mean \"seconds\"?"},
+    {"[scene]\ngravty = [0,0,0]\n", "t.toml:2:1", "unknown key \"gravty\"", "did you mean \"gravity\"?"},
+    {"[camera]\n  postion = [0,0,1]\n", "t.toml:2:3", "unknown key \"postion\"",
+     "did you mean \"position\"?"},
+    {"[sene]\nseconds = 3\n", "t.toml:1:2", "unknown key \"sene\"", "did you mean \"scene\"?"},
+    {"[[bodies]]\nkind=\"sphere\"\n", "t.toml:1:3", "unknown key \"bodies\"", "keys here"},
+    {"[[body]]\nkind = \"sphere\"\nradios = 1\n", "t.toml:3:1", "unknown key \"radios\"",
+     "did you mean \"radius\"?"},
+    {"[light]\nsum = [0,1,0]\n", "t.toml:2:1", "unknown key \"sum\"", "did you mean \"sun\"?"},
+    {"[render]\nbackdrp = \"dark\"\n", "t.toml:2:1", "unknown key", "did you mean \"backdrop\"?"},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 2, spaceing = 1}\n",
+     "t.toml:3:", "unknown key \"spaceing\"", "did you mean \"spacing\"?"},
+    // Wrong types.
+    {"[scene]\nseconds = \"four\"\n", "t.toml:2:11", "seconds must be a number", ""},
+    {"[scene]\nsteps_per_second = 240.5\n", "t.toml:2:20", "must be a whole number", ""},
+    {"[scene]\ngravity = -9.81\n", "t.toml:2:11", "gravity must be three numbers", "write [x, y, z] in m/s2"},
+    {"[scene]\ngravity = [0, -9.81]\n", "t.toml:2:11", "a list of 2", "[x, y, z]"},
+    {"[scene]\ngravity = [0, \"down\", 0]\n", "t.toml:2:15", "y of gravity must be a number", ""},
+    {"scene = 3\n", "t.toml:1:9", "scene must be a table", "[scene]"},
+    {"[body]\nkind = \"sphere\"\n", "t.toml:1:1", "body must be a list of tables", "[[body]]"},
+    {"[[camera]]\nfov = 3\n", "t.toml:1:1", "camera must be a table", "[camera]"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nbreakable = 1\n", "t.toml:4:13", "true or false", ""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nmaterial = 7\n", "t.toml:4:12", "must be a text",
+     "quotes"},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = 5\n", "t.toml:3:10", "repeat must be a table", "count = 10"},
+    {"[scene]\nseconds = 2020-01-01\n", "t.toml:2:11", "but is a date", ""},
+    // Out of range, nan, inf.
+    {"[scene]\nseconds = nan\n", "t.toml:2:11", "must be finite, but is nan", ""},
+    {"[scene]\nseconds = inf\n", "t.toml:2:11", "must be finite, but is inf", ""},
+    {"[scene]\ngravity = [0, -inf, 0]\n", "t.toml:2:15", "must be finite", ""},
+    {"[scene]\nseconds = -1\n", "t.toml:2:11", "from 0.001 to 86400 s", ""},
+    {"[scene]\nsteps_per_second = 0\n", "t.toml:2:20", "from 10 to 100000", ""},
+    {"[[body]]\nkind = \"sphere\"\nradius = 0\n", "t.toml:3:10", "greater than 0 m", ""},
+    {"[[material]]\nname = \"m\"\nlike = \"glass\"\npoisson = 0.7\n", "t.toml:4:11", "from 0 to 0.4999", ""},
+    {"[[material]]\nname = \"m\"\nlike = \"glass\"\nrestitution = 1.5\n", "t.toml:4:15", "from 0 to 1", ""},
+    {"[camera]\nfov = 400\n", "t.toml:2:7", "from 1 to 150 degrees", ""},
+    {"[[body]]\nkind = \"sphere\"\nradius = 1e300\n", "t.toml:3:10", "greater than 0 m", ""},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 0}\n", "t.toml:3:", "from 1 to 100000", ""},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = [1000, 1000, 1]}\n",
+     "t.toml:3:", "more than 100000 copies", ""},
+    // Names.
+    {"[[body]]\nname = \"a.b\"\nkind = \"sphere\"\n", "t.toml:2:8", "contains '.'", "--set NAME.key=value"},
+    {"[[body]]\nname = \"\"\nkind = \"sphere\"\n", "t.toml:2:8", "is empty", ""},
+    {"[[body]]\nname = \"a\"\nkind = \"sphere\"\n[[body]]\nname = \"a\"\nkind = \"sphere\"\n", "t.toml:5:8",
+     "the name \"a\" is taken", "the first is at t.toml:2:8"},
+    {"[[material]]\nname = \"a\"\nlike = \"glass\"\n[[body]]\nname = \"a\"\nkind = \"sphere\"\n",
+     "t.toml:5:8", "is taken", "share their names"},
+    {"[[body]]\nname = \"camera\"\nkind = \"sphere\"\n", "t.toml:2:8", "nothing can be named \"camera\"", ""},
+    // Choices.
+    {"[[body]]\nkind = \"spere\"\n", "t.toml:2:8", "unknown kind \"spere\"", "did you mean \"sphere\"?"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowel\"\n", "t.toml:3:9", "unknown shape \"bowel\"",
+     "did you mean \"bowl\"?"},
+    {"[[body]]\nkind = \"sphere\"\nmaterial = \"glas\"\n", "t.toml:3:12", "there is no material \"glas\"",
+     "did you mean \"glass\"?"},
+    {"[[body]]\nkind = \"sphere\"\nlook = \"stel\"\n", "t.toml:3:8", "unknown look",
+     "did you mean \"steel\"?"},
+    {"[[body]]\nkind = \"sphere\"\ncolour = \"red\"\n", "t.toml:3:10", "\"red\" is no colour", "#b3202c"},
+    {"[[material]]\nname = \"m\"\nlike = \"porcelan\"\n", "t.toml:3:8", "no material \"porcelan\" to be like",
+     "did you mean \"porcelain\"?"},
+    {"[[material]]\nname = \"m\"\n", "t.toml:1:1", "neither \"like\" nor \"density\"", "like = \"glass\""},
+    {"[[material]]\nlike = \"glass\"\n", "t.toml:1:1", "needs a name", ""},
+    {"[[pair]]\nbetween = [\"glass\"]\nfriction = 0.1\n", "t.toml:2:11", "names of two materials", ""},
+    {"[[pair]]\nbetween = [\"glass\", \"steel\"]\n", "t.toml:1:1", "changes nothing",
+     "friction or restitution"},
+    {"[scene]\nstress_window = \"automatic\"\n", "t.toml:2:17", "stress_window cannot be", "\"auto\""},
+    // What does not fit together.
+    {"[[body]]\nname = \"x\"\n", "t.toml:1:1", "has no kind", "\"shell\""},
+    {"[[body]]\nkind = \"shell\"\n", "t.toml:1:1", "neither a mesh nor a shape", "mesh = \"file.obj\""},
+    {"[[body]]\nkind = \"box\"\n", "t.toml:1:1", "has no size", "size = [x, y, z]"},
+    {"[[body]]\nkind = \"sphere\"\nthickness = 1\n", "t.toml:3:1", "\"thickness\" does not belong here",
+     "shell"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nradius = 1\n", "t.toml:4:1", "does not belong here",
+     "no size of shape \"pane\""},
+    {"[[body]]\nkind = \"plane\"\nmotion = \"dynamic\"\n", "t.toml:3:10", "a plane cannot move", ""},
+    {"[[body]]\nkind = \"plane\"\nvelocity = [1,0,0]\n", "t.toml:3:1", "does not belong here", "static"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nsupport = \"side\"\n", "t.toml:4:11", "unknown support",
+     "\"edge\""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nsupport = {box = [[0,0,0]]}\n", "t.toml:4:11",
+     "support cannot be", "box = [[x, y, z], [x, y, z]]"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nsupport = \"edge\"\nmotion = \"dynamic\"\n",
+     "t.toml:5:10", "held by the world", ""},
+    {"[[body]]\nkind = \"shell\"\nmesh = \"no_such.obj\"\n", "t.toml:3:8",
+     "there is no mesh file no_such.obj", "beside the scene"},
+    {"[[body]]\nkind = \"sphere\"\nrotation = [0,0,1]\norientation = [1,0,0,0]\n", "t.toml:4:15", "not both",
+     ""},
+    {"[[body]]\nkind = \"sphere\"\norientation = [0,0,0,0]\n", "t.toml:3:15", "points nowhere", ""},
+    {"[camera]\nposition = [1,1,1]\ntarget = [1,1,1]\n", "t.toml:3:10", "looks at itself", ""},
+    {"[camera]\nposition = [0,1,0]\ntarget = [0,0,0]\n", "t.toml:3:10", "along its up direction", "tilt up"},
+    {"[camera]\nposition = [0,1,0]\npath = [{at = 0}, {at = 0}]\n", "t.toml:3:", "forward in time", ""},
+    {"[light]\nsun = [0,0,0]\n", "t.toml:2:7", "points nowhere", ""},
+    // Events.
+    {"[[event]]\ndo = \"drop\"\nat = 1\n", "t.toml:1:1", "names no body", "body = \"name\""},
+    {"[[event]]\nat = 1\ndo = \"drop\"\nbody = \"bal\"\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\n",
+     "t.toml:4:8", "there is no body \"bal\"", "did you mean \"ball\"?"},
+    {"[[event]]\nat = 1\ndo = \"projectle\"\n", "t.toml:3:6", "unknown do", "did you mean \"projectile\"?"},
+    {"[[event]]\nat = 1\n", "t.toml:1:1", "does nothing", ""},
+    {"[[event]]\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[1,0,0]\nspeed=1\n", "t.toml:1:1", "has no time",
+     "at = 0.5"},
+    {"[[event]]\nat=0\ndo = \"projectile\"\nat_point=[1,0,0]\nspeed=1\n", "t.toml:1:1", "has no \"from\"",
+     ""},
+    {"[[event]]\nat=0\ndo = \"projectile\"\nfrom=[0,0,0]\nspeed=1\n", "t.toml:1:1", "needs one target",
+     "at_body"},
+    {"[[event]]\nat=0\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[0,0,0]\nspeed=1\n", "t.toml:5:10",
+     "where the projectile starts", ""},
+    {"[[event]]\nat=-1\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[1,0,0]\nspeed=1\n", "t.toml:2:4",
+     "from 0 to", ""},
+    {"[[event]]\nat=0\ndo = \"drop\"\nspeed=1\nbody={kind=\"sphere\"}\n", "t.toml:4:1",
+     "does not belong here", "projectile"},
+    {"[[event]]\nat=0\ndo = \"drop\"\nbody={kind=\"sphere\", radius=-1}\n", "t.toml:4:", "greater than 0",
+     ""},
+    {"[[event]]\nat=0\ndo = \"drop\"\nbody=\"floor\"\n[[body]]\nname=\"floor\"\nkind=\"plane\"\n",
+     "t.toml:4:6", "is static and cannot be thrown", ""},
+    // The vocabulary of later versions.
+    {"[[body]]\nkind = \"solid\"\n", "t.toml:2:8", "kind = \"solid\" is not available in this version",
+     "\"shell\""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"vase\"\n", "t.toml:3:9", "not available in this version",
+     "\"ornament\""},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\n", "t.toml:3:10", "not available in this version",
+     ""},
+    {"[[body]]\nkind = \"sphere\"\nforce = [1,0,0]\n", "t.toml:3:1", "not available in this version", ""},
+    {"[[event]]\nat = 1\ndo = \"explosion\"\n", "t.toml:3:6", "not available in this version", "\"drop\""},
+    {"[[event]]\nwhen = \"rest\"\ndo = \"drop\"\nbody = {kind=\"sphere\"}\n", "t.toml:2:1", "not available",
+     "at = 0.5"},
+    {"[[joint]]\nbetween = [\"a\", \"b\"]\n", "t.toml:1:3", "not available in this version", ""},
+    {"[scene]\ncontact = \"paper\"\n", "t.toml:2:11", "not available in this version", "\"default\""},
+    {"[[material]]\nname = \"m\"\nlike = \"steel\"\nplasticity = 1\n", "t.toml:4:1", "not available", ""},
+    {"", "t.toml", "the scene has no body", "[[body]]"},
+};
+
+}  // namespace
+
+TEST_CASE("each broken scene is refused at its place, with a way to mend it") {
+  for (const Broken& broken : kCorpus) {
+    const Reading reading = read(broken.text);
+    INFO("scene:\n" << broken.text << "\nsaid:\n" << reading.text);
+    CHECK_FALSE(reading.scene.has_value());
+    REQUIRE_FALSE(reading.problems.empty());
+    bool is_told = false;
+    for (const Problem& problem : reading.problems) {
+      const std::string place = describe(problem.place);
+      is_told = is_told || (place.rfind(broken.place, 0) == 0 &&
+                            problem.message.find(broken.message) != std::string::npos &&
+                            problem.hint.find(broken.hint) != std::string::npos);
+    }
+    INFO("expected " << broken.place << ": ..." << broken.message << "... / ..." << broken.hint << "...");
+    CHECK(is_told);
+  }
+}
+
+TEST_CASE("one fault is told once") {
+  const Reading reading = read("[[body]]\nkind = \"sphere\"\nradius = -1\n");
+  CHECK(reading.problems.size() == 1);
+}
+
+TEST_CASE("several faults are told at once, in the order of the text") {
+  const Reading reading = read(
+      "[scene]\nsecond = 1\nsteps_per_second = 1\n[[body]]\nkind = \"sphere\"\nradius = nan\n"
+      "material = \"glas\"\n[camera]\nfov = \"wide\"\n");
+  REQUIRE(reading.problems.size() == 5);
+  const auto line = [&reading](const char* part) { return reading.text.find(part); };
+  CHECK(line("t.toml:2:1") < line("t.toml:3:20"));
+  CHECK(line("t.toml:3:20") < line("t.toml:6:10"));
+  CHECK(line("t.toml:6:10") < line("t.toml:7:12"));
+  CHECK(line("t.toml:7:12") < line("t.toml:9:7"));
+}
