@@ -1,0 +1,127 @@
+// Hertz's impact against its integral, both limits of the series, and the fixed point (NUMERICS case 17).
+#include "engine/stress/contact_duration.h"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "engine/core/elementary.h"
+#include "engine/stress/shell_system_cache.h"
+
+using namespace shatterbox;
+using namespace shatterbox::stress;
+
+namespace {
+
+HertzContact glass_balls() {
+  const ContactSurface ball{70e9, 0.22, 0.02};
+  return make_hertz_contact(ball, ball, 1e-4, 1.0);
+}
+
+/// Duration and peak force of m x'' = -k x^(3/2) - nothing else, by small steps.
+std::pair<double, double> simulate(const HertzContact& contact, double mass, double speed) {
+  const double stiffness = hertz_stiffness(contact);
+  const double step = hertz_duration(contact, mass, speed) / 200000.0;
+  double depth = 0.0, velocity = speed, time = 0.0, peak = 0.0;
+  while (depth >= 0.0) {
+    const double half = depth + 0.5 * step * velocity;
+    const double force = stiffness * half * core::sqrt(std::max(half, 0.0));
+    peak = std::max(peak, force);
+    velocity -= step * force / mass;
+    depth = half + 0.5 * step * velocity;
+    time += step;
+  }
+  return {time, peak};
+}
+
+}  // namespace
+
+TEST_CASE("Hertz contact of two balls: modulus, radius, duration, peak force") {
+  const HertzContact contact = glass_balls();
+  REQUIRE(contact.radius == Approx(0.01).epsilon(1e-14));
+  REQUIRE(contact.modulus == Approx(70e9 / (2.0 * (1.0 - 0.22 * 0.22))).epsilon(1e-14));
+  const double mass = 0.04, speed = 3.0;
+  const double formula =
+      2.8682656991953315 *
+      core::pow(mass * mass / (contact.radius * contact.modulus * contact.modulus * speed), 0.2);
+  REQUIRE(hertz_duration(contact, mass, speed) == Approx(formula).epsilon(1e-12));
+  const auto [time, peak] = simulate(contact, mass, speed);
+  REQUIRE(time == Approx(formula).epsilon(1e-4));
+  REQUIRE(peak_force(contact, mass, speed) == Approx(peak).epsilon(1e-6));
+  // peak over mean: mean = 2 m v / T
+  REQUIRE(peak_force(contact, mass, speed) * formula / (2.0 * mass * speed) ==
+          Approx(kPeakOverMeanHertz).epsilon(1e-12));
+  // depth from the two formulas agrees with a^2 = R depth
+  const double force = peak_force(contact, mass, speed);
+  const double a = hertz_patch_radius(contact, force);
+  REQUIRE(a * a / contact.radius == Approx(force * hertz_compliance(contact, force)).epsilon(1e-12));
+}
+
+TEST_CASE("planes and rigid things") {
+  const ContactSurface ball{70e9, 0.22, 0.02}, floor{0.0, 0.0, 0.0};
+  const HertzContact contact = make_hertz_contact(ball, floor, 1e-3, 1.0);
+  REQUIRE(contact.radius == Approx(0.02));
+  REQUIRE(contact.modulus == Approx(70e9 / (1.0 - 0.22 * 0.22)));
+  const HertzContact flat = make_hertz_contact(floor, floor, 1e-3, 0.5);
+  REQUIRE(flat.radius == 0.5);
+  REQUIRE(flat.modulus == 1e13);
+  const ContactSurface corner{70e9, 0.22, 1e-9};
+  REQUIRE(make_hertz_contact(corner, floor, 1e-3, 1.0).radius == Approx(1e-3));
+}
+
+TEST_CASE("in series with a spring: energy is kept, a soft body sets the duration") {
+  const HertzContact contact = glass_balls();
+  const double mass = 0.04, speed = 3.0;
+  for (const double compliance : {0.0, 1e-9, 1e-7, 1e-5, 1e-2, 1e6}) {
+    const double force = peak_force(contact, mass, speed, compliance);
+    const double depth = force * hertz_compliance(contact, force);
+    REQUIRE(0.4 * force * depth + 0.5 * compliance * force * force ==
+            Approx(0.5 * mass * speed * speed).epsilon(1e-10));
+    const double duration = series_duration(mass, hertz_compliance(contact, force), compliance);
+    if (compliance == 0.0) REQUIRE(duration == Approx(hertz_duration(contact, mass, speed)).epsilon(0.05));
+    if (compliance >= 1e-2)
+      REQUIRE(duration == Approx(core::kPi * core::sqrt(mass * compliance)).epsilon(0.01));
+  }
+  REQUIRE(peak_force(contact, mass, 0.0) == 0.0);
+}
+
+TEST_CASE("duration: balanced for a slow blow, screened at a power of two for a quick one") {
+  DurationProblem problem;
+  problem.contact = glass_balls();
+  problem.mass = 0.04;
+  problem.speed = 3.0;
+  std::vector<int> asked;
+  // A body whose compliance falls with s, as that of a big plate does.
+  const auto plate = [&](bool is_screened, int exponent) {
+    asked.push_back(is_screened ? exponent : -999);
+    const double elastic = is_screened ? 1e-3 / screening_of(exponent) : 1e-4;
+    return BodyCompliance{2.0 * elastic, elastic};
+  };
+  problem.first_period = 1e-4;
+  const ImpactDuration slow = find_duration(problem, plate);
+  REQUIRE_FALSE(slow.is_screened);
+  REQUIRE(slow.solve_count == 1);
+  REQUIRE(slow.duration >= 0.5 * problem.first_period);
+
+  asked.clear();
+  problem.first_period = 1.0;
+  const ImpactDuration quick = find_duration(problem, plate);
+  REQUIRE(quick.is_screened);
+  REQUIRE(quick.solve_count <= 7);
+  REQUIRE(asked.front() == -999);
+  REQUIRE(asked.back() == quick.screening_exponent);
+  // A fixed point, up to the rounding to a power of two and a last step of one.
+  REQUIRE(std::abs(quantise_screening(1.0 / quick.duration) - quick.screening_exponent) <= 1);
+  REQUIRE(quick.duration == series_duration(problem.mass, quick.contact_compliance, quick.body.elastic));
+
+  problem.counts_inertia = true;
+  const ImpactDuration heavy = find_duration(problem, plate);
+  REQUIRE(heavy.duration > quick.duration);
+
+  problem.given_duration = 0.01;
+  const ImpactDuration given = find_duration(problem, plate);
+  REQUIRE(given.solve_count == 1);
+  REQUIRE(given.duration == 0.01);
+  REQUIRE(given.screening_exponent == quantise_screening(100.0));
+  REQUIRE(0.5 * given.peak_force * given.peak_force * given.body.elastic <=
+          0.5 * problem.mass * problem.speed * problem.speed * (1.0 + 1e-12));
+}

@@ -1,0 +1,489 @@
+// Solves with closed-form answers (NUMERICS cases 9, 13 to 16), supports, screening, cuts, threads.
+#include "engine/stress/shell_system.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/core/parallel.h"
+#include "engine/stress/shell_load.h"
+#include "engine/stress/shell_stress.h"
+#include "engine/stress/shell_system_cache.h"
+#include "tests/engine/stress/meshes.h"
+
+using namespace shatterbox;
+using namespace shatterbox::stress;
+using namespace shatterbox::stress::testing;
+
+namespace {
+
+using std::size_t;
+
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
+
+ShellProperties properties_of(double thickness, double poisson_ratio = 0.3) {
+  ShellProperties properties;
+  properties.youngs_modulus = 2e9;
+  properties.poisson_ratio = poisson_ratio;
+  properties.density = 1200.0;
+  properties.thickness = thickness;
+  return properties;
+}
+
+double bending_stiffness(const ShellProperties& p) {
+  return p.youngs_modulus * p.thickness * p.thickness * p.thickness /
+         (12.0 * (1.0 - p.poisson_ratio * p.poisson_ratio));
+}
+
+std::shared_ptr<const ShellSystem> make_system(const std::shared_ptr<const ShellStiffness>& stiffness,
+                                               const geometry::ShellMesh& mesh, double screening = 0.0,
+                                               const ShellSupport& support = {}) {
+  auto system = ShellSystem::make(stiffness, mesh, screening, support);
+  REQUIRE(system.ok());
+  return system.value();
+}
+
+/// Border of the unit square: vertices, and edges if clamped.
+ShellSupport square_support(const geometry::ShellMesh& mesh, bool is_clamped) {
+  const auto& elements = *mesh.elements;
+  std::vector<char> vertices(elements.mesh.positions.size(), 0);
+  std::vector<char> edges(elements.topology.edges.size(), 0);
+  for (size_t e = 0; e < edges.size(); ++e) {
+    if (!elements.topology.is_boundary(static_cast<int>(e))) continue;
+    edges[e] = is_clamped ? 1 : 0;
+    for (const int v : elements.topology.edges[e]) vertices[at(v)] = 1;
+  }
+  return find_support(mesh, vertices, edges);
+}
+
+VecX pressure_load(const geometry::ShellMesh& mesh, double pressure) {
+  VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+  for (const geometry::ShellCell& cell : mesh.cells) {
+    const Vec3 normal = geometry::facet_frame(*mesh.elements, cell.element).col(2);
+    for (const int v : cell.vertices) load.segment<3>(vertex_dof(v)) += pressure * cell.area / 3.0 * normal;
+  }
+  return load;
+}
+
+struct PlateErrors {
+  double point, uniform, moment;
+};
+
+/// Square plate of side 1, n x n cells: relative errors of the deflection under a point force and a pressure,
+/// and of the moment in the middle under pressure. Timoshenko & Woinowsky-Krieger.
+PlateErrors plate_errors(int n, bool is_clamped) {
+  const Elements elements = grid(n, n, 1.0, 1.0);
+  const ShellProperties properties = properties_of(0.01);
+  const auto stiffness = make_shell_stiffness(elements, properties);
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  const auto system = make_system(stiffness, mesh, 0.0, square_support(mesh, is_clamped));
+  const int middle = vertex_dof((n / 2) * (n + 1) + n / 2) + 2;
+  VecX point = VecX::Zero(mesh.degree_of_freedom_count());
+  point(middle) = 1.0;
+  const auto solutions = system->solve(std::vector<VecX>{point, pressure_load(mesh, 1.0)});
+  for (const ShellSolution& solution : solutions) REQUIRE(solution.residual < 1e-8);
+  const double d = bending_stiffness(properties);
+  const double w_point = is_clamped ? 0.0056125 : 0.0116008;
+  const double w_uniform = is_clamped ? 0.00126532 : 0.00406235;
+  const double m = is_clamped ? 0.0229051 : 0.0478865;
+  // The moment in the middle: mean over the cells about it.
+  double moment = 0.0;
+  int count = 0;
+  const auto stresses = cell_stresses(*stiffness, mesh, solutions[1].displacement);
+  for (size_t c = 0; c < mesh.cells.size(); ++c)
+    for (const int v : mesh.cells[c].vertices)
+      if (vertex_dof(v) + 2 == middle) {
+        moment += 0.5 * (stresses[c].bending(0) + stresses[c].bending(1));
+        ++count;
+      }
+  moment *= properties.thickness * properties.thickness / 6.0 / count;
+  return {solutions[0].displacement(middle) * d / w_point - 1.0,
+          solutions[1].displacement(middle) * d / w_uniform - 1.0, moment / m - 1.0};
+}
+
+Vec3 stress_norms(const std::vector<CellStress>& a, const std::vector<CellStress>& b) {
+  double difference = 0.0, size = 0.0;
+  for (size_t c = 0; c < a.size(); ++c) {
+    difference += (a[c].membrane - b[c].membrane).squaredNorm() + (a[c].bending - b[c].bending).squaredNorm();
+    size += b[c].membrane.squaredNorm() + b[c].bending.squaredNorm();
+  }
+  return {core::sqrt(difference / size), core::sqrt(size), 0.0};
+}
+
+}  // namespace
+
+TEST_CASE("square plates, simply supported and clamped: deflection and moment converge") {
+  const PlateErrors simple16 = plate_errors(16, false), simple32 = plate_errors(32, false);
+  const PlateErrors clamped16 = plate_errors(16, true), clamped32 = plate_errors(32, true);
+  CAPTURE(simple16.point, simple32.point, clamped16.point, clamped32.point);
+  CAPTURE(simple16.uniform, simple32.uniform, clamped16.uniform, clamped32.uniform);
+  CAPTURE(simple16.moment, simple32.moment, clamped16.moment, clamped32.moment);
+  REQUIRE(std::abs(simple16.point) < 0.06);
+  REQUIRE(std::abs(simple32.point) < 0.02);
+  REQUIRE(std::abs(clamped16.point) < 0.13);
+  REQUIRE(std::abs(clamped32.point) < 0.04);
+  REQUIRE(std::abs(simple32.uniform) < 0.02);
+  REQUIRE(std::abs(clamped32.uniform) < 0.04);
+  REQUIRE(std::abs(simple16.moment) < 0.02);
+  REQUIRE(std::abs(clamped16.moment) < 0.02);
+  REQUIRE(std::abs(simple32.moment) < 0.006);
+}
+
+namespace {
+
+struct DiscErrors {
+  double deflection, moment, averaged_moment;
+};
+
+/// Free disc of radius 1 under a force in its middle: relative errors of w(0) - w(1), and of the whole field
+/// of moments in L2, plain and after averaging. Closed form of NUMERICS section 2: w = P r^2 ln r / 8 pi D -
+/// P r^4 / 64 pi D - P (3 + nu) r^2 / 32 pi D (1 + nu).
+DiscErrors disc_errors(int rings) {
+  const Elements elements = disc(rings);
+  const ShellProperties properties = properties_of(0.01);
+  const auto stiffness = make_shell_stiffness(elements, properties);
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  const auto system = make_system(stiffness, mesh);
+  REQUIRE(system->rigid_mode_count() == 6);
+  VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+  load(2) = 1.0;
+  const ShellSolution solution = system->solve(load);
+  REQUIRE(solution.residual < 1e-8);
+  double rim = 0.0;
+  const int first = 1 + 3 * rings * (rings - 1);
+  for (int i = 0; i < 6 * rings; ++i) rim += solution.displacement(vertex_dof(first + i) + 2) / (6.0 * rings);
+
+  const double nu = properties.poisson_ratio;
+  const auto moment_error = [&](const std::vector<CellStress>& stresses) {
+    double error = 0.0, size = 0.0;
+    for (size_t c = 0; c < mesh.cells.size(); ++c) {
+      const Mat3 frame = geometry::facet_frame(*elements, static_cast<int>(c));
+      const Vec3 centre =
+          geometry::position_in_element(*elements, static_cast<int>(c), Vec2(1.0 / 3.0, 1.0 / 3.0));
+      const double r = centre.norm();
+      const double c0 = (3.0 + nu) / (1.0 + nu) / 16.0;
+      const double slope = (2.0 * core::log(r) + 1.0) / 8.0 - r * r / 16.0 - c0;            // pi D w' / r
+      const double curvature = (2.0 * core::log(r) + 3.0) / 8.0 - 3.0 * r * r / 16.0 - c0;  // pi D w''
+      const double radial = -(curvature + nu * slope) / core::kPi;
+      const double tangential = -(slope + nu * curvature) / core::kPi;
+      const Vec2 e = (frame.leftCols<2>().transpose() * centre / r).normalized();
+      const PlaneStress m = stresses[c].bending * (properties.thickness * properties.thickness / 6.0);
+      const double mr = e.x() * e.x() * m(0) + e.y() * e.y() * m(1) + 2.0 * e.x() * e.y() * m(2);
+      const double mt = m(0) + m(1) - mr;
+      const double mrt = e.x() * e.y() * (m(1) - m(0)) + (e.x() * e.x() - e.y() * e.y()) * m(2);
+      error += mesh.cells[c].area *
+               ((mr - radial) * (mr - radial) + (mt - tangential) * (mt - tangential) + 2.0 * mrt * mrt);
+      size += mesh.cells[c].area * (radial * radial + tangential * tangential);
+    }
+    return core::sqrt(error / size);
+  };
+  const auto stresses = cell_stresses(*stiffness, mesh, solution.displacement);
+  return {(solution.displacement(2) - rim) * bending_stiffness(properties) / 0.0302241 - 1.0,
+          moment_error(stresses),
+          moment_error(average_stresses(mesh, geometry::find_cell_contacts(mesh), stresses))};
+}
+
+}  // namespace
+
+TEST_CASE("free disc hit in the middle: closed form of the relieved load") {
+  const DiscErrors coarse = disc_errors(8), middle = disc_errors(16), fine = disc_errors(32);
+  CAPTURE(coarse.deflection, middle.deflection, fine.deflection);
+  CAPTURE(coarse.moment, middle.moment, fine.moment);
+  CAPTURE(coarse.averaged_moment, middle.averaged_moment, fine.averaged_moment);
+  REQUIRE(std::abs(middle.deflection) < 0.02);
+  REQUIRE(std::abs(fine.deflection) < 0.006);
+  // Plain moments are one constant a triangle: first order, slowed by the logarithm under the force. The
+  // averaged ones, which the criterion reads, are held to the tolerance.
+  REQUIRE(middle.moment < 0.6 * coarse.moment);
+  REQUIRE(fine.moment < 0.6 * middle.moment);
+  REQUIRE(middle.averaged_moment < 0.07);
+  REQUIRE(fine.averaged_moment < 0.035);
+}
+
+TEST_CASE("pressurised sphere: p R / 2 t") {
+  const Elements elements = icosphere(4);
+  const ShellProperties properties = properties_of(0.02);
+  const auto stiffness = make_shell_stiffness(elements, properties);
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  const auto solution = make_system(stiffness, mesh)->solve(pressure_load(mesh, 1000.0));
+  REQUIRE(solution.residual < 1e-8);
+  const double expected = 1000.0 / (2.0 * properties.thickness);
+  double sum = 0.0, area = 0.0, worst = 0.0;
+  const auto stresses = cell_stresses(*stiffness, mesh, solution.displacement);
+  for (size_t c = 0; c < stresses.size(); ++c) {
+    const double mean = 0.5 * (stresses[c].membrane(0) + stresses[c].membrane(1));
+    sum += mesh.cells[c].area * mean;
+    area += mesh.cells[c].area;
+    worst = std::max(worst, std::abs(mean / expected - 1.0));
+  }
+  CAPTURE(sum / area / expected, worst);
+  REQUIRE(sum / area == Approx(expected).epsilon(0.005));
+  REQUIRE(worst < 0.015);
+}
+
+TEST_CASE("sphere under two opposite forces: Reissner's deflection is approached, membranes alone diverge") {
+  const ShellProperties properties = properties_of(0.05, 0.3);
+  const double reissner = core::sqrt(3.0) / 4.0 * core::sqrt(1.0 - 0.09) /
+                          (properties.youngs_modulus * properties.thickness * properties.thickness);
+  std::vector<double> ratios, membrane_ratios;
+  for (int level = 3; level <= 5; ++level) {
+    const Elements elements = icosphere(level);
+    for (const bool has_bending : {true, false}) {
+      if (!has_bending && level == 5) continue;
+      ShellProperties used = properties;
+      used.has_bending = has_bending;
+      const auto stiffness = make_shell_stiffness(elements, used);
+      const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+      VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+      load(vertex_dof(0) + 2) = -1.0;
+      load(vertex_dof(11) + 2) = 1.0;
+      const ShellSolution solution = make_system(stiffness, mesh)->solve(load);
+      REQUIRE(solution.residual < 1e-7);
+      const double w =
+          0.5 * (solution.displacement(vertex_dof(11) + 2) - solution.displacement(vertex_dof(0) + 2));
+      (has_bending ? ratios : membrane_ratios).push_back(w / reissner);
+    }
+  }
+  CAPTURE(ratios, membrane_ratios);
+  REQUIRE(ratios[0] > ratios[1]);
+  REQUIRE(ratios[1] > ratios[2]);
+  REQUIRE(ratios[2] > 1.0);
+  REQUIRE(ratios[2] < 1.2);
+  REQUIRE(membrane_ratios[1] > 3.0 * membrane_ratios[0]);
+}
+
+TEST_CASE("a balanced load gives one stress, wherever the body is pinned") {
+  const Elements elements = icosphere(2);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.03));
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+  load.segment<3>(vertex_dof(40)) = Vec3(0.3, -0.2, 1.0);
+  const ShellSolution free = make_system(stiffness, mesh)->solve(load);
+  const auto stress_free = cell_stresses(*stiffness, mesh, free.displacement);
+  const VecX balanced = apply_stiffness(*stiffness, mesh, free.displacement);
+  Vec3 resultant = Vec3::Zero(), moment = Vec3::Zero();
+  for (int v = 0; v < static_cast<int>(mesh.vertex_source.size()); ++v) {
+    resultant += balanced.segment<3>(vertex_dof(v));
+    moment += elements->mesh.positions[at(v)].cross(Vec3(balanced.segment<3>(vertex_dof(v))));
+  }
+  REQUIRE(resultant.norm() < 1e-9 * load.norm());
+  // The edges' inertia takes a share of the moment.
+  REQUIRE(moment.norm() < 1e-3 * load.norm());
+
+  // One vertex and the rotations about three edges hold exactly the six rigid motions.
+  const std::vector<std::array<int, 4>> pins{{0, 3, 100, 251}, {77, 20, 333, 401}, {40, 450, 7, 180}};
+  for (const auto& pin : pins) {
+    ShellSupport support;
+    support.vertices = {pin[0]};
+    support.edges = {pin[1], pin[2], pin[3]};
+    const auto system = make_system(stiffness, mesh, 0.0, support);
+    REQUIRE(system->rigid_mode_count() == 0);
+    const ShellSolution held = system->solve(balanced);
+    REQUIRE(held.residual < 1e-9);
+    REQUIRE(stress_norms(cell_stresses(*stiffness, mesh, held.displacement), stress_free).x() < 1e-8);
+    // The load that is not in balance pulls at the pins: another stress altogether.
+    const ShellSolution wrong = system->solve(load);
+    REQUIRE(stress_norms(cell_stresses(*stiffness, mesh, wrong.displacement), stress_free).x() > 0.1);
+  }
+}
+
+TEST_CASE("the inertia of a free strip pulled or pushed at one end: tension N(x) = F x / L") {
+  const Elements elements = grid(40, 4, 2.0, 0.2);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.01, 0.0));
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  const auto system = make_system(stiffness, mesh);
+  for (const double sign : {1.0, -1.0}) {
+    VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+    for (int j = 0; j <= 4; ++j)
+      load(vertex_dof(41 * j + 40)) = sign * 100.0 * (j == 0 || j == 4 ? 0.125 : 0.25);
+    const auto stresses = cell_stresses(*stiffness, mesh, system->solve(load).displacement);
+    for (size_t c = 0; c < stresses.size(); ++c) {
+      const double x =
+          geometry::position_in_element(*elements, static_cast<int>(c), Vec2(1.0 / 3.0, 1.0 / 3.0)).x();
+      if (x < 0.3 || x > 1.7) continue;
+      const double expected = sign * 100.0 * x / 2.0 / (0.2 * 0.01);
+      const PrincipalStress principal = principal_stress(stresses[c].membrane);
+      const double axial = sign > 0.0 ? principal.first : principal.second;
+      REQUIRE(axial == Approx(expected).epsilon(0.04));
+      if (sign < 0.0) REQUIRE(principal.first < 0.05 * std::abs(expected));
+    }
+  }
+}
+
+TEST_CASE("first period: free square plate and clamped square plate") {
+  const Elements elements = grid(24, 24, 1.0, 1.0, 0.2);
+  const ShellProperties properties = properties_of(0.01, 0.3);
+  const auto stiffness = make_shell_stiffness(elements, properties);
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  const double unit = core::sqrt(properties.density * properties.thickness / bending_stiffness(properties));
+  // Leissa: lambda = omega a^2 sqrt(rho t / D) is 13.468 free (nu = .3), 35.985 clamped.
+  REQUIRE(make_system(stiffness, mesh)->first_period() ==
+          Approx(2.0 * core::kPi * unit / 13.468).epsilon(0.03));
+  const auto clamped = make_system(stiffness, mesh, 0.0, square_support(mesh, true));
+  REQUIRE(clamped->first_period() == Approx(2.0 * core::kPi * unit / 35.985).epsilon(0.06));
+}
+
+TEST_CASE("the screened solve tends to the balanced one as the window grows, and is local when it is short") {
+  const Elements elements = grid(20, 20, 1.0, 1.0, 0.2);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  const VecX load = patch_load(mesh, find_load_patch(mesh, Vec3(0.3, 0.35, 0.0), 0.1), Vec3(0.0, 0.0, 1.0));
+  const auto balanced = make_system(stiffness, mesh);
+  const auto expected = cell_stresses(*stiffness, mesh, balanced->solve(load).displacement);
+  const double omega = 2.0 * core::kPi / balanced->first_period();
+  double previous = 1e9;
+  for (const double s : {1.0, 0.1, 0.01, 1e-3}) {
+    const ShellSolution solution = make_system(stiffness, mesh, s * omega)->solve(load);
+    REQUIRE(solution.residual < 1e-6);
+    REQUIRE(solution.compliance > solution.elastic_compliance);
+    const double error = stress_norms(cell_stresses(*stiffness, mesh, solution.displacement), expected).x();
+    REQUIRE(error < previous);
+    previous = error;
+  }
+  CAPTURE(previous);
+  REQUIRE(previous < 1e-4);
+  const ShellSolution brief = make_system(stiffness, mesh, 100.0 * omega)->solve(load);
+  const auto near = cell_stresses(*stiffness, mesh, brief.displacement);
+  double inside = 0.0, outside = 0.0;
+  for (size_t c = 0; c < near.size(); ++c) {
+    const Vec3 x = geometry::position_in_element(*elements, static_cast<int>(c), Vec2(1.0 / 3.0, 1.0 / 3.0));
+    double& greatest = (x - Vec3(0.3, 0.35, 0.0)).norm() < 0.2 ? inside : outside;
+    greatest = std::max(greatest, near[c].bending.norm());
+  }
+  REQUIRE(outside < 0.15 * inside);
+}
+
+TEST_CASE("a plate cut in two is two bodies; half a cut leaves one") {
+  const Elements elements = grid(9, 6, 1.0, 0.7, 0.3);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
+  const geometry::ShellMesh whole = geometry::make_shell_mesh(elements);
+  const geometry::ShellMesh cut = cut_between(whole, 0.4713);
+  REQUIRE(cut.cells.size() > whole.cells.size());
+  const auto system = make_system(stiffness, cut);
+  REQUIRE(system->part_count() == 2);
+  REQUIRE(system->rigid_mode_count() == 12);
+  // A load on one half moves nothing in the other.
+  VecX load = VecX::Zero(cut.degree_of_freedom_count());
+  double left = 0.0;
+  int loaded = -1;
+  for (size_t c = 0; c < cut.cells.size(); ++c)
+    if (geometry::position_in_element(*elements, cut.cells[c].element, Vec2(0.3, 0.3)).x() < 0.2) {
+      load(vertex_dof(cut.cells[c].vertices[0]) + 2) = 1.0;
+      loaded = static_cast<int>(c);
+      break;
+    }
+  REQUIRE(loaded >= 0);
+  const ShellSolution solution = system->solve(load);
+  REQUIRE(solution.residual < 1e-7);
+  const auto stresses = cell_stresses(*stiffness, cut, solution.displacement);
+  double right = 0.0;
+  for (size_t c = 0; c < cut.cells.size(); ++c) {
+    double x = 0.0;
+    for (int i = 0; i < cut.cells[c].corner_count; ++i)
+      x += geometry::position_in_element(*elements, cut.cells[c].element,
+                                         cut.corners[at(cut.cells[c].first_corner + i)].barycentric)
+               .x() /
+           cut.cells[c].corner_count;
+    double& greatest = x < 0.4713 ? left : right;
+    greatest = std::max(greatest, stresses[c].bending.norm());
+  }
+  REQUIRE(left > 0.0);
+  REQUIRE(right < 1e-12 * left);
+}
+
+TEST_CASE("a support holds only what touches it: the loose half of a cut plate stays free") {
+  const Elements elements = grid(10, 6, 1.0, 0.6);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
+  const geometry::ShellMesh whole = geometry::make_shell_mesh(elements);
+  std::vector<char> vertices(elements->mesh.positions.size(), 0), edges(elements->topology.edges.size(), 1);
+  for (int j = 0; j <= 6; ++j) vertices[at(11 * j)] = 1;
+  const auto held = make_system(stiffness, whole, 0.0, find_support(whole, vertices, edges));
+  REQUIRE(held->rigid_mode_count() == 0);
+  const geometry::ShellMesh cut = cut_between(whole, 0.55);
+  const auto half = make_system(stiffness, cut, 0.0, find_support(cut, vertices, edges));
+  REQUIRE(half->part_count() == 2);
+  REQUIRE(half->rigid_mode_count() == 6);
+
+  // Cantilever: F L^3 / 3 E I for nu = 0.
+  const auto beam = make_shell_stiffness(elements, properties_of(0.01, 0.0));
+  const auto cantilever = make_system(beam, whole, 0.0, find_support(whole, vertices, edges));
+  VecX load = VecX::Zero(whole.degree_of_freedom_count());
+  for (int j = 0; j <= 6; ++j) load(vertex_dof(11 * j + 10) + 2) = (j == 0 || j == 6 ? 0.5 : 1.0) / 6.0;
+  const ShellSolution solution = cantilever->solve(load);
+  const double inertia = 0.6 * 1e-6 / 12.0;
+  REQUIRE(solution.compliance == Approx(1.0 / (3.0 * 2e9 * inertia)).epsilon(0.02));
+  REQUIRE(solution.elastic_compliance == Approx(solution.compliance).epsilon(1e-8));
+}
+
+TEST_CASE("a vertex hinge alone: the answer says that it is none") {
+  ShellProperties properties = properties_of(0.01);
+  properties.has_bending = false;
+  const Elements elements = grid(6, 6, 1.0, 1.0);
+  const auto stiffness = make_shell_stiffness(elements, properties);
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+  load(vertex_dof(24) + 2) = 1.0;
+  REQUIRE_FALSE(make_system(stiffness, mesh)->solve(load).is_evaluated());
+}
+
+TEST_CASE("scale: the stress does not depend on E, and follows force / length^2") {
+  const auto worst_of = [](double size, double modulus, double thickness) {
+    const Elements elements = grid(10, 8, size, 0.8 * size, 0.3);
+    ShellProperties properties = properties_of(thickness);
+    properties.youngs_modulus = modulus;
+    const auto stiffness = make_shell_stiffness(elements, properties);
+    const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+    VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+    load.segment<3>(vertex_dof(37)) = Vec3(0.1, 0.2, 1.0);
+    const auto solution = make_system(stiffness, mesh)->solve(load);
+    REQUIRE(solution.residual < 1e-7);
+    double worst = 0.0;
+    for (const CellStress& stress : cell_stresses(*stiffness, mesh, solution.displacement))
+      worst = std::max(worst, worst_stress(stress).principal.first);
+    return worst;
+  };
+  const double reference = worst_of(1.0, 70e9, 0.01);
+  REQUIRE(worst_of(1.0, 1e12, 0.01) == Approx(reference).epsilon(1e-7));
+  REQUIRE(worst_of(1.0, 1e3, 0.01) == Approx(reference).epsilon(1e-7));
+  REQUIRE(worst_of(1e-4, 70e9, 1e-6) == Approx(reference * 1e8).epsilon(1e-6));
+  REQUIRE(worst_of(1e4, 70e9, 100.0) == Approx(reference * 1e-8).epsilon(1e-6));
+}
+
+TEST_CASE("same bits for one and two threads, alone or in company") {
+  const Elements elements = icosphere(4);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.02));
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  std::vector<VecX> loads;
+  for (int i = 0; i < 6; ++i) {
+    loads.push_back(VecX::Zero(mesh.degree_of_freedom_count()));
+    loads.back().segment<3>(vertex_dof(100 * i + 3)) = Vec3(0.1 * i, 1.0, -0.5);
+  }
+  std::vector<std::vector<ShellSolution>> all;
+  for (const int threads : {1, 2}) {
+    core::set_thread_count(threads);
+    const auto system = make_system(stiffness, mesh, threads == 1 ? 0.0 : 0.0);
+    all.push_back(system->solve(loads));
+    REQUIRE(system->solve(loads[2]).displacement == all.back()[2].displacement);
+  }
+  core::set_thread_count(0);
+  for (size_t i = 0; i < loads.size(); ++i) {
+    REQUIRE(all[0][i].displacement == all[1][i].displacement);
+    REQUIRE(all[0][i].compliance == all[1][i].compliance);
+  }
+}
+
+TEST_CASE("the cache makes each system once and shares it") {
+  const Elements elements = grid(6, 6, 1.0, 1.0);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
+  const auto mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
+  ShellSystemCache cache(stiffness, mesh);
+  REQUIRE(cache.unscreened().ok());
+  REQUIRE(cache.unscreened().value() == cache.unscreened().value());
+  REQUIRE(cache.screened(8).value() == cache.screened(8).value());
+  REQUIRE(cache.screened(8).value()->screening() == 256.0);
+  REQUIRE(cache.count() == 2);
+  REQUIRE(quantise_screening(256.0) == 8);
+  REQUIRE(quantise_screening(300.0) == 8);
+  REQUIRE(quantise_screening(400.0) == 9);
+  REQUIRE(quantise_screening(0.3) == -2);
+}

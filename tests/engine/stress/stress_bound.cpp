@@ -1,0 +1,73 @@
+// The bound of a stress by an energy holds for random loads and displacements, whole and cut, and is not far
+// off for the worst of them.
+#include "engine/stress/stress_bound.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/stress/shell_stress.h"
+#include "engine/stress/shell_system.h"
+#include "tests/engine/stress/meshes.h"
+
+using namespace shatterbox;
+using namespace shatterbox::stress;
+using namespace shatterbox::stress::testing;
+
+namespace {
+
+double worst_of(const std::vector<CellStress>& stresses) {
+  double worst = 0.0;
+  for (const CellStress& stress : stresses) worst = std::max(worst, worst_stress(stress).principal.first);
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("no stress exceeds what its energy allows") {
+  core::Random random(5, 0);
+  std::vector<geometry::ShellMesh> meshes;
+  meshes.push_back(geometry::make_shell_mesh(grid(8, 7, 1.0, 0.9, 0.35)));
+  meshes.push_back(geometry::make_shell_mesh(icosphere(2, 0.04)));
+  meshes.push_back(cut_between(meshes[0], 0.413));
+  meshes.push_back(cut_between(meshes[0], 0.5000001));  // slivers below the floor of the stiffness
+  for (const geometry::ShellMesh& mesh : meshes)
+    for (const double thickness : {0.001, 0.05}) {
+      ShellProperties properties;
+      properties.thickness = thickness;
+      const auto stiffness = make_shell_stiffness(mesh.elements, properties);
+      const auto contacts = geometry::find_cell_contacts(mesh);
+      const double plain_area = least_stressed_area(mesh);
+      const double mean_area = least_stressed_area(mesh, contacts);
+      REQUIRE(plain_area > 0.0);
+      double closest = 0.0;
+      const auto check = [&](const VecX& u) {
+        const double energy = 0.5 * u.dot(apply_stiffness(*stiffness, mesh, u));
+        const auto stresses = cell_stresses(*stiffness, mesh, u);
+        const double bound = stress_bound(properties, plain_area, energy);
+        REQUIRE(worst_of(stresses) <= bound);
+        REQUIRE(worst_of(average_stresses(mesh, contacts, stresses)) <=
+                stress_bound(properties, mean_area, energy));
+        closest = std::max(closest, worst_of(stresses) / bound);
+      };
+      for (int trial = 0; trial < 20; ++trial) {
+        VecX u(mesh.degree_of_freedom_count());
+        for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.uniform(-1.0, 1.0) * 1e-3;
+        check(u);
+        // One unknown alone puts nearly all energy into few cells.
+        const auto one = static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(u.size())));
+        check(VecX::Unit(u.size(), one));
+      }
+      const auto system = ShellSystem::make(stiffness, mesh).value();
+      for (int trial = 0; trial < 10; ++trial) {
+        VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+        const auto v = static_cast<int>(random.index(mesh.vertex_source.size()));
+        for (int axis = 0; axis < 3; ++axis) load(vertex_dof(v) + axis) = random.uniform(-1.0, 1.0);
+        check(system->solve(load).displacement);
+      }
+      CAPTURE(thickness, closest);
+      REQUIRE(closest > 0.03);
+    }
+}
+
+TEST_CASE("no energy, no stress") {
+  REQUIRE(stress_bound(ShellProperties{}, 1e-4, 0.0) == 0.0);
+}
