@@ -40,7 +40,7 @@ void main() {
     vec3 to = place_at(clamp(at, ivec2(0), last)) - p;
     float d2 = dot(to, to);
     float near_by = max(1.0 - d2 * fall, 0.0);
-    sum += near_by * near_by * max(dot(to, n) - 0.004 * z, 0.0) * inversesqrt(d2 + 1e-12);
+    sum += near_by * max(dot(to, n) - 0.004 * z, 0.0) * inversesqrt(d2 + 1e-12);
   }
-  seen_depth = vec2(clamp(1.0 - 2.1 / float(OCCLUSION_TAPS) * sum, 0.0, 1.0), z);
+  seen_depth = vec2(clamp(1.0 - 2.8 / float(OCCLUSION_TAPS) * sum, 0.0, 1.0), z);
 }

@@ -37,11 +37,11 @@ struct Camera {
 struct Lights {
   glm::vec3 sun_direction{0.45F, 0.8F, 0.4F};  // from the scene towards the sun; any length
   glm::vec3 sun_colour{1.0F, 0.95F, 0.88F};
-  float sun_strength = 2.2F;                     // a white matt surface facing the sun gets this radiance
+  float sun_strength = 1.55F;                    // a white matt surface facing the sun gets this radiance
   float sun_size = 3.0F;                         // degrees across; sets how soft shadows grow with distance
   glm::vec3 sky_colour{0.78F, 0.86F, 1.0F};      // from above
-  glm::vec3 ground_colour{0.36F, 0.33F, 0.30F};  // from below
-  float sky_strength = 0.62F;
+  glm::vec3 ground_colour{0.36F, 0.33F, 0.30F};  // from below, where there is no Ground to send its own
+  float sky_strength = 0.42F;
   float softbox_strength = 1.0F;  // 0: no soft boxes
   bool casts_shadow = true;       // false: the shadow pass does not exist
 };
@@ -49,16 +49,16 @@ struct Lights {
 // The floor at a height, without an edge: it fades into the backdrop.
 struct Ground {
   float height = 0.0F;  // m
-  glm::vec3 colour{0.60F, 0.58F, 0.56F};
+  glm::vec3 colour{0.34F, 0.335F, 0.33F};
   float fade_from = 0.0F, fade_to = 0.0F;  // m from the camera's target; both 0: chosen from the distance
   float checker = 0.0F;                    // m a square; 0: plain
 };
 
 // Shown linear behind everything: a vertical gradient with a soft glow in the middle.
 struct Backdrop {
-  glm::vec3 top{0.30F, 0.36F, 0.44F};
-  glm::vec3 bottom{0.60F, 0.61F, 0.62F};
-  float glow = 0.25F;      // brighter behind the target
+  glm::vec3 top{0.085F, 0.105F, 0.135F};
+  glm::vec3 bottom{0.40F, 0.41F, 0.43F};
+  float glow = 0.3F;       // brighter behind the target
   float vignette = 0.25F;  // darker towards the corners; 0: exactly the gradient
 };
 

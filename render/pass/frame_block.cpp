@@ -59,7 +59,12 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   block.sun_radiance = glm::vec4(frame.lights.sun_colour * frame.lights.sun_strength, 0.0F);
   block.sky_radiance =
       glm::vec4(frame.lights.sky_colour * frame.lights.sky_strength, frame.lights.softbox_strength);
-  block.ground_radiance = glm::vec4(frame.lights.ground_colour * frame.lights.sky_strength, 1.0F);
+  // From below comes what the floor sends back, where there is one.
+  const glm::vec3 below =
+      frame.ground ? frame.ground->colour * (0.75F * std::max(sun.y, 0.0F) * glm::vec3(block.sun_radiance) +
+                                             glm::vec3(block.sky_radiance))
+                   : frame.lights.ground_colour * frame.lights.sky_strength;
+  block.ground_radiance = glm::vec4(below, 1.0F);
   place_soft_boxes(sun, block);
 
   block.backdrop_top = glm::vec4(frame.backdrop.top, frame.backdrop.glow);
@@ -70,8 +75,8 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   }
   block.viewport = glm::vec4(w, h, 1.0F / w, 1.0F / h);
   block.glow_centre = glm::vec4(0.5F * w, 0.58F * h, 1.0F / (0.62F * h), 0.0F);
-  // A neighbourhood of about a seventh of what the camera sees at its target.
-  const float reach = 0.28F * slope * distance;
+  // A neighbourhood of about a third of what the camera sees at its target.
+  const float reach = 0.62F * slope * distance;
   block.occlusion_scale = glm::vec4(near, far * near / (far - near), far / (far - near), reach);
   block.view_ray = glm::vec4(slope * w / h, slope, 0.0F, 0.0F);
   const glm::vec3 right = glm::normalize(glm::cross(forward, up));

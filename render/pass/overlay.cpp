@@ -24,7 +24,7 @@ std::uint8_t to_srgb(float linear) {
 }
 
 float unit_for(const Image& image) {
-  return std::max(static_cast<float>(image.height) / 230.0F, 1.15F);
+  return std::max(static_cast<float>(image.height) / 200.0F, 1.5F);
 }
 
 void draw_caption(Image& image, std::string_view caption) {

@@ -121,24 +121,23 @@ void blend(std::uint8_t* pixel, const std::array<std::uint8_t, 3>& colour, float
   }
 }
 
+// First the dark edges of the whole line, then the ink, so that no edge falls on a neighbour's ink.
 void draw_glyph(Image& image, const Glyph& glyph, glm::vec2 origin, float unit,
-                const std::array<std::uint8_t, 3>& colour) {
-  const float half = std::max(0.42F * unit, 0.55F), edge = 0.9F * unit + 1.0F;
+                const std::array<std::uint8_t, 3>& colour, bool is_edge) {
+  const float half = std::max(0.34F * unit, 0.5F), edge = is_edge ? 1.1F * unit + 1.0F : 0.0F;
   const float pad = half + edge + 1.0F;
   const int left = std::max(static_cast<int>(origin.x - pad), 0);
   const int right = std::min(static_cast<int>(origin.x + glyph.width * unit + pad), image.width - 1);
   const int top = std::max(static_cast<int>(origin.y - 7.0F * unit - pad), 0);
   const int bottom = std::min(static_cast<int>(origin.y + 2.0F * unit + pad), image.height - 1);
-  const bool is_light = colour[0] + colour[1] + colour[2] > 384;
   for (int y = top; y <= bottom; ++y) {
     for (int x = left; x <= right; ++x) {
       const glm::vec2 p((static_cast<float>(x) + 0.5F - origin.x) / unit,
                         (origin.y - static_cast<float>(y) - 0.5F) / unit);
-      const float d = distance_to(glyph, p) * unit;
-      const float shade = is_light ? 0.3F * std::clamp(1.0F - (d - half) / edge, 0.0F, 1.0F) : 0.0F;
-      if (shade > 0.0F) blend(image.at(x, y), {0, 0, 0}, shade);
-      const float ink = std::clamp(half + 0.5F - d, 0.0F, 1.0F);
-      if (ink > 0.0F) blend(image.at(x, y), colour, ink);
+      const float d = distance_to(glyph, p) * unit - half;
+      const float share =
+          is_edge ? 0.42F * std::clamp(1.0F - d / edge, 0.0F, 1.0F) : std::clamp(0.5F - d, 0.0F, 1.0F);
+      if (share > 0.0F) blend(image.at(x, y), is_edge ? std::array<std::uint8_t, 3>{} : colour, share);
     }
   }
 }
@@ -147,10 +146,15 @@ void draw_glyph(Image& image, const Glyph& glyph, glm::vec2 origin, float unit,
 
 void draw_text(Image& image, float x, float y, float unit, std::array<std::uint8_t, 3> colour,
                std::string_view text) {
-  for (const char c : text) {
-    const Glyph& glyph = glyph_of(c);
-    draw_glyph(image, glyph, {x, y}, unit, colour);
-    x += (glyph.width + kGap) * unit;
+  const bool is_light = colour[0] + colour[1] + colour[2] > 384;
+  for (const bool is_edge : {true, false}) {
+    if (is_edge && !is_light) continue;
+    float pen = x;
+    for (const char c : text) {
+      const Glyph& glyph = glyph_of(c);
+      draw_glyph(image, glyph, {pen, y}, unit, colour, is_edge);
+      pen += (glyph.width + kGap) * unit;
+    }
   }
 }
 

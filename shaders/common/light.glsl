@@ -14,7 +14,7 @@ vec3 surroundings(vec3 d, float roughness) {
     vec2 half_size = vec2(box_right[i].w, box_up[i].w);
     vec2 inside = 1.0 - smoothstep(half_size - edge * 0.5, half_size + edge, p);
     float thinned = half_size.x * half_size.y / ((half_size.x + 0.3 * edge) * (half_size.y + 0.3 * edge));
-    light += sky_radiance.w * box_axis[i].w * thinned * inside.x * inside.y;
+    light += sky_radiance.w * box_axis[i].w * thinned * inside.x * inside.y * step(0.0, towards);
   }
   return light;
 }

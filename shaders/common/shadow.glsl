@@ -28,8 +28,8 @@ float sun_seen(vec3 position_world, vec3 normal) {
   vec2 slope = -m.xy / depth_part * extent.xy / extent.z;
   float bias = dot(abs(slope), texel) + 0.5 * max(shadow_texel.x, shadow_texel.y) / extent.z;
   float spread = dot(abs(slope), radius);
-  bool lit = p.z - bias - spread <= bounds.x;
-  bool dark = p.z - bias - spread > bounds.y && p.z < 1.0;
+  bool lit = bounds.x >= 1.0 || p.z - bias - spread <= bounds.x;
+  bool dark = bounds.y < 1.0 && p.z - bias - spread > bounds.y;
   int taps = inside && !lit && !dark ? SHADOW_TAPS : 0;
   float sum = 0.0;
   vec2 way = vec2(1.0, 0.0);  // golden-angle spiral
@@ -37,7 +37,7 @@ float sun_seen(vec3 position_world, vec3 normal) {
   for (int i = 0; i < taps; ++i) {
     vec2 shift = sqrt((float(i) + 0.5) / float(SHADOW_TAPS)) * radius * way;
     way = kTurn * way;
-    sum += texture(shadow_map, vec3(p.xy + shift, p.z - bias + dot(slope, shift)));
+    sum += texture(shadow_map, vec3(p.xy + shift, min(p.z - bias + dot(slope, shift), 1.0)));
   }
   if (!inside || lit) return 1.0;
   return dark ? 0.0 : sum / float(SHADOW_TAPS);
