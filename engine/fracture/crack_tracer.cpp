@@ -22,7 +22,6 @@ constexpr double kLeastEntry =
 constexpr double kMostTurn = 1.2;  // rad, in one element
 constexpr double kParallel = 0.9;  // cosine above which two cracks count as side by side
 constexpr double kJoinPull = 0.8;  // how hard a crack turns to one beside it
-constexpr double kGrainForward = 0.4;  // how much a crack on grain boundaries prefers to go straight on
 
 Vec2 left_of(const Vec2& d) {
   return {-d.y(), d.x()};
@@ -215,11 +214,15 @@ Vec2 CrackTracer::steer_to_neighbour(const LiveTip& tip, const ElementPlane& pla
 }
 
 void CrackTracer::follow_grains(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start,
-                                const stress::PlaneStress& tensor, Course& course) const {
+                                Course& course) const {
   const CutCell& cell = cutter_.cell(entry.cell);
   const ElementPlane& plane = (*setup_.planes)[at(cell.element)];
-  const double weak = setup_.material->grain_strength;
-  double best = std::max(0.0, stress_across(tensor, course.heading));
+  // A crack that could run straight on with the energy release G turns by an angle into a weaker plane, where
+  // it finds about G cos^4(angle / 2), if that is more of the plane's toughness (share^2 of the material's)
+  // than G is of its own (M.-Y. He, J. W. Hutchinson, J. Appl. Mech. 56, 1989).
+  const double share = setup_.material->grain_strength;
+  const double weak = share * share;
+  double best = 1.0;
   for (const GrainCrossing& crossing : find_grain_crossings(*setup_.grains, elements_, cell.element)) {
     if (crossing.edge == tip.tip.edge) continue;
     const auto stretch = cutter_.find_stretch(cell.element, crossing.edge, crossing.parameter);
@@ -229,23 +232,22 @@ void CrackTracer::follow_grains(const LiveTip& tip, const EdgeStretch& entry, co
     if (!(along.squaredNorm() > 0.0)) continue;
     const Vec2 direction = along.normalized();
     const double forward = direction.dot(course.heading);
-    if (forward <= 0.1) continue;
+    if (forward <= 0.0) continue;
     // On a boundary already: the chord lies on it if one of its two grains is at the other end too.
     const bool is_on_grain =
         tip.grain_a >= 0 && (crossing.grain_a == tip.grain_a || crossing.grain_a == tip.grain_b ||
                              crossing.grain_b == tip.grain_a || crossing.grain_b == tip.grain_b);
-    const double strength = is_on_grain ? weak : 0.5 * (1.0 + weak);
-    const double drive = std::max(0.0, stress_across(tensor, direction)) *
-                         (1.0 - kGrainForward + kGrainForward * forward) / strength;
+    const double release = 0.5 * (1.0 + forward);  // cos^2 of half the angle
+    const double drive = release * release / (is_on_grain ? weak : 0.5 * (1.0 + weak));
     if (drive <= best) continue;
     best = drive;
     course.exit = exit;
     course.is_on_grain = is_on_grain;
     course.grain_a = crossing.grain_a;
     course.grain_b = crossing.grain_b;
-    course.toughness_share = is_on_grain ? weak : 1.0;
+    course.toughness_share = is_on_grain ? share : 1.0;
+    course.release_share = release;
   }
-  if (course.exit) course.heading = (plane.flat(course.exit->place.barycentric) - start).normalized();
 }
 
 CrackTracer::Course CrackTracer::choose_course(const LiveTip& tip, const EdgeStretch& entry,
@@ -264,7 +266,7 @@ CrackTracer::Course CrackTracer::choose_course(const LiveTip& tip, const EdgeStr
   angle *= 1.0 - core::exp(-anisotropy * anisotropy * plane.scale / (2.0 * setup_.thickness));
   Course course;
   course.heading = steer_to_neighbour(tip, plane, start, turned(heading, angle), crack_length);
-  if (setup_.grains && !setup_.grains->is_empty()) follow_grains(tip, entry, start, tensor, course);
+  if (setup_.grains && !setup_.grains->is_empty()) follow_grains(tip, entry, start, course);
   return course;
 }
 
@@ -306,7 +308,7 @@ void CrackTracer::advance(LiveTip& tip, stress::ShellFace face, double& crack_le
   if (!(stress::principal_stress(tensor).first > 0.0)) return arrest(tip);
   Course course = choose_course(tip, *entry, from, heading, tensor, crack_length);
   course.heading = inwards(course.heading);
-  tip.intensity = stress_intensity(tensor, course.heading, tip.driven_length);
+  tip.intensity = course.release_share * stress_intensity(tensor, course.heading, tip.driven_length);
   if (tip.intensity < toughness_ * course.toughness_share) return arrest(tip);
 
   // If the chord would leave a part without area, one that leads more to the middle of the cell is tried.

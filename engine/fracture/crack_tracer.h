@@ -97,6 +97,7 @@ class CrackTracer {
     bool is_on_grain = false;
     int grain_a = -1, grain_b = -1;
     double toughness_share = 1.0;
+    double release_share = 1.0;  // of the stress intensity that is left after turning into a boundary
   };
 
   void run(std::array<LiveTip, 2>& tips, int count, stress::ShellFace face);
@@ -106,8 +107,7 @@ class CrackTracer {
                        const stress::PlaneStress& tensor, double crack_length) const;
   Vec2 steer_to_neighbour(const LiveTip& tip, const ElementPlane& plane, const Vec2& start,
                           const Vec2& heading, double crack_length) const;
-  void follow_grains(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start,
-                     const stress::PlaneStress& tensor, Course& course) const;
+  void follow_grains(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start, Course& course) const;
   std::optional<Exit> find_exit(int cell, int entry_side, const Vec2& start, const Vec2& heading) const;
   Exit settle_on_edge(int cell, int side, double parameter) const;
   Exit settle_on_cut(int cell, int side, double share) const;

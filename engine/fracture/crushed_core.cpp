@@ -130,7 +130,15 @@ class Crusher {
     std::sort(energies.begin(), energies.end(), [&](const Energy& a, const Energy& b) {
       return middle(a) != middle(b) ? middle(a) < middle(b) : a.seed < b.seed;
     });
-    return energies;
+    // Who loses to another seed at all three corners loses everywhere between them.
+    std::vector<Energy> rivals;
+    for (const Energy& e : energies) {
+      const bool is_beaten = std::any_of(rivals.begin(), rivals.end(), [&e](const Energy& r) {
+        return r.corners[0] < e.corners[0] && r.corners[1] < e.corners[1] && r.corners[2] < e.corners[2];
+      });
+      if (!is_beaten) rivals.push_back(e);
+    }
+    return rivals;
   }
 
   /// The part of a polygon where `difference` is at most zero; the new side gets the number `id`.

@@ -25,11 +25,12 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr double kCoreOverload = 4.5;   // stress over strength above which the core is crushed
-constexpr double kCoreReach = 6.0;      // patch radii
-constexpr double kWaveLength = 0.14;    // of the paths' noise, share of the body's size
-constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
-constexpr int kMostScreenings = 6;      // steps of the search for the duration
+constexpr double kCoreOverload = 4.5;       // stress over strength above which the core is crushed
+constexpr double kCoreReach = 6.0;          // patch radii
+constexpr double kWaveLength = 0.14;        // of the paths' noise, share of the body's size
+constexpr double kPatchElements = 1.5;      // least radius of a load's patch, in element sizes
+constexpr double kGrowthThatCounts = 0.02;  // of the cracks' length: a generation that adds less is the last
+constexpr int kMostScreenings = 6;          // steps of the search for the duration
 
 using Clock = std::chrono::steady_clock;
 double milliseconds_since(Clock::time_point start) {
@@ -372,11 +373,12 @@ class Decider {
       CrackTracer tracer(cutter, tracer_setup(stresses, generation));
       tracer.resume(tips);
       tracer.nucleate(std::move(candidates));
+      decision_.generation_bound_active = false;
       if (!take_over(tracer, tips)) break;
       mesh_ = std::make_shared<const geometry::ShellMesh>(cutter.mesh());
       contacts_ = find_cell_contacts(*mesh_);
       decision_.trace_ms += milliseconds_since(start);
-      if (tracer.is_out_of_energy()) break;
+      if (tracer.is_out_of_energy() || tracer.energy() < kGrowthThatCounts * decision_.fracture_energy) break;
       decision_.generation_bound_active = generation + 1 == settings_.most_generations;
     }
     conclude(std::move(tips));

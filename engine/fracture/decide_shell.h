@@ -68,7 +68,7 @@ struct ShellSubject {
 
 struct FractureSettings {
   int most_generations = 4;   // solves of the cracking body; 2 for speed
-  double waviness = 0.2;      // rad, of crack paths
+  double waviness = 0.15;     // rad, of crack paths
   double core_spacing = 3.5;  // crushed core: cell size at the hit, in thicknesses; 0: no core
   double least_width = 0.0;   // m, what contact can resolve; cracks keep wider pieces than that
   bool has_energy_guard = true;

@@ -13,7 +13,7 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr int kMostGroups = 24;  // pieces that share one load; the lightest beyond that carry nothing
+constexpr int kMostGroups = 12;  // pieces that share one load; the lightest beyond that carry nothing
 
 /// A load's pieces and their unit loads, in a row with those of the other loads.
 struct Groups {
