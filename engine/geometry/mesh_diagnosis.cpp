@@ -6,16 +6,15 @@
 #include <sstream>
 
 #include "engine/geometry/edge_topology.h"
+#include "engine/geometry/flat_triangles.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/weld.h"
 
 namespace shatterbox::geometry {
 namespace {
 
-constexpr double kNoHeight = 1e-12;  // of the longest edge: a triangle without area
 constexpr double kMostCoordinate =
     1e60;  // m: areas and inertias of anything larger leave the range of a double
-constexpr int kMostCleaningPasses = 16;
 
 std::size_t index(int number) {
   return static_cast<std::size_t>(number);
@@ -46,10 +45,6 @@ int direction_along(const Triangle& t, const std::array<int, 2>& edge) {
   return -1;
 }
 
-bool has_repeated_corner(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 /// One mesh on its way through all tests; each returns false if it refuses.
 class Mender {
  public:
@@ -64,7 +59,7 @@ class Mender {
       std::iota(vertex_source_.begin(), vertex_source_.end(), 0);
       count_unused();
       weld();
-      drop_degenerate();
+      drop_flat();
       drop_duplicates();
       drop_unused();
       if (test_rest() && test_edges() && orient()) {
@@ -180,6 +175,15 @@ class Mender {
                        words + "): welded.";
   }
 
+  void drop_flat() {
+    const FlatTriangles flat = remove_flat_triangles(mesh_, triangle_source_);
+    if (flat.count == 0) return;
+    MeshFinding& finding = report(MeshFault::degenerate_triangles, Severity::mended, flat.count);
+    const std::string words = say_triangle(finding, flat.first);
+    finding.sentence = counted(flat.count, "triangle has", "triangles have") + " no area (first " + words +
+                       "): dropped without opening a slit.";
+  }
+
   void keep_triangles(const std::vector<std::uint8_t>& is_kept) {
     std::size_t kept = 0;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -189,100 +193,6 @@ class Mender {
     }
     mesh_.triangles.resize(kept);
     triangle_source_.resize(kept);
-  }
-
-  /// Height over the longest edge, whose first corner comes back in `longest`, and the shortest edge's
-  /// likewise.
-  double flatness(const Triangle& t, std::size_t& longest, std::size_t& shortest) const {
-    std::array<double, 3> length{};
-    for (std::size_t i = 0; i < 3; ++i) length[i] = (at(t[(i + 1) % 3]) - at(t[i])).norm();
-    longest = static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
-    shortest = static_cast<std::size_t>(std::min_element(length.begin(), length.end()) - length.begin());
-    if (length[longest] == 0.0) return 0.0;
-    // Divided by the length first, so that tiny meshes do not underflow.
-    const Vec3 a = (at(t[1]) - at(t[0])) / length[longest];
-    const Vec3 b = (at(t[2]) - at(t[0])) / length[longest];
-    return a.cross(b).norm();
-  }
-
-  /// Triangles without area go. Where one has two corners at (almost) one place, they become one; where one
-  /// corner lies on the opposite edge, the neighbour across that edge is divided there, so that no slit
-  /// opens.
-  void drop_degenerate() {
-    int count = 0;
-    int first = -1;
-    for (int pass = 0; pass < kMostCleaningPasses; ++pass) {
-      const int before = count;
-      clean_once(count, first, pass + 1 < kMostCleaningPasses);
-      if (count == before) break;
-    }
-    if (count == 0) return;
-    MeshFinding& finding = report(MeshFault::degenerate_triangles, Severity::mended, count);
-    const std::string words = say_triangle(finding, first);
-    finding.sentence = counted(count, "triangle has", "triangles have") + " no area (first " + words +
-                       "): dropped without opening a slit.";
-  }
-
-  void clean_once(int& count, int& first, bool divides) {
-    const EdgeTopology topology = build_edge_topology(mesh_.triangles);
-    std::vector<std::uint8_t> is_kept(mesh_.triangles.size(), 1);
-    std::vector<std::uint8_t> is_touched(mesh_.triangles.size(), 0);
-    std::vector<int> joined(mesh_.positions.size());
-    std::iota(joined.begin(), joined.end(), 0);
-    std::vector<Triangle> added;
-    std::vector<int> added_source;
-    const std::size_t triangles = mesh_.triangles.size();
-    for (std::size_t t = 0; t < triangles; ++t) {
-      if (is_touched[t]) continue;
-      const Triangle corners = mesh_.triangles[t];
-      std::size_t longest = 0;
-      std::size_t shortest = 0;
-      if (!has_repeated_corner(corners)) {
-        if (flatness(corners, longest, shortest) >= kNoHeight) continue;
-        const int a = corners[shortest];
-        const int b = corners[(shortest + 1) % 3];
-        const int c = corners[longest];
-        const int d = corners[(longest + 1) % 3];
-        if ((at(b) - at(a)).norm() <= kNoHeight * (at(d) - at(c)).norm()) {
-          joined[index(std::max(a, b))] = std::min(a, b);
-        } else if (divides && !divide_neighbour(topology, t, longest, is_touched, added, added_source)) {
-          continue;  // its neighbour is being divided: next pass
-        }
-      }
-      is_kept[t] = 0;
-      is_touched[t] = 1;
-      if (count++ == 0) first = triangle_source_[t];
-    }
-    keep_triangles(is_kept);
-    mesh_.triangles.insert(mesh_.triangles.end(), added.begin(), added.end());
-    triangle_source_.insert(triangle_source_.end(), added_source.begin(), added_source.end());
-    for (Triangle& t : mesh_.triangles)
-      for (int& v : t)
-        while (joined[index(v)] != v) v = joined[index(v)];
-  }
-
-  /// The corner of flat triangle t that lies on its edge `longest` becomes a corner of the triangle across
-  /// that edge.
-  bool divide_neighbour(const EdgeTopology& topology, std::size_t t, std::size_t longest,
-                        std::vector<std::uint8_t>& is_touched, std::vector<Triangle>& added,
-                        std::vector<int>& added_source) {
-    const int edge = topology.triangle_edges[t][longest];
-    if (topology.triangle_count(edge) != 2) return true;  // a border: nothing to divide
-    const auto begin = index(topology.first_triangle[index(edge)]);
-    const int one = topology.edge_triangles[begin];
-    const auto other = index(one == static_cast<int>(t) ? topology.edge_triangles[begin + 1] : one);
-    if (is_touched[other]) return false;
-    is_touched[other] = 1;
-    const int middle = mesh_.triangles[t][(longest + 2) % 3];
-    Triangle& neighbour = mesh_.triangles[other];
-    const auto& ends = topology.edges[index(edge)];
-    if (neighbour[0] == middle || neighbour[1] == middle || neighbour[2] == middle) return true;
-    Triangle second = neighbour;
-    std::replace(neighbour.begin(), neighbour.end(), ends[0], middle);
-    std::replace(second.begin(), second.end(), ends[1], middle);
-    added.push_back(second);
-    added_source.push_back(triangle_source_[other]);
-    return true;
   }
 
   void drop_duplicates() {
@@ -484,9 +394,7 @@ class Mender {
     int count = 0;
     int first = -1;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      std::size_t longest = 0;
-      std::size_t shortest = 0;
-      if (flatness(mesh_.triangles[t], longest, shortest) >= options_.sliver_ratio) continue;
+      if (flatness(mesh_, mesh_.triangles[t]) >= options_.sliver_ratio) continue;
       if (count++ == 0) first = triangle_source_[t];
     }
     if (count == 0) return;

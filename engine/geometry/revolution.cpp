@@ -169,7 +169,8 @@ core::Result<PartedMesh> make_surface_of_revolution(const std::vector<ProfileSeg
 
   const Profile profile(segments, meshing.edge_length);
   const std::vector<Ring> rings = lay_rings(profile, meshing);
-  if (rings.empty()) return core::Error{find_fault(meshing, std::numeric_limits<double>::max()).value_or("")};
+  // Too fine for anything: the same sentence as for an edge length that is too short for the extent.
+  if (rings.empty()) return core::Error{*find_fault(meshing, std::numeric_limits<double>::max())};
   for (const Ring& ring : rings)
     if (!ring.is_end && profile.point(ring.segment, ring.s).x() <= 0.0)
       return core::Error{"segment " + std::to_string(ring.segment + 1) + " of the profile crosses the axis"};
