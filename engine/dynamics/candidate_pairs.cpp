@@ -10,6 +10,7 @@
 #include "engine/core/parallel.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/rest.h"
+#include "engine/dynamics/solid_touch.h"
 #include "engine/dynamics/step_motion.h"
 
 namespace shatterbox::dynamics {
@@ -22,6 +23,7 @@ using collision::Contact;
 constexpr double kLocalSlack = 0.1;       // sine: neighbouring features may lead closer by this
 constexpr double kManifoldRadius = 0.04;  // share of the pair's size
 constexpr double kBroadSlack = 0.02;      // share of a body's size
+constexpr double kRaiseTime = 0.5;        // s
 constexpr double kImpactWindow = 0.1;     // share of the step after the first hit in which others count
 
 std::size_t at(int i) {
@@ -292,17 +294,6 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   }
 }
 
-Pose pose_on_path(const WorkBody& w, double time) {
-  if (!w.is_active) return w.start;
-  Pose pose;
-  pose.translation = w.start.translation + time * (w.predicted.translation - w.start.translation);
-  const Quat& p = w.start.rotation;
-  const Quat& q = w.predicted.rotation;
-  const double sign = p.dot(q) < 0.0 ? -1.0 : 1.0;
-  pose.rotation = Quat(Quat::Coefficients((1.0 - time) * p.coeffs() + time * sign * q.coeffs())).normalized();
-  return pose;
-}
-
 // Spheres and boxes: contacts at the start, and the first touch on the way if the pair moves further than
 // they look.
 void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPair& pair) {
@@ -310,34 +301,8 @@ void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPa
   collision::find_analytic_contacts(*a.shape, a.start, *b.shape, b.start, pair.margin, pair.contacts);
   const double usual_gap = settings.kept_gap * pair.size;
   if (!pair.contacts.empty() || pair.motion + 2.0 * usual_gap <= pair.margin) return;
-  const bool a_turns = a.shape->kind == ShapeKind::box, b_turns = b.shape->kind == ShapeKind::box;
-  // While a body turns by `time` of its way its points swing by no more than this share of twice the bound.
-  const double turning =
-      2.0 * ((a_turns ? turn_bound(a, a.predicted) : 0.0) + (b_turns ? turn_bound(b, b.predicted) : 0.0));
-  const Vec3 way =
-      (a.predicted.translation - a.start.translation) - (b.predicted.translation - b.start.translation);
-  double time = 0.0;
-  for (int i = 0; i < 200; ++i) {
-    const Pose pose_a = pose_on_path(a, time), pose_b = pose_on_path(b, time);
-    Vec3 normal;
-    const double gap = collision::analytic_gap(*a.shape, pose_a, *b.shape, pose_b, normal);
-    const double closing = std::max(0.0, -normal.dot(way)) + turning;
-    const double room = gap - usual_gap;
-    if (room <= 0.1 * usual_gap) {
-      std::vector<Contact> touching;
-      collision::find_analytic_contacts(*a.shape, pose_a, *b.shape, pose_b, pair.margin, touching);
-      for (Contact& c : touching) {
-        c.on_a = a.start.apply(pose_a.apply_inverse(c.on_a));
-        c.on_b = b.start.apply(pose_b.apply_inverse(c.on_b));
-        c.gap = c.normal.dot(c.on_a - c.on_b);
-        c.is_time_of_impact = true;
-        pair.contacts.push_back(c);
-      }
-      return;
-    }
-    if (closing * (1.0 - time) < room) return;
-    time += 0.999 * room / closing;
-  }
+  const SolidTouch touch = find_first_touch(a, a.predicted, b, b.predicted, usual_gap, pair.margin);
+  pair.contacts = touch.contacts;
 }
 
 void meet_plane(const MotionWork& work, WorkPair& pair) {
@@ -362,6 +327,9 @@ void adapt_gap(const ContactSettings& settings, PairState& memory, WorkPair& pai
   }
   const bool is_new = memory.kept_gap <= 0.0;
   least = std::max(least, 0.02 * usual);
+  // What lies on something solid from the start is raised to the usual gap, slowly enough to be no push.
+  const bool is_raised = !is_new && (pair.is_plane || pair.is_analytic) && memory.is_touching;
+  if (is_raised) least = std::max(least, memory.kept_gap + usual * settings.time_step / kRaiseTime);
   memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
   pair.kept_gap = memory.kept_gap;
   pair.threshold = impact_threshold(settings, memory.kept_gap);

@@ -19,6 +19,7 @@ struct Moved {
 Moved moved(const WorkBody& body, double time) {
   if (body.inverse_mass > 0.0) return {body.way, body.turn};
   if (!body.is_active) return {Vec3::Zero(), Mat3::Identity()};
+  if (body.shape->kind == body::ShapeKind::sphere) return {body.velocity * time, Mat3::Identity()};
   return {body.velocity * time, rotation_by(body.spin * time).toRotationMatrix()};
 }
 
@@ -57,7 +58,9 @@ class IslandSolver {
       b.way += b.velocity * step_;
       advance_spin(b.inertia, step_, SpinOrder::second, b.rotation, b.spin);
       const Mat3 r = b.rotation.toRotationMatrix();
-      b.turn = r * b.start.rotation.toRotationMatrix().transpose();
+      // A sphere touches with whatever point is lowest, not with the one that was.
+      if (b.shape->kind != body::ShapeKind::sphere)
+        b.turn = r * b.start.rotation.toRotationMatrix().transpose();
       const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
       b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
     }
@@ -161,12 +164,17 @@ class IslandSolver {
   // Friction on the present normal impulse, in a circular cone.
   void rub(SolverContact& c, Vec3& u, Vec3& change) {
     if (c.friction <= 0.0) return;
-    Vec2 wanted(c.impulse[1] - u[1] * c.weights[1], c.impulse[2]);
-    const double cross = c.response(1, 2) * (wanted[0] - c.impulse[1]);
-    wanted[1] -= (u[2] + cross) * c.weights[2];
     const double bound = c.friction * (c.impulse[0] + change[0]);
-    const double length = wanted.norm();
-    if (length > bound) wanted *= bound / length;
+    const Vec2 held(c.impulse[1], c.impulse[2]), slip(u[1], u[2]);
+    const double kuu = c.response(1, 1), kvv = c.response(2, 2), kuv = c.response(1, 2);
+    Vec2 wanted =
+        held - Vec2(kvv * slip[0] - kuv * slip[1], kuu * slip[1] - kuv * slip[0]) / (kuu * kvv - kuv * kuv);
+    if (wanted.squaredNorm() > bound * bound) {
+      // It slides: friction is against the slip, whatever the body's own directions.
+      wanted = held - slip * (2.0 / (kuu + kvv));
+      const double length = wanted.norm();
+      if (length > bound) wanted *= bound / length;
+    }
     change[1] = wanted[0] - c.impulse[1];
     change[2] = wanted[1] - c.impulse[2];
   }

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_gap.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/motion_work.h"
+#include "engine/dynamics/solid_touch.h"
 #include "engine/dynamics/step_motion.h"
 
 namespace shatterbox::dynamics {
@@ -18,6 +20,8 @@ using collision::Contact;
 
 constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
+constexpr double kSinking =
+    0.02;  // solids may sink into each other by this share of the thinner half in a step
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -62,7 +66,7 @@ class Guard {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
       const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-      if (pair.is_analytic || (pair.is_free_certified && a.is_free && b.is_free)) must_test_[p] = 0;
+      if (pair.is_free_certified && a.is_free && b.is_free) must_test_[p] = 0;
     }
     for (int round = 0; test() && round < settings_.continuous_rounds; ++round) {
       ++report_.rounds;
@@ -82,8 +86,11 @@ class Guard {
   bool test() {
     prepare_paths();
     core::parallel_for(work_.pairs.size(), 8, [&](std::size_t p) {
-      if (must_test_[p])
-        hits_[p] = work_.pairs[p].is_plane ? test_plane(work_.pairs[p]) : test_features(work_.pairs[p]);
+      const WorkPair& pair = work_.pairs[p];
+      if (!must_test_[p]) return;
+      hits_[p] = pair.is_plane      ? test_plane(pair)
+                 : pair.is_analytic ? test_solids(pair)
+                                    : test_features(pair);
     });
     has_hits_ = false;
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
@@ -149,6 +156,23 @@ class Guard {
     return hits;
   }
 
+  // What has sunk in a little is pushed out by its contacts.
+  std::vector<Hit> test_solids(const WorkPair& pair) const {
+    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+    Vec3 normal;
+    const double gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
+    if (gap > motion_bound(a, a.end, b, b.end)) return {};
+    const auto thinnest = [](const WorkBody& w) {
+      return w.shape->kind == ShapeKind::box ? w.shape->half_extent.minCoeff() : w.shape->radius;
+    };
+    const double least = std::min(gap, 0.0) - kSinking * std::min(thinnest(a), thinnest(b));
+    const SolidTouch touch = find_first_touch(a, a.end, b, b.end, least, pair.kept_gap);
+    std::vector<Hit> hits;
+    for (const Contact& c : touch.contacts) hits.push_back({touch.time, c});
+    keep_first(hits, pair);
+    return hits;
+  }
+
   std::vector<Hit> test_features(const WorkPair& pair) const {
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
     const double motion = motion_bound(a, a.end, b, b.end);
@@ -209,8 +233,7 @@ class Guard {
     o.b = pair.b;
     o.pair = pair_number;
     o.normal = c.normal;
-    const Vec3 end_a = a.end.apply(a.start.apply_inverse(c.on_a)),
-               end_b = b.end.apply(b.start.apply_inverse(c.on_b));
+    const Vec3 end_a = carry(a, c.on_a, a.start, a.end), end_b = carry(b, c.on_b, b.start, b.end);
     o.gap = c.normal.dot(end_a - end_b);
     o.wanted = std::max(wanted_separation(c.gap, pair.kept_gap), least_wanted);
     const Vec3 middle = 0.5 * (end_a + end_b);
@@ -328,8 +351,7 @@ class Guard {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
       const bool has_hit = must_test_[p] && !hits_[p].empty();
-      must_test_[p] =
-          !pair.is_analytic && (has_hit || has_moved[at(pair.a)] || has_moved[at(pair.b)]) ? 1 : 0;
+      must_test_[p] = has_hit || has_moved[at(pair.a)] || has_moved[at(pair.b)] ? 1 : 0;
       hits_[p].clear();
     }
   }

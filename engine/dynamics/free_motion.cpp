@@ -63,7 +63,7 @@ Quat rotation_by(const Vec3& rotation_vector) {
 }
 
 void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin) {
-  constexpr double kMostAngle = 0.1;              // rad a part
+  constexpr double kMostAngle = 0.05;             // rad a part
   constexpr double kSuzuki = 0.4144907717943757;  // 1 / (4 - 4^(1/3))
   const double speed = spin.norm();
   if (speed * time < 1e-150) return;

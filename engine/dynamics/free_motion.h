@@ -21,7 +21,7 @@ PrincipalInertia find_principal_inertia(const Mat3& inertia);
 enum class SpinOrder { second, fourth };
 
 /// Turns a torque-free body for `time` seconds: `rotation` is world from body, `spin` its angular velocity
-/// (world, rad/s). Divided so that no part turns by more than a tenth of a radian.
+/// (world, rad/s). Divided so that no part turns by more than a twentieth of a radian.
 void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin);
 
 /// Rotation by a rotation vector (rad).

@@ -19,6 +19,11 @@ void place(WorkBody& body) {
   body.is_placed = true;
 }
 
+Vec3 carry(const WorkBody& body, const Vec3& point, const Pose& from, const Pose& to) {
+  if (body.shape->kind == body::ShapeKind::sphere) return point - from.translation + to.translation;
+  return to.apply(from.apply_inverse(point));
+}
+
 double turn_bound(const WorkBody& body, const Pose& end) {
   // |q - p| of unit quaternions is 2 sin(theta / 4); the chord of a point at `reach` is 2 sin(theta / 2)
   // reach.

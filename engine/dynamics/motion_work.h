@@ -122,6 +122,10 @@ void place(WorkBody& body);
 /// Vertices (|V| x 3, world) at a pose.
 void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out);
 
+/// Where a point on the surface of the body goes that is at `point` when the body is at `from`, when it is at
+/// `to`: with its material, but on a sphere with its direction.
+Vec3 carry(const WorkBody& body, const Vec3& point, const Pose& from, const Pose& to);
+
 /// No point of the body moves further than this by its turn from start to `end`, m.
 double turn_bound(const WorkBody& body, const Pose& end);
 
