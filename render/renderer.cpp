@@ -26,10 +26,11 @@ namespace {
 
 struct Level {
   int samples_across;  // a pixel has as many down
-  int shadow_map, shadow_taps, occlusion_taps;
+  int shadow_map, shadow_taps;
+  int occlusion_taps, occlusion_scale;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 20, 9} : Level{1, 640, 8, 5};
+  return quality == Quality::full ? Level{2, 1024, 20, 9, 2} : Level{1, 640, 7, 6, 4};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
@@ -101,8 +102,8 @@ struct Renderer::Rooms {
         tiles(size.width, size.height),
         shadow(level.shadow_map),
         surface(size.width * level.samples_across, size.height * level.samples_across),
-        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across),
-        light(level.shadow_taps, level.samples_across, quality_ == Quality::preview),
+        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
+        light(level.shadow_taps, level.samples_across, level.occlusion_scale, quality_ == Quality::preview),
         glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);

@@ -1,4 +1,4 @@
-// Tiles without a body: floor and backdrop only.
+// Floor and backdrop. NO_SHADOW, NO_OCCLUSION: for tiles that they cannot reach.
 #include "common/floor.glsl"
 #include "common/paint.glsl"
 layout(location = 0) out vec4 colour;

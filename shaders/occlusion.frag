@@ -1,4 +1,4 @@
-// How much of the sky each half-size pixel sees: samples on a spiral, each hiding what lies above the surface's
+// How much of the sky each pixel of the smaller picture sees: samples on a spiral, each hiding what lies above the surface's
 // plane and near [McG12]. View space, m. Turned by a 4 x 4 pattern of angles that the blur takes out again.
 #include "common/frame.glsl"
 layout(binding = 0) uniform sampler2D depth_map;  // view depth, m
@@ -6,7 +6,7 @@ layout(location = 0) out vec2 seen_depth;         // share seen, view depth
 
 vec3 place_at(ivec2 pixel) {
   float z = texelFetch(depth_map, pixel, 0).x;
-  vec2 s = (vec2(pixel) + 0.5) * (4.0 * viewport.zw) - 1.0;
+  vec2 s = (vec2(pixel) + 0.5) * (2.0 * float(OCCLUSION_SCALE) * viewport.zw) - 1.0;
   return vec3(s * view_ray.xy * z, z);
 }
 

@@ -1,4 +1,4 @@
-// Mean over 4 x 4 half-size pixels of about the same depth: exactly the period of the turning pattern.
+// Mean over 4 x 4 pixels of about the same depth: exactly the period of the turning pattern.
 #include "common/frame.glsl"
 layout(binding = 0) uniform sampler2D raw;  // share seen, view depth
 layout(location = 0) out vec2 seen_depth;

@@ -8,9 +8,11 @@
 namespace shatterbox::render::pass {
 namespace {
 
-std::vector<std::string> defines_of(int shadow_taps, int samples_across, bool is_preview) {
+std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occlusion_scale,
+                                    bool is_preview) {
   std::vector<std::string> defines = {"SHADOW_TAPS " + std::to_string(shadow_taps),
-                                      "SIDE " + std::to_string(samples_across)};
+                                      "SIDE " + std::to_string(samples_across),
+                                      "OCCLUSION_SCALE " + std::to_string(occlusion_scale)};
   if (is_preview) defines.emplace_back("PREVIEW");
   return defines;
 }
@@ -19,11 +21,15 @@ constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
 
 }  // namespace
 
-LightPass::LightPass(int shadow_taps, int samples_across, bool is_preview)
+LightPass::LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview)
     : cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
-      bodies_("tile.vert", "light.frag", defines_of(shadow_taps, samples_across, is_preview)),
-      floor_("tile.vert", "floor.frag", {"SHADOW_TAPS " + std::to_string(shadow_taps)}),
-      plain_("tile.vert", "floor.frag", {"SHADOW_TAPS 1", "PLAIN"}) {}
+      bodies_("tile.vert", "light.frag",
+              defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
+      floor_("tile.vert", "floor.frag", defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
+      dimmed_("tile.vert", "floor.frag",
+              {"SHADOW_TAPS 1", "OCCLUSION_SCALE " + std::to_string(occlusion_scale), "NO_SHADOW"}),
+      plain_("tile.vert", "floor.frag", {"SHADOW_TAPS 1", "OCCLUSION_SCALE 1", "NO_SHADOW", "NO_OCCLUSION"}) {
+}
 
 void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
   opaque.bind(4, 5);
@@ -52,6 +58,8 @@ void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
 
   floor_.use();
   tiles.draw_shaded_floor();
+  dimmed_.use();
+  tiles.draw_dimmed_floor();
   plain_.use();
   tiles.draw_plain_floor();
 }

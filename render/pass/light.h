@@ -10,12 +10,12 @@ namespace shatterbox::render::pass {
 
 class LightPass {
  public:
-  LightPass(int shadow_taps, int samples_across, bool is_preview);
+  LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
   // Into the framebuffer that is bound; its depth is used for the cover.
   void run(const Layer& opaque, const Tiles& tiles) const;
 
  private:
-  gpu::Program cover_, bodies_, floor_, plain_;
+  gpu::Program cover_, bodies_, floor_, dimmed_, plain_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -6,8 +6,8 @@
 
 namespace shatterbox::render::pass {
 
-OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across)
-    : depth_((width + 1) / 2, (height + 1) / 2, GL_R32F, gpu::Filter::nearest),
+OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across, int scale)
+    : depth_((width + scale - 1) / scale, (height + scale - 1) / scale, GL_R32F, gpu::Filter::nearest),
       raw_(depth_.width(), depth_.height(), GL_RG32F, gpu::Filter::nearest),
       blurred_(depth_.width(), depth_.height(), GL_RG32F, gpu::Filter::nearest),
       depth_target_({&depth_}, nullptr),
@@ -15,8 +15,10 @@ OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across
       blurred_target_({&blurred_}, nullptr),
       // Bodies and floor share text with the light pass; no shadow is looked up here.
       gather_("full_screen.vert", "occlusion_depth.frag",
-              {"SIDE " + std::to_string(samples_across), "SHADOW_TAPS 1"}),
-      sample_("full_screen.vert", "occlusion.frag", {"OCCLUSION_TAPS " + std::to_string(taps)}),
+              {"SIDE " + std::to_string(samples_across), "SHADOW_TAPS 1",
+               "OCCLUSION_SCALE " + std::to_string(scale)}),
+      sample_("full_screen.vert", "occlusion.frag",
+              {"OCCLUSION_TAPS " + std::to_string(taps), "OCCLUSION_SCALE " + std::to_string(scale)}),
       blur_("full_screen.vert", "occlusion_blur.frag") {}
 
 void OcclusionPass::run(const gpu::Texture& opaque_depth) const {

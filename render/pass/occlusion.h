@@ -1,4 +1,5 @@
-// Ambient occlusion at half size: depth of bodies and floor, spiral samples, blur (shaders/occlusion*).
+// Ambient occlusion at a half or a quarter of the size: depth of bodies and floor, spiral samples, blur
+// (shaders/occlusion*).
 #pragma once
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
@@ -8,7 +9,7 @@ namespace shatterbox::render::pass {
 
 class OcclusionPass {
  public:
-  OcclusionPass(int width, int height, int taps, int samples_across);  // of the full-size picture
+  OcclusionPass(int width, int height, int taps, int samples_across, int scale);  // of the whole picture
   void run(const gpu::Texture& opaque_depth) const;
   void bind() const;  // texture unit 3
 

@@ -11,8 +11,8 @@
 namespace shatterbox::render::pass {
 namespace {
 
-constexpr int kSide = 16;  // pixels
-constexpr char kPlain = 0, kShaded = 1, kBody = 2;
+constexpr int kSide = 16;                                        // pixels
+constexpr char kPlain = 0, kDimmed = 1, kShaded = 2, kBody = 3;  // each needs what the ones before do
 
 // Along the sun onto the floor; what lies below it stays.
 glm::vec3 shadow_of(glm::vec3 p, const FrameBlock& block) {
@@ -97,13 +97,14 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
       mark(body, block, 1.0F, kBody, glass_marks_);
     } else {
       const float nearest = std::max(item.eye_distance - item.radius, block.occlusion_scale.x);
-      mark(body, block, 4.0F + block.occlusion_scale.w / nearest * pixels_a_slope, kShaded, marks_);
+      mark(body, block, 4.0F + block.occlusion_scale.w / nearest * pixels_a_slope, kDimmed, marks_);
       mark(body, block, 1.0F, kBody, marks_);
     }
   }
   rectangles_.clear();
   bodies_ = append_runs(marks_, kBody);
   shaded_ = append_runs(marks_, kShaded);
+  dimmed_ = append_runs(marks_, kDimmed);
   plain_ = append_runs(marks_, kPlain);
   glass_ = append_runs(glass_marks_, kBody);
   buffer_.assign(std::span<const glm::uvec4>(rectangles_));

@@ -17,6 +17,7 @@ class Tiles {
   // Draws each rectangle once with the program in use (tile.vert).
   void draw_bodies() const { draw(bodies_); }
   void draw_shaded_floor() const { draw(shaded_); }
+  void draw_dimmed_floor() const { draw(dimmed_); }  // occlusion, no shadow
   void draw_plain_floor() const { draw(plain_); }
   void draw_glass() const { draw(glass_); }
   bool has_glass() const { return glass_.count > 0; }
@@ -38,7 +39,7 @@ class Tiles {
   Marks marks_, glass_marks_;
   std::vector<glm::uvec4> rectangles_;
   gpu::Buffer buffer_;
-  Range bodies_, shaded_, plain_, glass_;
+  Range bodies_, shaded_, dimmed_, plain_, glass_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -26,10 +26,15 @@ vec3 floor_light(vec2 pixel, vec3 ray) {
     base *= 0.86 + 0.14 * side.x * side.y * clamp(1.5 - width, 0.0, 1.0);
   }
   vec3 n = vec3(0.0, 1.0, 0.0);
-#ifdef PLAIN  // neither shadow nor occlusion can reach here
-  float sky = 1.0, seen = 1.0;
+#ifdef NO_OCCLUSION
+  float sky = 1.0;
 #else
-  float sky = sky_seen(pixel, z), seen = sun_seen(p, n);
+  float sky = sky_seen(pixel, z);
+#endif
+#ifdef NO_SHADOW
+  float seen = 1.0;
+#else
+  float seen = sun_seen(p, n);
 #endif
   vec3 light = base * (sun_radiance.rgb * max(sun.y, 0.0) * seen + ambient(n) * sky);
   return mix(light, backdrop, fade);

@@ -1,11 +1,11 @@
-// Ambient occlusion at a full-size pixel from the half-size one: the four nearest, less where the depth differs.
+// Ambient occlusion at a full-size pixel from the smaller one: the four nearest, less where the depth differs.
 #include "common/frame.glsl"
 layout(binding = 3) uniform sampler2D occlusion_map;  // x: share of sky seen, y: view depth, m
 
 float sky_seen(vec2 pixel, float view_depth) {
   if (ground_radiance.w == 0.0) return 1.0;
   ivec2 last = textureSize(occlusion_map, 0) - 1;
-  vec2 h = pixel * 0.5 - 0.5;
+  vec2 h = pixel * (1.0 / float(OCCLUSION_SCALE)) - 0.5;
   ivec2 base = ivec2(floor(h));
   vec2 f = h - vec2(base);
   vec2 sum = vec2(1e-4, 1e-4);
