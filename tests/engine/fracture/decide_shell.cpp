@@ -1,0 +1,216 @@
+// What breaks, where and into how many pieces: a pane hit by a ball, a bauble dropped on its side.
+#include "engine/fracture/decide_shell.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/core/elementary.h"
+#include "engine/fracture/split_shell.h"
+#include "engine/geometry/shell_surface.h"
+#include "tests/engine/fracture/shapes.h"
+
+using namespace shatterbox;
+
+namespace {
+
+fracture::ShellSubject make_window(std::uint64_t seed, double edge = 0.034) {
+  const auto elements = test::make_pane(1.0, edge);
+  fracture::ShellSubject subject;
+  subject.mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
+  subject.thickness = 4e-3;
+  subject.seed = seed;
+  for (std::size_t v = 0; v < elements->mesh.positions.size(); ++v)
+    if (elements->mesh.positions[v].cwiseAbs().maxCoeff() > 0.5 - 1e-9)
+      subject.clamped_vertices.push_back(static_cast<int>(v));
+  fracture::prepare_subject(subject);
+  return subject;
+}
+
+fracture::ShellImpact steel_ball(double speed, const Vec3& place = Vec3(-0.05, 0.05, 0.0)) {
+  fracture::ShellLoad load;
+  load.point_material = place;
+  load.direction = -Vec3::UnitZ();
+  load.closing_speed = speed;
+  load.effective_mass = 1.0;
+  load.impulse = 1.3 * speed;
+  load.other_inverse_mass = 1.0;
+  load.hertz_compliance = 1e-8;
+  load.hertz_radius = 5e-3;
+  fracture::ShellImpact impact;
+  impact.loads = {load};
+  return impact;
+}
+
+fracture::ShellSubject make_bauble(std::uint64_t seed, double grain_size) {
+  const auto elements = test::make_elements(geometry::make_ornament({}, {0.003, 0.3, 1}).value().mesh);
+  fracture::ShellSubject subject;
+  subject.mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
+  subject.material.flaw_area = 1e-3;
+  subject.thickness = 5e-4;
+  subject.seed = seed;
+  if (grain_size > 0.0)
+    subject.grains = std::make_shared<const fracture::GrainField>(
+        fracture::make_grain_field(*elements, fracture::scatter_grain_seeds(*elements, grain_size, seed)));
+  fracture::prepare_subject(subject);
+  return subject;
+}
+
+fracture::ShellImpact drop_on_floor(const fracture::ShellSubject& subject, double speed) {
+  fracture::ShellLoad load;
+  load.point_material = Vec3(0.04, 0.0, 0.0);
+  load.direction = -Vec3::UnitX();
+  load.closing_speed = speed;
+  load.effective_mass = geometry::shell_mass_properties(*subject.mesh, subject.thickness, 2500.0).mass;
+  load.impulse = 1.3 * speed * load.effective_mass;
+  load.hertz_compliance = 1e-7;
+  fracture::ShellImpact impact;
+  impact.loads = {load};
+  return impact;
+}
+
+/// Length of crack about a place that runs within 30 degrees of the radius, and within 30 degrees of the
+/// hoop.
+std::array<double, 2> radial_and_hoop(const fracture::Decision& decision, const Vec3& place, int generation) {
+  std::array<double, 2> length{};
+  for (const auto& segment : decision.segments) {
+    if (segment.generation != generation) continue;
+    const Vec3 along = segment.ends[1] - segment.ends[0];
+    const Vec3 radius = 0.5 * (segment.ends[0] + segment.ends[1]) - place;
+    if (radius.norm() < 0.08 || radius.norm() > 0.35) continue;
+    const double cosine = std::abs(along.normalized().dot(radius.normalized()));
+    if (cosine > 0.866) length[0] += along.norm();
+    if (cosine < 0.5) length[1] += along.norm();
+  }
+  return length;
+}
+
+}  // namespace
+
+TEST_CASE("a clamped pane breaks into radials first and rings next") {
+  double pieces = 0.0;
+  std::array<double, 2> first{}, next{};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto subject = make_window(seed);
+    const auto decision = fracture::decide_shell(subject, steel_ball(10.0));
+    REQUIRE(decision.verdict.outcome == fracture::Outcome::broke);
+    CHECK(decision.verdict.ratio > 1.0);
+    CHECK(decision.fracture_energy < decision.elastic_energy);
+    CHECK(decision.verdict.duration == Approx(0.011).epsilon(0.2));
+    CHECK(std::abs(total_area(*decision.mesh) - 1.0) < 1e-12);
+    CHECK(decision.residual < 1e-4);
+    const auto split = fracture::split_shell(*decision.mesh, {1.4e-3});
+    for (const auto& piece : split.pieces) pieces += total_area(piece) > 5e-4 ? 1.0 / 3.0 : 0.0;
+    const auto g0 = radial_and_hoop(decision, Vec3(-0.05, 0.05, 0.0), 0);
+    const auto g1 = radial_and_hoop(decision, Vec3(-0.05, 0.05, 0.0), 1);
+    for (std::size_t i = 0; i < 2; ++i) {
+      first[i] += g0[i];
+      next[i] += g1[i];
+    }
+  }
+  INFO("pieces " << pieces << ", radial/hoop " << first[0] << "/" << first[1] << ", then " << next[0] << "/"
+                 << next[1]);
+  CHECK(pieces > 20.0);
+  CHECK(pieces < 90.0);
+  CHECK(first[0] > 4.0 * first[1]);
+  CHECK(next[1] > next[0]);
+}
+
+TEST_CASE("a slow ball does not break the pane, and the verdict says how near it came") {
+  const auto subject = make_window(1);
+  const auto held = fracture::decide_shell(subject, steel_ball(1.0));
+  CHECK(held.verdict.outcome == fracture::Outcome::held);
+  CHECK(held.verdict.ratio < 1.0);
+  CHECK(held.verdict.ratio > 0.2);
+  CHECK(held.mesh == nullptr);
+  const auto half = fracture::decide_shell(subject, steel_ball(0.5));
+  CHECK(half.verdict.ratio == Approx(0.5 * held.verdict.ratio).epsilon(0.02));
+  // A tap that cannot break anything needs no solve.
+  const auto tap = fracture::decide_shell(subject, steel_ball(1e-4));
+  CHECK(tap.verdict.outcome == fracture::Outcome::held);
+  CHECK(tap.generations == 0);
+}
+
+TEST_CASE("the pattern follows the place of the hit") {
+  const auto subject = make_window(2);
+  const Vec3 place(0.2, -0.15, 0.0);
+  const auto decision = fracture::decide_shell(subject, steel_ball(10.0, place));
+  REQUIRE(decision.mesh);
+  const auto lengths = radial_and_hoop(decision, place, 0);
+  CHECK(lengths[0] > 2.0 * lengths[1]);
+}
+
+TEST_CASE("the same seed gives the same bits") {
+  const auto a = fracture::decide_shell(make_window(4), steel_ball(10.0));
+  const auto b = fracture::decide_shell(make_window(4), steel_ball(10.0));
+  REQUIRE(a.segments.size() == b.segments.size());
+  for (std::size_t i = 0; i < a.segments.size(); ++i) CHECK(a.segments[i].ends[1] == b.segments[i].ends[1]);
+}
+
+TEST_CASE("the energy guard keeps cracks within the energy of the impact") {
+  auto subject = make_window(1);
+  subject.material.fracture_energy = 2e4;  // so tough that the ball's energy pays for little
+  const auto decision = fracture::decide_shell(subject, steel_ball(10.0));
+  CHECK(decision.fracture_energy <= decision.elastic_energy);
+  CHECK(decision.verdict.outcome != fracture::Outcome::not_evaluated);
+}
+
+TEST_CASE("a bauble dropped on its side shatters, with or without grains, and its pieces break again") {
+  for (const double grain_size : {0.0, 0.008}) {
+    const auto subject = make_bauble(1, grain_size);
+    const auto impact = drop_on_floor(subject, 4.4);
+    const auto decision = fracture::decide_shell(subject, impact);
+    REQUIRE(decision.verdict.outcome == fracture::Outcome::broke);
+    CHECK((decision.verdict.place - Vec3(0.04, 0.0, 0.0)).norm() < 0.02);
+    if (grain_size > 0.0)
+      CHECK(decision.grain_area > 0.2 * decision.new_area);
+    else
+      CHECK(decision.grain_area == 0.0);
+    const auto split = fracture::split_shell(*decision.mesh, {1e-4});
+    CHECK(split.pieces.size() >= 15);
+    CHECK(split.pieces.size() <= 90);
+    double area = 0.0;
+    for (const auto& piece : split.pieces) area += total_area(piece);
+    CHECK(std::abs(area / total_area(*subject.mesh) - 1.0) < 1e-12);
+
+    // The pieces, small ones too, are hit again: each gets a verdict, some break.
+    int broke = 0;
+    for (std::size_t p = 0; p < split.pieces.size(); ++p) {
+      fracture::ShellSubject piece = subject;
+      piece.mesh = std::make_shared<const geometry::ShellMesh>(split.pieces[p]);
+      piece.systems = nullptr;
+      piece.tips = decision.tips;
+      fracture::ShellImpact again = drop_on_floor(piece, 4.4);
+      const auto& cell = piece.mesh->cells.front();
+      again.loads[0].point_material =
+          position_in_element(*piece.mesh->elements, cell.element,
+                              piece.mesh->corners[static_cast<std::size_t>(cell.first_corner)].barycentric);
+      const auto second = fracture::decide_shell(piece, again);
+      CHECK(second.verdict.outcome != fracture::Outcome::not_evaluated);
+      if (!second.mesh) continue;
+      ++broke;
+      CHECK(std::abs(total_area(*second.mesh) / total_area(*piece.mesh) - 1.0) < 1e-12);
+    }
+    CHECK(broke > 0);
+  }
+}
+
+TEST_CASE("several loads at once break the pane about each of them") {
+  const auto subject = make_window(3);
+  auto impact = steel_ball(8.0, Vec3(-0.25, 0.2, 0.0));
+  impact.loads.push_back(steel_ball(8.0, Vec3(0.25, -0.2, 0.0)).loads[0]);
+  const auto decision = fracture::decide_shell(subject, impact);
+  REQUIRE(decision.mesh);
+  for (const auto& load : impact.loads) {
+    double near = 0.0;
+    for (const auto& segment : decision.segments)
+      if ((segment.ends[0] - load.point_material).norm() < 0.1)
+        near += (segment.ends[1] - segment.ends[0]).norm();
+    CHECK(near > 0.3);
+  }
+}
+
+TEST_CASE("what cannot be evaluated says why") {
+  const auto subject = make_window(1);
+  const auto nothing = fracture::decide_shell(subject, {});
+  CHECK(nothing.verdict.outcome == fracture::Outcome::not_evaluated);
+  CHECK(!nothing.verdict.reason.empty());
+}

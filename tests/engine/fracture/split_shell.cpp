@@ -1,0 +1,179 @@
+// Cutting and splitting lose nothing: areas, masses, centres, inertias and momenta of the pieces sum to the
+// whole.
+#include "engine/fracture/split_shell.h"
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "engine/geometry/shell_surface.h"
+#include "tests/engine/fracture/shapes.h"
+
+using namespace shatterbox;
+using geometry::SideKind;
+
+namespace {
+
+/// Cuts every element of a pane along the line x = place; the cells' cuts meet on the edges.
+geometry::ShellMesh cut_straight(const std::shared_ptr<const geometry::ShellElements>& elements,
+                                 double place) {
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(elements));
+  const int count = cutter.cell_count();
+  for (int c = 0; c < count; ++c) {
+    const auto& triangle = elements->mesh.triangles[static_cast<std::size_t>(c)];
+    std::vector<fracture::BorderPlace> places;
+    for (int s = 0; s < 3; ++s) {
+      const int a = triangle[static_cast<std::size_t>(s)];
+      const int b = triangle[(static_cast<std::size_t>(s) + 1) % 3];
+      const double low = elements->mesh.positions[static_cast<std::size_t>(std::min(a, b))].x() - place;
+      const double high = elements->mesh.positions[static_cast<std::size_t>(std::max(a, b))].x() - place;
+      if ((low < 0.0) == (high < 0.0)) continue;
+      const double q = geometry::round_edge_parameter(low / (low - high));
+      places.push_back({s, false, geometry::barycentric_on_edge(*elements, c, s, q)});
+    }
+    if (places.size() == 2) cutter.cut(c, places[0], places[1], SideKind::crack, cutter.new_side_id());
+  }
+  return cutter.mesh();
+}
+
+void check_sums(const geometry::ShellMesh& whole, const std::vector<geometry::ShellMesh>& pieces) {
+  const auto all = geometry::shell_mass_properties(whole, 2e-3, 2500.0);
+  std::vector<geometry::MassProperties> parts;
+  double area = 0.0;
+  const Vec3 velocity(1.0, -2.0, 0.5), spin(3.0, 1.0, -2.0);
+  Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();
+  for (const auto& piece : pieces) {
+    parts.push_back(geometry::shell_mass_properties(piece, 2e-3, 2500.0));
+    const auto& p = parts.back();
+    const Vec3 v = velocity + spin.cross(p.centre - all.centre);
+    momentum += p.mass * v;
+    angular += (p.centre - all.centre).cross(p.mass * v) + p.inertia * spin;
+    area += total_area(piece);
+  }
+  const auto sum = geometry::combined(parts);
+  CHECK(std::abs(area / total_area(whole) - 1.0) < 1e-12);
+  CHECK(std::abs(sum.mass / all.mass - 1.0) < 1e-12);
+  CHECK((sum.centre - all.centre).norm() < 1e-12);
+  CHECK((sum.inertia - all.inertia).norm() < 1e-12 * all.inertia.norm());
+  CHECK((momentum - all.mass * velocity).norm() < 1e-12 * all.mass * velocity.norm());
+  CHECK((angular - all.inertia * spin).norm() < 1e-11 * (all.inertia * spin).norm());
+}
+
+/// Both faces of every cut have the same length.
+void check_twins(const geometry::ShellMesh& mesh) {
+  std::map<int, std::vector<Vec3>> faces;
+  double longest = 0.0;
+  for (const auto& cell : mesh.cells)
+    for (int s = 0; s < cell.corner_count; ++s) {
+      const auto& corner = mesh.corners[static_cast<std::size_t>(cell.first_corner + s)];
+      if (corner.side != SideKind::crack) continue;
+      const auto& next =
+          mesh.corners[static_cast<std::size_t>(cell.first_corner + (s + 1) % cell.corner_count)];
+      faces[corner.side_id].push_back(position_in_element(*mesh.elements, cell.element, next.barycentric) -
+                                      position_in_element(*mesh.elements, cell.element, corner.barycentric));
+      longest = std::max(longest, faces[corner.side_id].back().norm());
+    }
+  for (const auto& [id, sides] : faces) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& side : sides) sum += side;
+    CHECK(sides.size() >= 2);
+    CHECK(sum.norm() < 1e-12 * longest);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a straight cut over a plate gives two pieces of the right areas") {
+  const auto elements = test::make_pane(1.0, 0.1);
+  const geometry::ShellMesh mesh = cut_straight(elements, 0.1234);
+  const auto split = fracture::split_shell(mesh);
+  REQUIRE(split.pieces.size() == 2);
+  CHECK(total_area(split.pieces[0]) == Approx(0.6234).epsilon(1e-10));
+  CHECK(total_area(split.pieces[1]) == Approx(0.3766).epsilon(1e-10));
+  check_sums(mesh, split.pieces);
+  check_twins(mesh);
+
+  // The surface is one welded sheet a piece, that stands back by the kerf: its border has one loop of edges.
+  for (const auto& piece : split.pieces) {
+    const auto surface = geometry::extract_surface(piece, 1e-3);
+    double area = 0.0;
+    for (const auto& t : surface.mesh.triangles) {
+      const auto& x = surface.mesh.positions;
+      area += 0.5 * (x[static_cast<std::size_t>(t[1])] - x[static_cast<std::size_t>(t[0])])
+                        .cross(x[static_cast<std::size_t>(t[2])] - x[static_cast<std::size_t>(t[0])])
+                        .z();
+    }
+    CHECK(area == Approx(total_area(piece) - 1e-3).epsilon(2e-4));
+    const auto topology = geometry::build_edge_topology(surface.mesh.triangles);
+    const auto v = static_cast<long>(surface.mesh.positions.size());
+    const auto e = static_cast<long>(topology.edges.size());
+    const auto f = static_cast<long>(surface.mesh.triangles.size());
+    CHECK(v - e + f == 1);  // a disc
+  }
+}
+
+TEST_CASE("nothing is lost over hundreds of random cuts") {
+  for (const bool is_closed : {false, true}) {
+    const auto elements = is_closed ? test::make_sphere(0.04, 0.012) : test::make_pane(0.1, 0.02);
+    const geometry::ShellMesh whole = geometry::make_shell_mesh(elements);
+    fracture::ShellCutter cutter(whole);
+    core::Random random(17, is_closed);
+    int cuts = 0;
+    for (int i = 0; i < 1200; ++i) cuts += test::cut_at_random(cutter, random);
+    REQUIRE(cuts > 400);
+    const geometry::ShellMesh mesh = cutter.mesh();
+    for (const auto& cell : mesh.cells) CHECK(area_fraction(mesh, cell) >= 1e-6);
+    check_twins(mesh);
+    const auto split = fracture::split_shell(mesh);
+    CHECK(split.pieces.size() > 20);
+    check_sums(whole, split.pieces);
+    std::size_t cells = 0;
+    for (const auto& piece : split.pieces) {
+      cells += piece.cells.size();
+      CHECK(fracture::split_shell(piece).pieces.size() == 1);
+      const auto surface = geometry::extract_surface(piece, 1e-5);
+      CHECK(surface.mesh.triangles.size() >= piece.cells.size());
+      for (const Vec3& p : surface.mesh.positions) CHECK(p.allFinite());
+    }
+    CHECK(cells == mesh.cells.size());
+
+    // Narrow pieces join a neighbour; all material stays.
+    const auto merged = fracture::split_shell(mesh, {0.002});
+    CHECK(merged.merged_count > 0);
+    CHECK(merged.pieces.size() < split.pieces.size());
+    check_sums(whole, merged.pieces);
+  }
+}
+
+TEST_CASE("a surface without cuts is the mesh itself") {
+  const auto elements = test::make_sphere(1.0, 0.3);
+  const auto surface = geometry::extract_surface(geometry::make_shell_mesh(elements), 0.01);
+  CHECK(surface.mesh.positions.size() == elements->mesh.positions.size());
+  CHECK(surface.mesh.triangles.size() == elements->mesh.triangles.size());
+  const auto topology = geometry::build_edge_topology(surface.mesh.triangles);
+  CHECK(topology.edges.size() == elements->topology.edges.size());
+  CHECK(surface.least_kerf == 0.01);
+}
+
+TEST_CASE("a crack that ends inside is a slit whose lips meet at the tip") {
+  const auto elements = test::make_pane(1.0, 0.2);
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(elements));
+  // One whole element in the middle is cut from edge to edge: two tips, one slit.
+  int middle = 0;
+  for (int t = 0; t < cutter.cell_count(); ++t)
+    if (position_in_element(*elements, t, Vec2(0.3, 0.3)).norm() <
+        position_in_element(*elements, middle, Vec2(0.3, 0.3)).norm())
+      middle = t;
+  const fracture::BorderPlace a{0, false, geometry::barycentric_on_edge(*elements, middle, 0, 0.5)};
+  const fracture::BorderPlace b{1, false, geometry::barycentric_on_edge(*elements, middle, 1, 0.25)};
+  REQUIRE(cutter.cut(middle, a, b, SideKind::crack, cutter.new_side_id()));
+  const auto split = fracture::split_shell(cutter.mesh());
+  REQUIRE(split.pieces.size() == 1);
+  const auto surface = geometry::extract_surface(split.pieces[0], 1e-3);
+  const auto topology = geometry::build_edge_topology(surface.mesh.triangles);
+  // Both lips share both tips, so the slit has no width; every edge that is not on the rim has two triangles.
+  const auto v = static_cast<long>(surface.mesh.positions.size());
+  const auto e = static_cast<long>(topology.edges.size());
+  const auto f = static_cast<long>(surface.mesh.triangles.size());
+  CHECK(v - e + f == 1);
+  CHECK(v == static_cast<long>(elements->mesh.positions.size()) + 2);
+}
