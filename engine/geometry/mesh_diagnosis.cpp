@@ -142,7 +142,8 @@ class Mender {
     MeshFinding& finding = report(MeshFault::index_out_of_range, Severity::refused, count);
     finding.triangle = first;
     finding.sentence = "Triangle " + std::to_string(first + 1) + " names vertex " +
-                       std::to_string(wrong + 1) + ", but there are " + std::to_string(vertices) +
+                       std::to_string(std::int64_t{wrong} + 1) + ", but there are " +
+                       std::to_string(vertices) +
                        " vertices. The file is cut short or its numbering is wrong.";
     return false;
   }
