@@ -31,6 +31,7 @@ void add_sphere_box(const Shape& a, const Pose& pose_a, const Shape& b, const Po
   c.gap = nearest.signed_distance - a.radius;
   c.on_b = pose_b.apply(nearest.closest);
   c.on_a = pose_a.translation - a.radius * c.normal;
+  c.lean = 1.0;
 }
 
 struct Axis {
@@ -152,13 +153,19 @@ void add_box_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose&
   const PlacedBox box_b{b, pose_b.rotation.toRotationMatrix(), pose_b.translation};
   const Axis axis = best_axis(a, box_a.axes, b, box_b.axes, pose_a.translation - pose_b.translation);
   if (axis.gap > margin) return;
+  const std::size_t first = out.size();
   if (axis.number < 3) {
     add_face_contacts(box_a, axis.number, -axis.normal, box_b, true, margin, axis.number, out);
   } else if (axis.number < 6) {
     add_face_contacts(box_b, axis.number - 3, axis.normal, box_a, false, margin, axis.number, out);
   } else {
     add_edge_contact(box_a, box_b, axis, out);
+    return;
   }
+  // A face that slides on a greater one takes its contacts with it.
+  const double size_a = a.half_extent.maxCoeff(), size_b = b.half_extent.maxCoeff();
+  const double lean = size_a < size_b ? 1.0 : size_a > size_b ? 0.0 : 0.5;
+  for (std::size_t i = first; i < out.size(); ++i) out[i].lean = lean;
 }
 
 }  // namespace
@@ -184,6 +191,7 @@ void find_plane_contacts(const Collider& a, const std::vector<Vec3>& positions_a
     c.gap = gap;
     c.on_a = positions_a[v] - a.radius * normal;
     c.on_b = c.on_a - gap * normal;
+    c.lean = 1.0;
     out.push_back(c);
   }
 }
@@ -208,6 +216,7 @@ void find_analytic_contacts(const Shape& a, const Pose& pose_a, const Shape& b, 
     add_sphere_box(b, pose_b, a, pose_a, c);
     std::swap(c.on_a, c.on_b);
     c.normal = -c.normal;
+    c.lean = 0.0;
   }
   if (c.gap <= margin) out.push_back(c);
 }

@@ -14,6 +14,7 @@ struct Contact {
   Vec3 on_b = Vec3::Zero();        // m, world, material point of b at the start of the step
   Vec3 normal = Vec3::UnitY();     // unit, from b towards a
   double gap = 0.0;                // m, along the normal at the start of the step
+  double lean = 0.5;               // where impulses act: 1 at a's point, 0 at b's, as the bodies slide apart
   bool is_time_of_impact = false;  // found on the path, not at its start
 };
 

@@ -180,11 +180,17 @@ PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, do
   return result;
 }
 
+double lean(const FeaturePair& pair) {
+  if (pair.kind == FeatureKind::edge_edge) return 0.5;
+  return pair.kind == FeatureKind::vertex_triangle ? 1.0 : 0.0;
+}
+
 Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& start, const FeatureGap& hit) {
   Contact c;
   c.key = features.key();
   c.normal = hit.normal;
   c.is_time_of_impact = true;
+  c.lean = lean(features);
   const int split = start.is_edge_edge ? 2 : 1;
   Vec3 first = Vec3::Zero(), second = Vec3::Zero();
   for (int i = 0; i < 4; ++i) (i < split ? first : second) += hit.weights[at(i)] * start.points[at(i)];

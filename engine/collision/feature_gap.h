@@ -52,6 +52,9 @@ struct PathResult {
 /// that starts closer than that must only not approach).
 PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint);
 
+/// Where impulses of the pair act (Contact::lean): at the vertex, as it slides over the triangle.
+double lean(const FeaturePair& pair);
+
 /// A hit on the path as a contact seen from the start: the material points of both bodies that will meet, and
 /// their distance along the direction in which they will. `start` are the pair's points there, `hit` its gap
 /// at the impact.

@@ -214,6 +214,7 @@ Contact make_contact(const collision::FeaturePair& features, const collision::Fe
   c.on_b = gap.on_b;
   c.normal = gap.normal;
   c.gap = gap.gap;
+  c.lean = collision::lean(features);
   return c;
 }
 
@@ -298,9 +299,17 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
 // they look.
 void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-  collision::find_analytic_contacts(*a.shape, a.start, *b.shape, b.start, pair.margin, pair.contacts);
   const double usual_gap = settings.kept_gap * pair.size;
-  if (!pair.contacts.empty() || pair.motion + 2.0 * usual_gap <= pair.margin) return;
+  Vec3 normal;
+  const double gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
+  if (gap <= pair.margin) {
+    // Once the direction is fixed, all of a face's corners that the motion may bring down belong to the
+    // contact.
+    collision::find_analytic_contacts(*a.shape, a.start, *b.shape, b.start, pair.margin + pair.motion,
+                                      pair.contacts);
+    return;
+  }
+  if (gap > pair.motion + usual_gap) return;
   const SolidTouch touch = find_first_touch(a, a.predicted, b, b.predicted, usual_gap, pair.margin);
   pair.contacts = touch.contacts;
 }
@@ -314,6 +323,7 @@ void meet_plane(const MotionWork& work, WorkPair& pair) {
   for (Contact& c : pair.contacts) {
     std::swap(c.on_a, c.on_b);
     c.normal = -c.normal;
+    c.lean = 0.0;
   }
 }
 
@@ -342,6 +352,10 @@ void meet(const ContactSettings& settings, const MotionWork& work, PairState& me
     meet_solids(settings, work, pair);
   } else {
     meet_features(settings, work, memory, pair);
+  }
+  if (memory.is_exempt) {
+    memory.is_exempt = !pair.contacts.empty();
+    pair.contacts.clear();
   }
   adapt_gap(settings, memory, pair);
   std::vector<std::uint64_t> loaded;
@@ -378,6 +392,7 @@ void add_solver_contacts(const ContactState& state, MotionWork& work) {
       c.arm_a_start = found.on_a - a.start.translation;
       c.arm_b_start = found.on_b - b.start.translation;
       c.gap_start = found.gap;
+      c.lean = found.lean;
       const auto known =
           std::lower_bound(memory.contacts.begin(), memory.contacts.end(), found.key,
                            [](const RememberedContact& r, std::uint64_t key) { return r.feature_key < key; });

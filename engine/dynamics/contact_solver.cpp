@@ -32,9 +32,11 @@ class IslandSolver {
     for (int i = 0; i < settings_.substeps; ++i) {
       kick();
       prepare(i * step_);
+      is_before_drift_ = true;
       find_arrivals();
       start_warm(0.5);
       sweep_before_drift();
+      is_before_drift_ = false;
       drift();
       kick();
       prepare((i + 1) * step_);
@@ -56,7 +58,8 @@ class IslandSolver {
     for (const int i : island_.bodies) {
       WorkBody& b = body(i);
       b.way += b.velocity * step_;
-      advance_spin(b.inertia, step_, SpinOrder::second, b.rotation, b.spin);
+      const bool is_fast = b.spin.squaredNorm() * step_ * step_ > kFastSpin * kFastSpin;
+      advance_spin(b.inertia, step_, is_fast ? SpinOrder::fourth : SpinOrder::second, b.rotation, b.spin);
       const Mat3 r = b.rotation.toRotationMatrix();
       // A sphere touches with whatever point is lowest, not with the one that was.
       if (b.shape->kind != body::ShapeKind::sphere)
@@ -77,9 +80,9 @@ class IslandSolver {
       const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
       const double gap = c.gap_start + c.normal.dot(change);
       c.slack = gap - c.kept_gap;
-      // Half way between the surfaces, seen from both centres.
+      // One point for both bodies, seen from both centres.
       const Vec3 centre_a = a.start.translation + ma.way, centre_b = b.start.translation + mb.way;
-      c.point = 0.5 * ((centre_a + turned_a) + (centre_b + turned_b));
+      c.point = c.lean * (centre_a + turned_a) + (1.0 - c.lean) * (centre_b + turned_b);
       c.arm_a = c.point - centre_a;
       c.arm_b = c.point - centre_b;
       const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
@@ -122,7 +125,11 @@ class IslandSolver {
     }
     c.impulse += impulse;
     c.total += p;
-    work_.pairs[at(c.pair)].work += impulse.dot(velocity_before) + 0.5 * impulse.dot(c.response * impulse);
+    double& work = work_.pairs[at(c.pair)].work;
+    work += impulse.dot(velocity_before) + 0.5 * impulse.dot(c.response * impulse);
+    // Half of gravity's kick is still to come: along the way that the impulse changes it does this much less
+    // work.
+    if (is_before_drift_) work -= 0.5 * step_ * p.dot(a.gravity - b.gravity);
   }
 
   // What closes within this substep, and how fast it will be when it touches. From the energy at the
@@ -139,7 +146,7 @@ class IslandSolver {
       const double after_kick = relative_velocity(c)[0];
       const double before = after_kick - 0.5 * drive * step_;
       const double way = std::max(0.0, c.slack);
-      if (after_kick >= 0.0 || way + after_kick * step_ > 0.0) continue;
+      if (after_kick >= 0.0 || way + after_kick * step_ > kTouching * c.kept_gap) continue;
       const double speed_squared = before * std::abs(before) + 2.0 * drive * way;  // closing is negative
       if (speed_squared >= 0.0) continue;
       const double speed = std::sqrt(-speed_squared);
@@ -306,13 +313,15 @@ class IslandSolver {
     }
   }
 
-  static constexpr double kTouching = 0.05;  // of the kept gap
+  static constexpr double kTouching = 0.05;   // of the kept gap
+  static constexpr double kFastSpin = 0.005;  // rad a substep
 
   const ContactSettings& settings_;
   const Island& island_;
   MotionWork& work_;
   const double step_;
   bool has_arrivals_ = false;
+  bool is_before_drift_ = false;
 };
 
 }  // namespace

@@ -30,7 +30,8 @@ void add_to_hash(const ContactState& state, core::Hash& hash) {
   for (const PairState& pair : state.pairs) {
     hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
     hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));
-    hash.add(static_cast<std::uint64_t>(pair.trouble_age));
+    hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
+    hash.add(static_cast<std::uint64_t>(pair.is_exempt));
     for (const RememberedContact& c : pair.contacts) {
       hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.arrival_speed);
       hash.add(static_cast<std::uint64_t>(c.was_loaded));

@@ -33,6 +33,8 @@ struct PairState {
   double kept_gap = 0.0;     // m: min(usual, least gap seen so far): never pushes newborn pieces apart
   bool is_touching = false;  // holds an island together
   int trouble_age = 1000;    // steps since the continuous pass last had to act here
+  int stuck_steps = 0;       // steps in a row in which the pair had to be cut short
+  bool is_exempt = false;    // crosses, or cannot be solved: lets pass until it has come apart
   std::vector<RememberedContact> contacts;
 
   // Caches.

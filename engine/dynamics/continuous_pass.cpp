@@ -20,6 +20,7 @@ using collision::Contact;
 
 constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
+constexpr int kMostStuckSteps = 4;
 constexpr double kSinking =
     0.02;  // solids may sink into each other by this share of the thinner half in a step
 
@@ -67,6 +68,7 @@ class Guard {
       const WorkPair& pair = work_.pairs[p];
       const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
       if (pair.is_free_certified && a.is_free && b.is_free) must_test_[p] = 0;
+      if (state_.pairs[at(pair.state)].is_exempt) must_test_[p] = 0;
     }
     for (int round = 0; test() && round < settings_.continuous_rounds; ++round) {
       ++report_.rounds;
@@ -76,10 +78,24 @@ class Guard {
       cut_short(cut >= 5);
       test();
     }
+    note_stuck_pairs();
     for (const char cuts : was_cut_) work_.failsafe_bodies += cuts > 0 ? 1 : 0;
   }
 
  private:
+  // No body hangs for ever: a pair that cannot be solved for many steps (it crossed from the start, or nests)
+  // is let pass until it has come apart.
+  void note_stuck_pairs() {
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      PairState& memory = state_.pairs[at(work_.pairs[p].state)];
+      const bool is_cut = p < is_cut_.size() && is_cut_[p];
+      memory.stuck_steps = is_cut ? memory.stuck_steps + 1 : 0;
+      if (memory.stuck_steps < kMostStuckSteps || work_.pairs[p].is_plane) continue;
+      memory.is_exempt = true;
+      ++report_.exempted_pairs;
+    }
+  }
+
   bool may_move(int i) const { return work_.bodies[at(i)].inverse_mass > 0.0; }
 
   // Tests all pairs that are due; true if any path is not free.
@@ -351,7 +367,10 @@ class Guard {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
       const bool has_hit = must_test_[p] && !hits_[p].empty();
-      must_test_[p] = has_hit || has_moved[at(pair.a)] || has_moved[at(pair.b)] ? 1 : 0;
+      must_test_[p] = !state_.pairs[at(pair.state)].is_exempt &&
+                              (has_hit || has_moved[at(pair.a)] || has_moved[at(pair.b)])
+                          ? 1
+                          : 0;
       hits_[p].clear();
     }
   }
@@ -360,8 +379,10 @@ class Guard {
   // free.
   void cut_short(bool all_the_way) {
     std::vector<double> share(work_.bodies.size(), 1.0);
+    is_cut_.resize(work_.pairs.size(), 0);
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       if (!must_test_[p] || hits_[p].empty()) continue;
+      is_cut_[p] = 1;
       const double time = hits_[p].front().time;
       const double kept = all_the_way || time < 0.05 ? 0.0 : 0.8 * time;
       for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) share[at(i)] = std::min(share[at(i)], kept);
@@ -403,7 +424,7 @@ class Guard {
   ContactState& state_;
   MotionWork& work_;
   ContactReport& report_;
-  std::vector<char> must_test_, was_cut_;
+  std::vector<char> must_test_, was_cut_, is_cut_;
   std::vector<std::vector<Hit>> hits_;       // per pair, earliest first
   std::vector<std::vector<Contact>> known_;  // per pair: hits of all rounds
   std::vector<std::vector<Vec3>> ends_;      // per body: vertices at the end pose

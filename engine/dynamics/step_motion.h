@@ -18,12 +18,13 @@
 namespace shatterbox::dynamics {
 
 struct ContactReport {
-  int contacts = 0;           // with a gap below twice the kept gap at the step's end
-  int solver_contacts = 0;    // all that the solver was given, speculative ones included
-  double least_gap = 1e300;   // m, over these contacts at the step's start; 1e300 without contacts
-  int hits = 0;               // pairs in which the continuous pass had to act
-  int rounds = 0;             // rounds of the continuous pass
-  int failsafe_steps = 0;     // bodies whose step was cut short
+  int contacts = 0;          // with a gap below twice the kept gap at the step's end
+  int solver_contacts = 0;   // all that the solver was given, speculative ones included
+  double least_gap = 1e300;  // m, over these contacts at the step's start; 1e300 without contacts
+  int hits = 0;              // pairs in which the continuous pass had to act
+  int rounds = 0;            // rounds of the continuous pass
+  int failsafe_steps = 0;    // bodies whose step was cut short
+  int exempted_pairs = 0;  // pairs given up in this step: they may pass each other until they have come apart
   double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
   double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
