@@ -25,11 +25,14 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr double kCoreOverload = 4.5;       // stress over strength above which the core is crushed
-constexpr double kCoreReach = 6.0;          // patch radii
-constexpr double kWaveLength = 0.14;        // of the paths' noise, share of the body's size
-constexpr double kPatchElements = 1.5;      // least radius of a load's patch, in element sizes
-constexpr double kGrowthThatCounts = 0.02;  // of the cracks' length: a generation that adds less is the last
+constexpr double kCoreOverload = 5.0;   // stress over strength above which the core is crushed
+constexpr double kCoreReach = 6.0;      // patch radii
+constexpr double kWaveLength = 0.14;    // of the paths' noise, share of the body's size
+constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
+// The same, as a share of the unbroken body's size: a mesh finer than that gives the same answer, crumbs
+// included.
+constexpr double kPatchShare = 0.04;
+constexpr double kGrowthThatCounts = 0.04;  // of the cracks' length: a generation that adds less is the last
 constexpr int kMostScreenings = 6;          // steps of the search for the duration
 
 using Clock = std::chrono::steady_clock;
@@ -98,8 +101,8 @@ class Decider {
 
   bool prepare_loads() {
     if (!subject_.mesh || subject_.mesh->cells.empty()) return give_up("there is no material");
-    const double least_radius =
-        std::max(subject_.thickness, kPatchElements * stress::mean_edge_length(*subject_.mesh));
+    const double least_radius = std::max({subject_.thickness, kPatchShare * size(),
+                                          kPatchElements * stress::mean_edge_length(*subject_.mesh)});
     for (const ShellLoad& load : impact_.loads) {
       if (!(load.impulse > 0.0) && !(load.closing_speed > 0.0)) continue;
       if (!(load.direction.squaredNorm() > 0.5)) continue;

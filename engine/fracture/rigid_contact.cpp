@@ -13,7 +13,8 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr int kMostGroups = 12;  // pieces that share one load; the lightest beyond that carry nothing
+constexpr int kMostGroups = 24;        // pieces that share one load; the lightest beyond that carry nothing
+constexpr double kLeastWeight = 0.01;  // nor do those with less than this share of the patch
 
 /// A load's pieces and their unit loads, in a row with those of the other loads.
 struct Groups {
@@ -65,6 +66,7 @@ std::vector<ContactAnswer> press(const stress::ShellSystem& system, const geomet
       return weight[at(a)] != weight[at(b)] ? weight[at(a)] > weight[at(b)] : a < b;
     });
     if (count > kMostGroups) heaviest.resize(kMostGroups);
+    while (heaviest.size() > 1 && weight[at(heaviest.back())] < kLeastWeight) heaviest.pop_back();
     std::sort(heaviest.begin(), heaviest.end());
     Groups own;
     own.first = static_cast<int>(forces.size());
