@@ -170,7 +170,7 @@ void merge_supernodes(std::vector<Supernode>& supernodes) {
     const double zeros =
         joined - trapezoid(s.pivots, s.rows) - trapezoid(p.pivots, p.rows) + s.zeros + p.zeros;
     const int pivots = s.pivots + p.pivots;
-    const double allowed = pivots <= 16 ? 0.6 : pivots <= 32 ? 0.25 : pivots <= 64 ? 0.12 : 0.05;
+    const double allowed = pivots <= 16 ? 0.2 : pivots <= 32 ? 0.08 : pivots <= 64 ? 0.04 : 0.015;
     if (zeros > allowed * joined) continue;
     s.merged_into = s.parent;
     p.pivots = pivots;

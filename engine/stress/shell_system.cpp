@@ -292,7 +292,7 @@ double ShellSystem::State::compute_period() const {
       for (Size i = 0; i < kVectors; ++i)
         turned[j] += ritz.eigenvectors()(static_cast<int>(i), static_cast<int>(j)) * basis[i];
     basis = std::move(turned);
-    if (iteration > 2 && std::abs(frequency_squared - previous) < 2e-3 * std::abs(frequency_squared)) break;
+    if (iteration > 2 && std::abs(frequency_squared - previous) < 5e-3 * std::abs(frequency_squared)) break;
   }
   // A mechanism has no period; the shift's own frequency stands for "very long".
   double least = shift.maxCoeff();
