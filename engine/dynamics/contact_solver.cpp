@@ -30,8 +30,9 @@ class IslandSolver {
 
   void run() {
     for (int i = 0; i < settings_.substeps; ++i) {
+      substep_start_ = i * step_;
       kick();
-      prepare(i * step_);
+      prepare(substep_start_);
       is_before_drift_ = true;
       find_arrivals();
       start_warm(0.5);
@@ -154,6 +155,7 @@ class IslandSolver {
       c.is_arriving = true;
       has_arrivals_ = true;
       c.arrival_speed = std::max(c.arrival_speed, speed);
+      if (c.closing_speed == 0.0) c.arrival_time = substep_start_ + std::min(step_, way / -after_kick);
       if (speed > c.closing_speed) {
         c.closing_speed = speed;
         c.effective_mass = c.weights[0];
@@ -221,7 +223,9 @@ class IslandSolver {
   }
 
   double target_before_drift(const SolverContact& c) const {
-    if (c.slack > 0.0) return -c.slack / step_;
+    // What touches is held where it is; letting it use up the last of its gap would drop and catch it in turn.
+    if (c.slack > kTouching * c.kept_gap) return -c.slack / step_;
+    if (c.slack > 0.0) return 0.0;
     return std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
   }
 
@@ -244,13 +248,13 @@ class IslandSolver {
   }
 
   void sweep_after_drift() {
-    for (int sweep = 0; sweep < (has_arrivals_ ? 8 : 2); ++sweep) {
+    for (int sweep = 0; sweep < 8; ++sweep) {
       double excess = 0.0;
       for (const int i : island_.contacts) {
         SolverContact& c = work_.contacts[at(i)];
         if (is_touching(c)) excess = std::max(excess, visit(c, 0.0) / c.threshold);
       }
-      if (sweep > 0 && excess < 1e-2) break;
+      if (sweep > 0 && excess < 1e-3) break;
     }
   }
 
@@ -320,6 +324,7 @@ class IslandSolver {
   const Island& island_;
   MotionWork& work_;
   const double step_;
+  double substep_start_ = 0.0;  // s since the step's start
   bool has_arrivals_ = false;
   bool is_before_drift_ = false;
 };

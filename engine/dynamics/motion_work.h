@@ -75,6 +75,7 @@ struct SolverContact {
   Vec3 moment_point = Vec3::Zero();  // sum of |normal impulse| point
   double moment_weight = 0.0;
   double closing_speed = 0.0;   // m/s, greatest of an arrival
+  double arrival_time = 0.0;    // s since the step's start, of the first arrival
   double effective_mass = 0.0;  // kg, at that arrival
 };
 

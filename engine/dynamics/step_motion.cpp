@@ -32,7 +32,10 @@ void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body:
     entry.point_world = c.moment_weight > 0.0 ? Vec3(c.moment_point / c.moment_weight) : c.point;
     entry.normal_world = c.normal;
     entry.impulse_world = c.total;
-    if (entry.kind == ImpulseKind::collision) entry.closing_speed = c.closing_speed;
+    if (entry.kind == ImpulseKind::collision) {
+      entry.closing_speed = c.closing_speed;
+      entry.time = c.arrival_time;
+    }
     entry.effective_mass = c.effective_mass > 0.0 ? c.effective_mass : c.weights[0];
     log.push_back(entry);
   }
