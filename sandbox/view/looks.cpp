@@ -24,7 +24,7 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   }
   if (name == "steel") return render::metal(paint(0xc9ccd1), 0.22F);
   if (name == "wood") {
-    render::Look look = render::matt(paint(0x8a5a34));
+    render::Look look = render::matt(paint(0x6f4a2c));
     look.crack = hex(0xd2a877);
     look.roughness = look.inside_roughness = 0.6F;
     look.clear_coat = 0.25F;
@@ -84,7 +84,7 @@ std::optional<render::Ground> make_ground(const std::string& name, double height
   render::Ground ground;
   ground.height = static_cast<float>(height);
   if (name == "concrete") ground.colour = hex(0xa5a29c);
-  if (name == "wood") ground.colour = hex(0xa07a55);
+  if (name == "wood") ground.colour = hex(0x8d7357);
   if (name == "dark") ground.colour = hex(0x3a3d42);
   if (name == "checker") ground.checker = 0.1F;
   return ground;

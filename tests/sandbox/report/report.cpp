@@ -1,0 +1,158 @@
+// The report's fields by their names, its statistics, and the OBJ of a frame.
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "engine/geometry/mass_properties.h"
+#include "sandbox/report/json_report.h"
+#include "sandbox/report/obj_frames.h"
+#include "sandbox/report/statistics.h"
+#include "sandbox/report/summary.h"
+
+using namespace shatterbox;
+using namespace shatterbox::sandbox::report;
+
+namespace {
+
+RunRecord some_record() {
+  RunRecord record;
+  record.version = "0.1.0";
+  record.scene = "test";
+  record.state_hash = 0x123;
+  record.frame_hashes = {1, 2};
+  record.simulated_seconds = 1.0;
+  record.wall_seconds = 2.0;
+  world::ImpactRow impact;
+  impact.body = "vase";
+  impact.ratio = 0.62;
+  impact.verdict = "held: 0.62 of its strength";
+  record.world.impacts.push_back(impact);
+  world::BreakRow row;
+  row.body = "vase";
+  row.pieces = 12;
+  row.merged = 2;
+  row.merged_mass_share = 1e-6;
+  record.world.breaks.push_back(row);
+  for (int i = 0; i < 4; ++i) {
+    FrameRecord frame;
+    frame.frame = i + 1.0;
+    frame.contacts = i == 0 ? 0 : 10 * i;
+    frame.breaks = i == 2 ? 1 : 0;
+    frame.awake = i == 3 ? 0 : 1;
+    record.frames.push_back(frame);
+  }
+  record.stages.push_back({"motion", {1.0, 2.0, 3.0, 4.0}});
+  record.load.emplace_back("meshes", 5.0);
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("the report has the fields of its description, by name") {
+  const auto json = make_json(some_record());
+  for (const char* name :
+       {"report_version", "version",   "scene",      "seed",         "steps",   "simulated_seconds",
+        "wall_seconds",   "threads",   "state_hash", "frame_hashes", "bodies",  "pieces",
+        "merged",         "triangles", "impacts",    "breaks",       "contact", "conservation",
+        "solver",         "used",      "left_out",   "time_ms",      "load_ms", "peak_memory_mb",
+        "warnings"}) {
+    INFO(name);
+    CHECK(json.contains(name));
+  }
+  CHECK(json["state_hash"] == "0000000000000123");
+  CHECK(json["frame_hashes"][1] == "0000000000000002");
+  for (const char* name : {"time", "body", "impulse_ns", "duration_s", "stress_pa", "strength_pa", "ratio",
+                           "verdict", "place"}) {
+    INFO(name);
+    CHECK(json["impacts"][0].contains(name));
+  }
+  for (const char* name :
+       {"time", "body", "pieces", "new_area_m2", "grain_share", "fracture_energy_j", "elastic_energy_j",
+        "mass_error", "momentum_error", "angular_momentum_error", "overlap", "energy_gain"}) {
+    INFO(name);
+    CHECK(json["breaks"][0].contains(name));
+  }
+  for (const char* name : {"most", "failsafe_steps", "frozen_share", "least_gap"})
+    CHECK(json["contact"].contains(name));
+  for (const char* name : {"frame", "simulate", "render", "encode", "stages", "phases"}) {
+    CHECK(json["time_ms"].contains(name));
+  }
+  for (const char* name : {"before", "impact", "breaking", "busy", "rest"}) {
+    for (const char* field : {"frames", "median", "p95", "max", "contacts", "awake"}) {
+      CHECK(json["time_ms"]["phases"][name].contains(field));
+    }
+  }
+  CHECK(json["merged"]["count"] == 2);
+  CHECK(json["time_ms"]["stages"]["motion"]["median"] == 2.5);
+}
+
+TEST_CASE("numbers that are not finite become null, not broken JSON") {
+  RunRecord record = some_record();
+  record.world.contact.least_gap = std::numeric_limits<double>::infinity();
+  const auto text = make_json(record).dump();
+  CHECK(nlohmann::json::parse(text)["contact"]["least_gap"].is_null());
+}
+
+TEST_CASE("median, 95th percentile and worst") {
+  CHECK(spread_of({}).max == 0.0);
+  CHECK(spread_of({3.0}).median == 3.0);
+  CHECK(spread_of({4.0, 1.0, 3.0, 2.0}).median == 2.5);
+  std::vector<double> hundred;
+  for (int i = 100; i >= 1; --i) hundred.push_back(i);
+  CHECK(spread_of(hundred).p95 == 95.0);
+  CHECK(spread_of(hundred).max == 100.0);
+}
+
+TEST_CASE("frames are sorted into phases") {
+  const auto phases = phases_of(some_record().frames);
+  CHECK(phases[0].frame_times == std::vector<double>{1.0});  // before
+  CHECK(phases[2].frame_times == std::vector<double>{3.0});  // breaking
+  CHECK(phases[3].frame_times == std::vector<double>{4.0});  // busy: 30 contacts of 30
+  CHECK(phases[4].frame_times == std::vector<double>{4.0});  // rest
+}
+
+TEST_CASE("the closing words tell verdicts, breaks and speed") {
+  const std::string text = make_summary(some_record());
+  INFO(text);
+  for (const char* part : {"held: 0.62 of its strength", "12 pieces", "2.0 times slower than real time",
+                           "motion 100 %", "errors:", "0000000000000123"}) {
+    CHECK(text.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("exported boxes and spheres are closed and wound outwards") {
+  CHECK(geometry::enclosed_volume(box_surface(Vec3(0.5, 1.0, 1.5))) == Approx(6.0).epsilon(1e-14));
+  const double volume = geometry::enclosed_volume(sphere_surface(1.0));
+  CHECK(volume > 4.0);
+  CHECK(volume < 4.18879);
+}
+
+TEST_CASE("an OBJ frame has a group a body, in world space, to the bit") {
+  world::World world{world::WorldSettings{}};
+  const auto material = world.add_material(material::Material{});
+  world::BodyDescription box;
+  box.name = "a box";
+  box.form = world::BoxDescription{Vec3(0.1, 0.2, 0.3)};
+  box.material = material.value();
+  box.pose.translation = Vec3(1.0 / 3.0, 2.0, 3.0);
+  REQUIRE(world.add_body(box).ok());
+  const std::string text = make_obj(world);
+  CHECK(text.find("o a_box#1\n") != std::string::npos);
+  std::istringstream stream(text);
+  std::string line;
+  int vertices = 0, faces = 0;
+  double most = 0.0;
+  while (std::getline(stream, line)) {
+    std::istringstream words(line);
+    std::string kind;
+    double x = 0.0;
+    words >> kind >> x;
+    if (kind == "v") {
+      ++vertices;
+      most = std::max(most, x);
+    }
+    faces += kind == "f" ? 1 : 0;
+  }
+  CHECK(vertices == 8);
+  CHECK(faces == 12);
+  CHECK(most == 1.0 / 3.0 + 0.1);
+}

@@ -1,0 +1,131 @@
+// The program from outside: exit statuses, outputs, what it says of wrong input.
+#include <catch2/catch.hpp>
+
+#include "tests/sandbox/run/running.h"
+
+using namespace shatterbox::sandbox::run;
+
+TEST_CASE("exit status 2 and a word that helps for wrong input") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  folder.write("bad.toml", "[scene]\nsecond = 1\n[[body]]\nkind = \"sphere\"\n");
+  const auto refused = [&folder](const std::string& arguments, const std::string& part) {
+    const Outcome outcome = program(folder, arguments);
+    INFO(arguments << "\n" << outcome.out << outcome.err);
+    CHECK(outcome.status == 2);
+    CHECK((outcome.err + outcome.out).find(part) != std::string::npos);
+  };
+  refused("", "");
+  refused("runn good.toml", "did you mean \"run\"?");
+  refused("bench", "not available in this version");
+  refused("run", "ornament");
+  refused("run ornamnt", "did you mean \"ornament\"?");
+  refused("run bad.toml", "bad.toml:2:1");
+  refused("check bad.toml", "did you mean \"seconds\"?");
+  refused("check", "SCENE");
+  refused("run good.toml --sise 3x4", "--sise");
+  refused("run good.toml --size 640", "WIDTHxHEIGHT");
+  refused("run good.toml --size 641x360", "even numbers");
+  refused("run good.toml --quality best", "--quality");
+  refused("run good.toml --fps 0", "--fps");
+  refused("run good.toml --seconds -1", "from 0.001");
+  refused("run good.toml --seconds nan", "");
+  refused("run good.toml --set crate.sice=1", "did you mean \"size\"?");
+  refused("run good.toml --script none.toml", "none.toml");
+  refused("run good.toml -o video.xyz", "video.xyz");
+  refused("run good.toml -o no/such/folder/v.mp4", "there is no folder");
+  refused("run good.toml --no-render --report no/such/r.json", "there is no folder");
+  refused("run good.toml --no-render -o v.mp4", "--no-render");
+  refused("run good.toml --no-render --meshes good.toml", "good.toml");
+}
+
+TEST_CASE("check and list say what there is") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const Outcome checked = program(folder, "check good.toml");
+  INFO(checked.err);
+  CHECK(checked.status == 0);
+  CHECK(checked.out.find("10 bodies") != std::string::npos);
+  const Outcome listed = program(folder, "list");
+  CHECK(listed.status == 0);
+  for (const char* word : {"ornament", "window", "bowl", "glass", "projectile"}) {
+    CHECK(listed.out.find(word) != std::string::npos);
+  }
+}
+
+TEST_CASE("--no-render simulates and reports, with no picture and no bar") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const Outcome outcome = program(folder, "run good.toml --no-render --report r.json --meshes m --fps 10");
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.err.empty());  // not a terminal
+  const auto json = read_json(folder / "r.json");
+  CHECK(json["steps"] == 120);
+  CHECK(json["frame_hashes"].empty());
+  CHECK(json["bodies"]["end"] == 10);
+  CHECK(fs::exists(folder / "m/frame_000004.obj"));
+  CHECK_FALSE(fs::exists(folder / "good.mp4"));
+  CHECK(outcome.out.find("than real time") != std::string::npos);
+}
+
+TEST_CASE("the same scene gives the same bits with one thread and two") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  std::string hashes[3];
+  const char* const arguments[] = {"--threads 1", "--threads 2", "--threads 2 --seed 5"};
+  for (int i = 0; i < 3; ++i) {
+    REQUIRE(
+        program(folder, std::string("run good.toml --no-render --report r.json ") + arguments[i]).status ==
+        0);
+    hashes[i] = read_json(folder / "r.json")["state_hash"];
+  }
+  CHECK(hashes[0] == hashes[1]);
+  CHECK(hashes[0] != hashes[2]);  // the seed moves the jitter
+}
+
+TEST_CASE("a video and pictures of the size asked for; two runs are equal to the bit") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string run = "run good.toml --seconds 0.2 --fps 30 --size 64x48 -o v.mp4 --frames f --report ";
+  REQUIRE(program(folder, run + "a.json").status == 0);
+  REQUIRE(program(folder, run + "b.json").status == 0);
+  CHECK(count_frames(folder, "v.mp4") == 6);
+  CHECK(fs::exists(folder / "f/frame_000005.png"));
+  CHECK_FALSE(fs::exists(folder / "f/frame_000006.png"));
+  const auto a = read_json(folder / "a.json"), b = read_json(folder / "b.json");
+  CHECK(a["frame_hashes"].size() == 6);
+  CHECK(a["frame_hashes"] == b["frame_hashes"]);
+  CHECK(a["state_hash"] == b["state_hash"]);
+}
+
+TEST_CASE("Ctrl-C leaves a playable video, even where the shell ignores the signal") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  for (const char* ignored : {"", "trap '' INT; "}) {
+    const Outcome outcome = shell(
+        folder, std::string(ignored) + SHATTERBOX_PROGRAM +
+                    " run good.toml --seconds 600 --size 64x48 -o v.mp4 --report r.json & "
+                    "p=$!; for i in $(seq 300); do sleep 0.1; [ -s v.mp4.part ] && break; done; sleep 1; "
+                    "kill -INT $p; wait $p");
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.status == 3);
+    CHECK(outcome.out.find("interrupted") != std::string::npos);
+    const int frames = count_frames(folder, "v.mp4");
+    CHECK(frames > 0);
+    const auto json = read_json(folder / "r.json");
+    CHECK(json["interrupted"] == true);
+    CHECK(json["frame_hashes"].size() == static_cast<std::size_t>(frames));
+    fs::remove(folder / "v.mp4");
+  }
+}
+
+TEST_CASE("a disk that is full ends the run with status 3 and the reason") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const Outcome outcome = shell(folder, std::string("trap '' XFSZ; ulimit -f 8; ") + SHATTERBOX_PROGRAM +
+                                            " run good.toml --seconds 20 --size 320x240 -o v.mp4");
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.status == 3);
+  CHECK(outcome.err.find("failed:") != std::string::npos);
+}

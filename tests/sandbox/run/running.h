@@ -1,0 +1,100 @@
+// Runs the program as a user does, in a folder of its own.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace shatterbox::sandbox::run {
+
+namespace fs = std::filesystem;
+
+inline std::string read_text(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// An empty folder that goes when the test does.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "shatterbox-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  const fs::path& path() const { return path_; }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+struct Outcome {
+  int status = -1;  // exit status; 128 + signal if one ended it
+  std::string out, err;
+};
+
+/// Runs a shell command in the folder.
+inline Outcome shell(const Folder& folder, const std::string& command) {
+  const std::string whole =
+      "cd '" + folder.path().string() + "' && ( " + command + " ) >out.txt 2>err.txt </dev/null";
+  const int status = std::system(whole.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(folder / "out.txt"),
+          read_text(folder / "err.txt")};
+}
+
+/// Runs the program with these arguments.
+inline Outcome program(const Folder& folder, const std::string& arguments) {
+  return shell(folder, std::string(SHATTERBOX_PROGRAM) + " " + arguments);
+}
+
+inline nlohmann::json read_json(const fs::path& path) {
+  return nlohmann::json::parse(read_text(path));
+}
+
+/// Frames that can be decoded, by ffprobe; -1 if the file cannot be read.
+inline int count_frames(const Folder& folder, const std::string& video) {
+  const Outcome outcome = shell(folder,
+                                "ffprobe -v error -count_frames -select_streams v -show_entries "
+                                "stream=nb_read_frames -of csv=p=0 " +
+                                    video);
+  return outcome.status == 0 && !outcome.out.empty() ? std::atoi(outcome.out.c_str()) : -1;
+}
+
+/// A scene that costs little: things fall onto a floor, nothing can break.
+inline const char* const kSmallScene = R"(# things fall
+[scene]
+seconds = 0.5
+[[body]]
+name = "floor"
+kind = "plane"
+[[body]]
+name = "balls"
+kind = "sphere"
+radius = 0.05
+position = [0, 0.2, 0]
+repeat = {count = [2, 2, 2], spacing = 0.12, jitter = 0.005}
+[[body]]
+name = "crate"
+kind = "box"
+size = 0.1
+position = [0.5, 0.3, 0]
+rotation = [20, 30, 0]
+)";
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,113 @@
+// From plain data to bodies: meshes, supports, copies.
+#include "sandbox/scene/build_world.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "sandbox/scene/build_mesh.h"
+#include "tests/sandbox/scene/reading.h"
+
+using namespace shatterbox;
+using namespace shatterbox::sandbox::scene;
+
+namespace {
+
+const ShellForm& first_shell(const Reading& reading) {
+  return std::get<ShellForm>(reading.scene->bodies.front().form);
+}
+
+}  // namespace
+
+TEST_CASE("generated meshes have about 5000 triangles unless told otherwise") {
+  for (const char* shape : {"sphere", "ornament", "bowl", "pane"}) {
+    const Reading reading = read(std::string("[[body]]\nkind = \"shell\"\nshape = \"") + shape + "\"\n");
+    REQUIRE(reading.scene.has_value());
+    Problems problems;
+    std::vector<std::string> notes;
+    const auto built = build_mesh(first_shell(reading), {}, problems, notes);
+    REQUIRE(built.has_value());
+    INFO(shape << ": " << built->mesh.triangles.size());
+    CHECK(built->mesh.triangles.size() > 3500);
+    CHECK(built->mesh.triangles.size() < 7000);
+    CHECK(built->parts.size() == built->mesh.triangles.size());
+  }
+}
+
+TEST_CASE("size stretches to a box, up = z turns") {
+  const Reading reading = read(
+      "[[body]]\nkind = \"shell\"\nshape = \"pane\"\nwidth = 1\nheight = 2\nup = \"z\"\nsize = [3, 1, 4]\n"
+      "edge_length = 0.1\n");
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  std::vector<std::string> notes;
+  const auto built = build_mesh(first_shell(reading), {}, problems, notes);
+  REQUIRE(built.has_value());
+  Vec3 least = Vec3::Constant(1e9), most = -least;
+  for (const Vec3& p : built->mesh.positions) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  CHECK((most - least - Vec3(3, 0, 4)).norm() <
+        1e-12);  // the pane's height lies along -z; no thickness to stretch
+}
+
+TEST_CASE("supports hold the border, the foot, or what is in a box") {
+  const Reading reading =
+      read("[[body]]\nkind = \"shell\"\nshape = \"pane\"\nwidth = 1\nheight = 1\nedge_length = 0.1\n");
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  std::vector<std::string> notes;
+  const auto mesh = build_mesh(first_shell(reading), {}, problems, notes)->mesh;
+  const auto held = [&](const Support& support, const Quat& rotation = Quat::Identity()) {
+    return find_clamped(mesh, rotation, support, {}, problems);
+  };
+  for (const int v : held(EdgeSupport{})) {
+    CHECK(mesh.positions[static_cast<std::size_t>(v)].cwiseAbs().maxCoeff() == Approx(0.5));
+  }
+  CHECK(held(EdgeSupport{}).size() >= 36);
+  for (const int v : held(FootSupport{})) CHECK(mesh.positions[static_cast<std::size_t>(v)].y() < -0.47);
+  const Quat upside_down(0, 0, 0, 1);  // half a turn about z
+  for (const int v : held(FootSupport{}, upside_down))
+    CHECK(mesh.positions[static_cast<std::size_t>(v)].y() > 0.47);
+  for (const int v : held(BoxSupport{Vec3(0, 0, -1), Vec3(1, 1, 1)})) {
+    CHECK(mesh.positions[static_cast<std::size_t>(v)].x() >= 0.0);
+  }
+  CHECK(problems.empty());
+  CHECK(held(BoxSupport{Vec3(5, 5, 5), Vec3(6, 6, 6)}).empty());
+  CHECK(problems.size() == 1);
+}
+
+TEST_CASE("copies stand in rows and grids, and jitter by the seed alone") {
+  const Reading reading = read(
+      "[[body]]\nkind = \"sphere\"\nrepeat = {count = 3, spacing = [1, 2, 0]}\n"
+      "[[body]]\nkind = \"sphere\"\nrepeat = {count = [2, 3, 4], spacing = 0.5, jitter = 0.1, "
+      "rotation_jitter = 20}\n");
+  REQUIRE(reading.scene.has_value());
+  const auto row = copy_poses(reading.scene->bodies[0], 1, 0);
+  REQUIRE(row.size() == 3);
+  CHECK(row[2].translation == Vec3(2, 4, 0));
+  const auto grid = copy_poses(reading.scene->bodies[1], 1, 1);
+  REQUIRE(grid.size() == 24);
+  CHECK((grid[23].translation - Vec3(0.5, 1.0, 1.5)).cwiseAbs().maxCoeff() <= 0.1);
+  CHECK(grid[0].translation != Vec3(0, 0, 0));
+  CHECK(copy_poses(reading.scene->bodies[1], 1, 1)[7].translation == grid[7].translation);
+  CHECK(copy_poses(reading.scene->bodies[1], 2, 1)[7].translation != grid[7].translation);
+  CHECK(grid[5].rotation.angularDistance(Quat::Identity()) < 20.0 * 3.15 / 180.0);
+}
+
+TEST_CASE("bodies that cannot be are refused at their place") {
+  const auto refused = [](const std::string& text, const char* part) {
+    const Reading reading = read(text);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    Problems problems;
+    CHECK_FALSE(build_world(*reading.scene, problems).has_value());
+    INFO(describe(problems));
+    REQUIRE_FALSE(problems.empty());
+    CHECK(describe(problems).find("t.toml:1:1") == 0);
+    CHECK(describe(problems).find(part) != std::string::npos);
+  };
+  refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nsupport = \"edge\"\n", "no open border");
+  refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nedge_length = 1e-9\n", "");
+  refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 1\nscale = 1e6\n", "scale = 0.001");
+}

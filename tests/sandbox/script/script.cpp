@@ -1,0 +1,53 @@
+// Events land on step borders, projectiles fly through their target.
+#include "sandbox/script/script.h"
+
+#include <catch2/catch.hpp>
+
+#include "sandbox/scene/build_world.h"
+#include "tests/sandbox/scene/reading.h"
+
+using namespace shatterbox;
+using namespace shatterbox::sandbox;
+
+TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
+  for (const Vec3& gravity : {Vec3(0, -9.81, 0), Vec3(0, 0, 0), Vec3(3, -1, 2)}) {
+    const Vec3 from(-1, 0.5, 2), target(0.3, 1.2, 0);
+    const Vec3 velocity = script::aim(from, target, 10.0, gravity);
+    CHECK(velocity.norm() == Approx(10.0).epsilon(1e-12));
+    double least = 1e9;
+    for (int i = 0; i <= 100000; ++i) {
+      const double t = i * 1e-5;
+      least = std::min(least, (from + t * velocity + 0.5 * t * t * gravity - target).norm());
+    }
+    CHECK(least < 1e-4);
+  }
+}
+
+TEST_CASE("a target out of reach is aimed at straight") {
+  const Vec3 velocity = script::aim(Vec3::Zero(), Vec3(1000, 0, 0), 1.0, Vec3(0, -9.81, 0));
+  CHECK((velocity - Vec3(1, 0, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("events land on the first step border at or after their time") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"a\"\nkind = \"sphere\"\nposition = [5,0,0]\n"
+      "[[event]]\nat = 0.1\ndo = \"projectile\"\nfrom = [0,3,0]\nat_point = [0,4,0]\nspeed = 1\n"
+      "[[event]]\nat = 0.1001\ndo = \"drop\"\nbody = {kind = \"box\", size = 0.1}\nposition = [0,9,0]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  CHECK(built->world.bodies().size() == 1);  // what events bring in waits
+  script::Script script(*reading.scene);
+  std::vector<std::size_t> counts;
+  for (int step = 0; step < 26; ++step) {
+    CHECK(script.play(*built).empty());
+    counts.push_back(built->world.bodies().size());
+    built->world.step();
+  }
+  CHECK(counts[23] == 1);
+  CHECK(counts[24] == 2);  // 0.1 s at 240 steps a second
+  CHECK(counts[25] == 3);
+  CHECK(script.is_over());
+}

@@ -1,0 +1,93 @@
+// The bridge: poses, cracks and looks arrive in the frame; every name has its look; the camera follows its
+// path.
+#include "sandbox/view/view.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/geometry/edge_topology.h"
+#include "sandbox/view/camera.h"
+#include "sandbox/view/looks.h"
+#include "tests/sandbox/scene/reading.h"
+
+using namespace shatterbox;
+using namespace shatterbox::sandbox;
+
+TEST_CASE("a body's pose, mesh and look arrive in the frame") {
+  const auto reading = scene::read(
+      "[[body]]\nkind = \"plane\"\nposition = [0, 0.25, 0]\n"
+      "[[body]]\nkind = \"box\"\nsize = [1, 2, 3]\nposition = [1, 2, 3]\nrotation = [0, 90, 0]\n"
+      "[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 0.2\nposition = [0, 1, 0]\nedge_length = "
+      "0.1\n"
+      "look = \"glossy\"\ncolour = \"#ff0000\"\nbreakable = false\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  INFO(scene::describe(problems));
+  REQUIRE(built.has_value());
+  view::View view(*reading.scene, *built);
+  const render::Frame frame = view.make_frame();
+  REQUIRE(frame.ground.has_value());
+  CHECK(frame.ground->height == Approx(0.25F));
+  REQUIRE(frame.draws.size() == 2);  // the level plane is the ground
+  const glm::vec4 x = frame.draws[0].world_from_body * glm::vec4(1, 0, 0, 1);
+  CHECK(x.x == Approx(1).margin(1e-6));
+  CHECK(x.y == Approx(2));
+  CHECK(x.z == Approx(2));  // x turned about y by 90 degrees points to -z
+  CHECK(frame.draws[1].mesh->surface == render::Surface::shell);
+  CHECK(frame.draws[1].looks[0].outside.r == Approx(1.0F));
+  CHECK(frame.draws[1].looks[0].outside.g == Approx(0.0F));
+  CHECK(frame.draws[0].mesh->id != frame.draws[1].mesh->id);
+  // The same shape keeps its id, so that it is uploaded once.
+  CHECK(view.make_frame().draws[1].mesh.get() == frame.draws[1].mesh.get());
+}
+
+TEST_CASE("crack edges become crack bits of the triangles they bound") {
+  body::Shape shape;
+  shape.kind = body::ShapeKind::shell;
+  shape.surface.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+  shape.surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+  shape.topology = geometry::build_edge_topology(shape.surface.triangles);
+  shape.crack_edges.assign(shape.topology.edges.size(), 0);
+  for (std::size_t e = 0; e < shape.topology.edges.size(); ++e) {
+    if (shape.topology.edges[e] == std::array<int, 2>{2, 3}) shape.crack_edges[e] = 1;
+  }
+  shape.material_from_body = Vec3(0, 0, 5);
+  const auto mesh = view::make_mesh(shape, 9);
+  CHECK(mesh->id == 9);
+  REQUIRE(mesh->cracks.size() == 2);
+  CHECK(mesh->cracks[0] == 0);
+  CHECK(mesh->cracks[1] == render::kCrackEdge1);
+  CHECK(mesh->pattern_positions[0].z == Approx(5.0F));  // paint stays where it was on the whole
+}
+
+TEST_CASE("every name of the vocabulary means something") {
+  for (const std::string& name : scene::kLookNames) {
+    CHECK(view::make_looks(name, std::nullopt, 0.1, Vec3::Zero()).size() == 4);
+  }
+  for (const std::string& name : scene::kGroundNames) {
+    CHECK(view::make_ground(name, 0.0).has_value() == (name != "none"));
+  }
+  for (const material::Preset& preset : material::presets()) {
+    CHECK(view::usual_look(preset.material.name) != "matt");
+  }
+}
+
+TEST_CASE("the camera passes its keyframes and stands still before and after") {
+  const auto reading = scene::read(
+      "[[body]]\nkind = \"sphere\"\n[camera]\npath = [{at = 1, position = [0,0,5], target = [0,0,0], fov = "
+      "30},"
+      "{at = 2, position = [1,0,5]}, {at = 4, position = [2,0,5], fov = 50}]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  const auto at = [&reading](double time) { return view::camera_at(reading.scene->camera, {}, time); };
+  CHECK(at(0.0).position.x == Approx(0.0F));
+  CHECK(at(1.0).vertical_fov == Approx(30.0F));
+  CHECK(at(2.0).position.x == Approx(1.0F));
+  CHECK(at(4.0).position.x == Approx(2.0F));
+  CHECK(at(9.0).vertical_fov == Approx(50.0F));
+  // Continuous, velocity included.
+  const float before = (at(2.0).position.x - at(1.999).position.x) / 0.001F;
+  const float after = (at(2.001).position.x - at(2.0).position.x) / 0.001F;
+  CHECK(before == Approx(after).margin(0.01));
+}
