@@ -31,7 +31,7 @@ constexpr double kWaveLength = 0.14;    // of the paths' noise, share of the bod
 constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
 // The same, as a share of the unbroken body's size: a mesh finer than that gives the same answer, crumbs
 // included.
-constexpr double kPatchShare = 0.04;
+constexpr double kPatchShare = 0.05;
 constexpr double kGrowthThatCounts = 0.04;  // of the cracks' length: a generation that adds less is the last
 constexpr int kMostScreenings = 6;          // steps of the search for the duration
 
