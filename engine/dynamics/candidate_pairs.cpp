@@ -23,6 +23,7 @@ using collision::Contact;
 constexpr double kLocalSlack = 0.1;       // sine: neighbouring features may lead closer by this
 constexpr double kManifoldRadius = 0.04;  // share of the pair's size
 constexpr double kBroadSlack = 0.02;      // share of a body's size
+constexpr double kAlwaysNear = 1.0;       // of the usual gap
 constexpr double kRaiseTime = 0.5;        // s
 constexpr double kImpactWindow = 0.1;     // share of the step after the first hit in which others count
 
@@ -187,7 +188,9 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       bodies[at(pair.a)].is_dynamic() && (!bodies[at(pair.b)].is_dynamic() || a.reach <= b.reach);
   pair.material = pair_material(bodies[at(pair.a)], bodies[at(pair.b)], settings);
   pair.size = 2.0 * (a_is_measure ? a.reach : b.reach);
-  pair.motion = motion_bound(a, a.predicted, b, b.predicted);
+  // One may be held while the other falls.
+  pair.motion = motion_bound(a, a.predicted, b, b.predicted) +
+                settings.gravity.norm() * settings.time_step * settings.time_step;
   const double usual_gap = settings.kept_gap * pair.size;
   pair.is_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
   pair.is_flipped = a.shape->kind == ShapeKind::plane;
@@ -274,7 +277,9 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
     const auto gap = collision::measure(start, hint(a, b));
     pair.gaps.push_back(gap.gap);
     if (gap.gap <= pair.margin) {
-      if (collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
+      // So close that the direction cannot mislead, every feature counts.
+      if (gap.gap <= kAlwaysNear * usual_gap ||
+          collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
                                       kLocalSlack)) {
         pair.contacts.push_back(make_contact(features, gap));
         pair.is_free_certified = false;

@@ -20,7 +20,7 @@ using collision::Contact;
 
 constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
-constexpr int kMostStuckSteps = 4;
+constexpr int kMostStuckSteps = 1000000;
 constexpr double kSinking =
     0.02;  // solids may sink into each other by this share of the thinner half in a step
 
