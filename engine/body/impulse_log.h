@@ -23,6 +23,7 @@ struct LoggedImpulse {
   Vec3 point_world = Vec3::Zero();    // m
   Vec3 normal_world = Vec3::Zero();   // unit, from b towards a
   Vec3 impulse_world = Vec3::Zero();  // N s, normal and friction together
+  double time = 0.0;                  // s since the step's start: when the collision arrived; 0 for contact
   double closing_speed = 0.0;         // m/s along the normal before the collision; 0 for contact
   double effective_mass = 0.0;        // kg along the normal, from both full inverse masses
 };

@@ -36,8 +36,16 @@ double inverse_mass_at(const body::Body& body, const Vec3& point, const Vec3& di
 
 }  // namespace
 
+bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemory* other_memory,
+                double time) {
+  if (time > piece.charged_until) return false;
+  if (other == piece.charged_other) return true;
+  return other_memory && other_memory->charged_event == piece.charged_event &&
+         time <= other_memory->charged_until;
+}
+
 std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
-                               double radius, double time) {
+                               double radius, double step_start, const PassOver& pass_over) {
   std::vector<Load> loads;
   for (const body::LoggedImpulse& entry : log) {
     if (entry.kind != kind || (entry.body_a != struck.id && entry.body_b != struck.id)) continue;
@@ -48,7 +56,8 @@ std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind ki
     load.impulse_body =
         struck.pose.rotation.conjugate() * (is_a ? entry.impulse_world : Vec3(-entry.impulse_world));
     load.closing_speed = entry.closing_speed;
-    load.time = time;
+    load.time = step_start + entry.time;
+    if (pass_over && pass_over(load.other, load.time)) continue;
     if (load.impulse_body.squaredNorm() > 0.0) loads.push_back(load);
   }
   // The greatest impulse founds its place first, so that places do not depend on the order of the log.

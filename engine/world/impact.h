@@ -28,15 +28,29 @@ struct ImpactMemory {
   double tested_contact = 0.0;  // N: total contact force at which the body was last found to hold
   int generation = 0;           // breaks since the event began from which this piece comes
   double birth_time = -1e9;     // s
+
+  // The impact that made this piece was charged with its whole impulse when it was judged. Until it is over,
+  // what comes from the same body, or from another piece of the same break, is part of it and not charged
+  // again.
+  double charged_until = -1e9;     // s
+  body::BodyId charged_other = 0;  // whom the broken body had met
+  body::BodyId charged_event = 0;  // the body that broke
 };
 
 /// The time over which contact impulses are averaged, s.
 inline constexpr double kContactAverage = 1.0 / 60.0;
 
-/// Collision loads of one step on `struck`, gathered: same other body, nearer than `radius` (m), similar
-/// direction.
+/// True if an impulse at `time` (s) by `other` (whose memory may be null) belongs to the impact that made the
+/// piece.
+bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemory* other_memory, double time);
+
+/// Whether an impulse by a body at a time (s) is to be passed over.
+using PassOver = std::function<bool(body::BodyId other, double time)>;
+
+/// Loads of one kind of one step on `struck`, which began at `step_start` (s), gathered: same other body,
+/// nearer than `radius` (m), similar direction.
 std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
-                               double radius, double time);
+                               double radius, double step_start, const PassOver& pass_over = {});
 
 /// Adds `loads` to the sums in `event`, at the place of a load that is already there.
 void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, double radius);

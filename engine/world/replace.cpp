@@ -111,6 +111,7 @@ BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, doubl
 
 void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMemory& memory,
                    const std::vector<Piece>& pieces, std::vector<body::Body> born, double time,
+                   double charged_until, body::BodyId charged_other,
                    std::map<body::BodyId, Ancestry>& ancestry) {
   const auto found = ancestry.find(parent.id);
   const body::BodyId original = found == ancestry.end() ? parent.id : found->second.original;
@@ -119,7 +120,9 @@ void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMe
     ImpactMemory own;
     own.generation = memory.generation + 1;
     own.birth_time = time;
-    own.event_duration = memory.event_duration;
+    own.charged_until = charged_until;
+    own.charged_other = charged_other;
+    own.charged_event = parent.id;
     moving.memories[born[i].id] = own;
     moving.fragiles[born[i].id] = pieces[i].fragile;
     ancestry[born[i].id] = {parent.id, original, time};
@@ -173,8 +176,7 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   const body::Body parent = *body::find_body(moving.bodies, impact.id);
   const std::shared_ptr<const Fragile> fragile = moving.fragiles.at(impact.id);
   const double thickness = parent.shape->thickness;
-  ImpactMemory memory = moving.memories[impact.id];
-  memory.event_duration = impact.decision.verdict.duration;
+  const ImpactMemory memory = moving.memories[impact.id];
   BreakRow row = describe(parent, impact, thickness);
   row.generation = memory.generation;
   row.place = parent.pose.apply(impact.hardest.point_body);
@@ -195,7 +197,8 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   row.pieces = static_cast<int>(pieces.size());
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);
-  insert_pieces(moving, parent, memory, pieces, std::move(born), time, ancestry);
+  insert_pieces(moving, parent, memory, pieces, std::move(born), time,
+                impact.first_time + 2.0 * impact.decision.verdict.duration, impact.hardest.other, ancestry);
   return row;
 }
 

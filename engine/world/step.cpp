@@ -130,7 +130,7 @@ void World::step() {
     EvaluationFigures figures;
     const auto impacts = timer.time("stress", [&] {
       return evaluate_stress(s.moving.bodies, s.log, s.moving.fragiles, s.settings, s.contact_settings,
-                             end_time, s.moving.memories, figures);
+                             time(), s.moving.memories, figures);
     });
     s.report.solver.solves += figures.solves;
     s.report.solver.skipped += figures.skipped;
@@ -160,8 +160,8 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
       if (impact.decision.generations > 0) s.report.impacts.push_back(describe_impact(impact, body, time));
       continue;
     }
-    // Generations are bounded per event: a piece that flew for longer than the impact lasts begins anew.
-    if (time - memory.birth_time > 2.0 * memory.event_duration) memory.generation = 0;
+    // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
+    if (impact.first_time > memory.charged_until) memory.generation = 0;
     ImpactRow row = describe_impact(impact, body, time);
     if (memory.generation >= s.settings.most_generations || pass + 1 >= kMostPasses) {
       row.verdict = "held: its impact event has used all its generations of breaking";

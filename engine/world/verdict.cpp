@@ -17,11 +17,14 @@ struct Candidate {
   const body::Body* body = nullptr;
   const Fragile* fragile = nullptr;
   Load hardest;
+  double first_time = 0.0;  // s
+  bool is_piece = false;    // born of a break
   fracture::ShellImpact impact;
 };
 
 struct Judge {
   const std::vector<body::Body>& bodies;
+  const std::map<body::BodyId, ImpactMemory>& memories;
   const WorldSettings& settings;
   const dynamics::ContactSettings& contact;
 
@@ -109,7 +112,12 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
   if (is_paper)
     gather_paper_step(log, body, radius, time, hits);
   else
-    hits = gather_loads(log, body::ImpulseKind::collision, body, radius, time);
+    hits = gather_loads(
+        log, body::ImpulseKind::collision, body, radius, time, [&](body::BodyId other, double at) {
+          const auto other_memory = judge.memories.find(other);
+          return is_charged(memory, other,
+                            other_memory == judge.memories.end() ? nullptr : &other_memory->second, at);
+        });
 
   forget_old_contact(memory, time);
   if (!is_paper)
@@ -117,9 +125,10 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
       memory.contact.push_back(load);
 
   if (!memory.event.empty()) {
-    double last = -1e9;
+    double last = -1e9, next = 1e9;
     for (const Load& load : memory.event) last = std::max(last, load.time);
-    if (is_paper || time - last > 2.0 * memory.event_duration) memory.event.clear();
+    for (const Load& load : hits) next = std::min(next, load.time);
+    if (is_paper || next - last > 2.0 * memory.event_duration) memory.event.clear();
   }
   add_to_event(memory.event, hits, radius);
 
@@ -139,6 +148,9 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
     return a.impulse_body.squaredNorm() < b.impulse_body.squaredNorm();
   });
+  candidate.is_piece = memory.charged_event != 0;
+  candidate.first_time = time;
+  for (const Load& load : memory.event) candidate.first_time = std::min(candidate.first_time, load.time);
   candidate.impact.contact_average = kContactAverage;
   candidate.impact.spin_material = body.pose.rotation.conjugate() * body.angular_velocity;
   if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;
@@ -157,7 +169,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
                                              const dynamics::ContactSettings& contact, double time,
                                              std::map<body::BodyId, ImpactMemory>& memories,
                                              EvaluationFigures& figures) {
-  const Judge judge{bodies, settings, contact};
+  const Judge judge{bodies, memories, settings, contact};
   std::vector<body::BodyId> touched;
   for (const body::LoggedImpulse& entry : log)
     for (const body::BodyId id : {entry.body_a, entry.body_b})
@@ -181,8 +193,11 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     fracture::FractureSettings how;
     how.most_generations = settings.most_generations;
     how.least_width = kLeastWidth * candidate.fragile->size;
+    // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
+    if (candidate.is_piece) how.core_spacing = 0.0;
     evaluated[i].id = candidate.body->id;
     evaluated[i].hardest = candidate.hardest;
+    evaluated[i].first_time = candidate.first_time;
     evaluated[i].decision = fracture::decide_shell(candidate.fragile->subject, candidate.impact, how);
   });
   for (const EvaluatedImpact& impact : evaluated) {

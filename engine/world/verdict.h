@@ -15,7 +15,8 @@ namespace shatterbox::world {
 /// The answer for one body whose impact was evaluated.
 struct EvaluatedImpact {
   body::BodyId id = 0;
-  Load hardest;  // body space
+  double first_time = 0.0;  // s, of the first impulse of the event
+  Load hardest;             // body space
   fracture::Decision decision;
 };
 
@@ -24,7 +25,7 @@ struct EvaluationFigures {
   double worst_residual = 0.0;
 };
 
-/// Reads the log of the step that ends at `time` (s); writes event sums to `memories`; returns the impacts
+/// Reads the log of the step that begins at `time` (s); writes event sums to `memories`; returns the impacts
 /// that were evaluated, ascending by body. Bodies are evaluated in parallel; the answer does not depend on
 /// it.
 std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
