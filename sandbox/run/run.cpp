@@ -221,9 +221,11 @@ int check_scene(const Options& options) {
   if (!built) return refuse(problems);
   for (const std::string& note : built->plan.notes) fmt::print("note: {}\n", note);
   for (const std::string& warning : scene->warnings) fmt::print("warning: {}\n", warning);
+  std::size_t triangles = 0;
+  for (const body::Body& body : built->world.bodies()) triangles += body.shape->surface.triangles.size();
   fmt::print("{}: fine. {} bodies, {} triangles, {} events, {:g} s at {} steps a second\n", file,
-             built->world.report().bodies_start, built->world.report().triangles_start, scene->events.size(),
-             scene->seconds, scene->world.steps_per_second);
+             built->world.bodies().size(), triangles, scene->events.size(), scene->seconds,
+             scene->world.steps_per_second);
   return kDone;
 }
 

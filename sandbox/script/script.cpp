@@ -44,9 +44,17 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event,
     if (!centre) return core::Error{"its target is not there"};
     target = *centre;
   }
-  if ((target - projectile.from).norm() < 1e-9) return core::Error{"its target is where it starts"};
+  const Vec3 way = target - projectile.from;
+  const double distance = way.norm();
+  if (distance < 1e-9) return core::Error{"its target is where it starts"};
   description.pose.translation = projectile.from;
-  description.velocity = aim(projectile.from, target, projectile.speed, built.world.settings().gravity);
+  const auto velocity = aim(projectile.from, target, projectile.speed, built.world.settings().gravity);
+  description.velocity = velocity.value_or(Vec3(way * (projectile.speed / distance)));
+  if (!velocity) {
+    faults.push_back(fmt::format(
+        "event \"{}\" at {:g} s: at {:g} m/s it cannot reach its target {:.3g} m away; thrown straight at it",
+        event.name, event.at, projectile.speed, distance));
+  }
   description.angular_velocity = projectile.spin;
   return description;
 }
@@ -63,7 +71,7 @@ std::vector<std::string> Script::play(scene::BuiltScene& built) {
     // A hair's breadth of tolerance: at = 0.1 is step 24 of 240, although 0.1 * 240 is not 24 to the bit.
     const auto due = static_cast<long>(std::ceil(event.at * rate - 1e-6));
     if (due > built.world.steps()) break;
-    auto description = describe(event, built);
+    auto description = describe(event, built, faults);
     if (!description) {
       faults.push_back(
           fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, description.error()));
@@ -82,18 +90,18 @@ std::vector<std::string> Script::play(scene::BuiltScene& built) {
   return faults;
 }
 
-Vec3 aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity) {
+std::optional<Vec3> aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity) {
   // |target - from - g t2/2| = speed t is quadratic in t2 = t^2.
   const Vec3 way = target - from;
   const double a = 0.25 * gravity.squaredNorm();
   const double b = way.dot(gravity) + speed * speed;
   const double c = way.squaredNorm();
   const double discriminant = b * b - 4.0 * a * c;
-  if (discriminant < 0.0 || b <= 0.0) return way * (speed / core::sqrt(c));
+  if (discriminant < 0.0 || b <= 0.0) return std::nullopt;
   const double time_squared =
       2.0 * c / (b + core::sqrt(discriminant));  // the lesser root, without cancellation
   const double time = core::sqrt(time_squared);
-  return (way - 0.5 * time_squared * gravity) / time;
+  return Vec3((way - 0.5 * time_squared * gravity) / time);
 }
 
 }  // namespace shatterbox::sandbox::script

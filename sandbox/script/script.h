@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ class Script {
 };
 
 /// The velocity with which a body thrown from `from` flies through `target` under `gravity` (m/s2), the
-/// quicker of the two ways; straight at it where the speed does not reach that far.
-Vec3 aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity);
+/// quicker of the two ways; nothing where the speed does not reach that far.
+std::optional<Vec3> aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity);
 
 }  // namespace shatterbox::sandbox::script

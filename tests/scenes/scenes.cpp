@@ -1,0 +1,88 @@
+// What must be true of each scene: it breaks as its first line says, keeps mass and momenta, and holds when
+// spared.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/sandbox/run/running.h"
+
+using namespace shatterbox::sandbox::run;
+
+namespace {
+
+nlohmann::json play(const Folder& folder, const std::string& arguments) {
+  const Outcome outcome = program(folder, "run " + arguments + " --no-render --report r.json");
+  INFO(arguments << "\n" << outcome.out << outcome.err);
+  REQUIRE(outcome.status == 0);
+  return read_json(folder / "r.json");
+}
+
+void check_breaks(const nlohmann::json& report) {
+  for (const auto& row : report["breaks"]) {
+    INFO(row.dump(1));
+    CHECK(row["mass_error"].get<double>() < 1e-10);
+    CHECK(row["momentum_error"].get<double>() < 1e-10);
+    CHECK(row["angular_momentum_error"].get<double>() < 1e-10);
+    CHECK(std::abs(row["energy_gain"].get<double>()) < 1e-10);
+    CHECK(row["overlap"] == 0);
+    CHECK(row["fracture_energy_j"].get<double>() <= row["elastic_energy_j"].get<double>());
+  }
+}
+
+double worst_ratio(const nlohmann::json& report) {
+  double worst = 0.0;
+  for (const auto& row : report["impacts"]) worst = std::max(worst, row["ratio"].get<double>());
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("every scene that comes along passes its check and says what must be seen") {
+  const Folder folder;
+  for (const char* scene : {"ornament", "window", "bowl"}) {
+    const Outcome outcome = program(folder, std::string("check ") + scene);
+    INFO(outcome.err);
+    CHECK(outcome.status == 0);
+  }
+}
+
+TEST_CASE("ornament: shatters into at least 20 pieces; a low drop is held, with the verdict in the report") {
+  const Folder folder;
+  const auto broken = play(folder, "ornament --seconds 1");
+  CHECK(broken["pieces"].get<int>() >= 20);
+  check_breaks(broken);
+  CHECK(broken["breaks"][0]["place"][1].get<double>() < 0.005);  // where it touched the floor
+  const auto held = play(folder, "ornament --seconds 1 --set ornament.position=[0,0.06,0]");
+  CHECK(held["breaks"].empty());
+  CHECK(worst_ratio(held) < 1.0);
+  CHECK((held["impacts"].empty() || held["impacts"][0]["verdict"].get<std::string>().rfind("held", 0) == 0));
+}
+
+TEST_CASE("window: breaks where the ball hits, and the ball goes on; a slow ball is held") {
+  const Folder folder;
+  const auto broken = play(folder, "window --seconds 0.6 --meshes m --fps 20");
+  CHECK(broken["pieces"].get<int>() >= 20);
+  check_breaks(broken);
+  const auto place = broken["breaks"][0]["place"];
+  CHECK(std::hypot(place[0].get<double>() - 0.06, place[1].get<double>() - 0.05) < 0.03);
+  const auto held =
+      play(folder, "window --seconds 0.6 --set throw.from=[0.06,0.05,0.3] --set throw.speed=1.8");
+  CHECK(held["breaks"].empty());
+  CHECK(worst_ratio(held) < 1.0);
+}
+
+TEST_CASE("bowl: breaks into a few large pieces; a low drop is held") {
+  const Folder folder;
+  const auto broken = play(folder, "bowl --seconds 1");
+  CHECK(broken["pieces"].get<int>() >= 3);
+  check_breaks(broken);
+  const auto held = play(folder, "bowl --seconds 1 --set bowl.position=[0,0.09,0]");
+  CHECK(held["breaks"].empty());
+}
+
+TEST_CASE("a broken scene gives the same bits with one thread and two") {
+  const Folder folder;
+  const auto one = play(folder, "window --seconds 0.5 --threads 1");
+  const auto two = play(folder, "window --seconds 0.5 --threads 2");
+  CHECK(one["pieces"].get<int>() > 0);
+  CHECK(one["state_hash"] == two["state_hash"]);
+}
