@@ -28,8 +28,8 @@ std::optional<Vec3> centre_of(const scene::BuiltScene& built, int entry) {
 }
 
 /// The motion of what an event brings in, or a sentence why it cannot be.
-core::Result<world::BodyDescription> describe(const scene::EventEntry& event,
-                                              const scene::BuiltScene& built) {
+core::Result<world::BodyDescription> describe(const scene::EventEntry& event, const scene::BuiltScene& built,
+                                              std::vector<std::string>& faults) {
   world::BodyDescription description = built.plan.bodies[static_cast<std::size_t>(event.body)].description;
   if (const auto* drop = std::get_if<scene::Drop>(&event.action)) {
     if (drop->position) description.pose.translation = *drop->position;
