@@ -23,7 +23,7 @@ using collision::Contact;
 constexpr double kLocalSlack = 0.1;       // sine: neighbouring features may lead closer by this
 constexpr double kManifoldRadius = 0.04;  // share of the pair's size
 constexpr double kBroadSlack = 0.02;      // share of a body's size
-constexpr double kAlwaysNear = 1.0;       // of the usual gap
+constexpr double kAlwaysNear = 3.0;       // of the usual gap
 constexpr double kRaiseTime = 0.5;        // s
 constexpr double kImpactWindow = 0.1;     // share of the step after the first hit in which others count
 
@@ -31,7 +31,11 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-void match_bodies(const std::vector<Body>& bodies, ContactState& state) {
+bool is_same_pose(const Pose& x, const Pose& y) {
+  return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
+}
+
+void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWork& work) {
   std::vector<BodyState> matched;
   matched.reserve(bodies.size());
   std::size_t old = 0;
@@ -39,10 +43,12 @@ void match_bodies(const std::vector<Body>& bodies, ContactState& state) {
     while (old < state.bodies.size() && state.bodies[old].id < b.id) ++old;
     if (old < state.bodies.size() && state.bodies[old].id == b.id && state.bodies[old].shape == b.shape) {
       matched.push_back(state.bodies[old]);
+      work.is_new.push_back(!is_same_pose(matched.back().last_pose, b.pose));
       continue;
     }
     const auto same_shape = [&](const BodyState& s) { return s.shape == b.shape; };
-    BodyState fresh{b.id, b.shape, nullptr, {}};
+    BodyState fresh{b.id, b.shape, nullptr, {}, b.pose};
+    work.is_new.push_back(1);
     if (const auto twin = std::find_if(matched.begin(), matched.end(), same_shape); twin != matched.end()) {
       fresh.collider = twin->collider;
       fresh.inertia = twin->inertia;
@@ -169,6 +175,7 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::I
     w.state = static_cast<int>(matched.size());
     if (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) == key) {
       matched.push_back(std::move(state.pairs[old++]));
+      if (work.is_new[at(pair.a)] || work.is_new[at(pair.b)]) matched.back().features.reset();
     } else {
       matched.emplace_back();
       matched.back().body_a = key.first;
@@ -244,24 +251,36 @@ double least_on_path(double gap, double kept_gap) {
   return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
 }
 
+// Nearest first, so that later steps need only look at the list's head.
+void sort_by_gap(const WorkBody& a, const WorkBody& b, collision::FeatureList& list) {
+  for (auto& features : list) {
+    const auto points = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    features.bound = collision::measure(points, hint(a, b)).gap * (1.0 - 1e-12);
+  }
+  std::sort(list.begin(), list.end(), [](const auto& x, const auto& y) {
+    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
+  });
+}
+
 void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
                    WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   collision::FeatureList fresh;
   if (pair.is_fast) {
-    const Vec3 relative_way = b.end_way - a.end_way;
-    collision::list_swept_features(a.placed, a.turned, b.placed, b.turned, relative_way, pair.margin, fresh);
+    collision::list_swept_features(a.placed, b.placed, b.end_way - a.end_way, pair.margin, fresh);
     pair.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
     pair.list_margin = pair.margin;
     memory.features.reset();
   } else {
     if (pair.needs_list) {
-      memory.list_margin = pair.margin + settings.search_slack * pair.size;
+      memory.list_margin = memory.list_reach = pair.margin + settings.search_slack * pair.size;
       collision::list_near_features(a.placed, b.placed, memory.list_margin, fresh);
+      sort_by_gap(a, b, fresh);
       memory.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
     }
     pair.features = memory.features;
     pair.list_margin = memory.list_margin;
+    pair.list_moved = memory.list_reach - memory.list_margin;
   }
   const double usual_gap = settings.kept_gap * pair.size;
   std::vector<Vec3> end_a, end_b;
@@ -271,8 +290,9 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   }
   std::vector<Hit> hits;
   pair.is_free_certified = true;
-  pair.gaps.reserve(pair.features->size());
+  const double reach = std::max(pair.margin, pair.motion + usual_gap) + pair.list_moved;
   for (const auto& features : *pair.features) {
+    if (!pair.is_fast && features.bound > reach) break;
     const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
     const auto gap = collision::measure(start, hint(a, b));
     pair.gaps.push_back(gap.gap);
@@ -359,7 +379,7 @@ void meet(const ContactSettings& settings, const MotionWork& work, PairState& me
     meet_features(settings, work, memory, pair);
   }
   if (memory.is_exempt) {
-    memory.is_exempt = !pair.contacts.empty();
+    memory.is_exempt = pair.features ? !pair.features->empty() : !pair.contacts.empty();
     pair.contacts.clear();
   }
   adapt_gap(settings, memory, pair);
@@ -470,7 +490,7 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
 void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
                           ContactState& state, MotionWork& work) {
   work = MotionWork();
-  match_bodies(bodies, state);
+  match_bodies(bodies, state, work);
   bool anything_moves = false;
   work.bodies.reserve(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {

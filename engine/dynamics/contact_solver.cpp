@@ -166,7 +166,9 @@ class IslandSolver {
   void start_warm(double share) {
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
-      if (c.warm[0] > 0.0) apply(c, share * settings_.warm_start * c.warm, relative_velocity(c));
+      // What has come apart must not be pushed by what it weighed before.
+      if (c.warm[0] > 0.0 && c.slack <= kTouching * c.kept_gap)
+        apply(c, share * settings_.warm_start * c.warm, relative_velocity(c));
     }
   }
 
@@ -223,7 +225,8 @@ class IslandSolver {
   }
 
   double target_before_drift(const SolverContact& c) const {
-    // What touches is held where it is; letting it use up the last of its gap would drop and catch it in turn.
+    // What touches is held where it is; letting it use up the last of its gap would drop and catch it in
+    // turn.
     if (c.slack > kTouching * c.kept_gap) return -c.slack / step_;
     if (c.slack > 0.0) return 0.0;
     return std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;

@@ -41,7 +41,8 @@ struct PairState {
   double odometer = 0.0;  // m: how far the bodies may have come closer since the pair was first seen
   double odometer_at_list = 0.0;
   double list_margin = -1.0;  // m: the list holds all features that were this close; negative: no list
-  std::shared_ptr<const collision::FeatureList> features;
+  double list_reach = 0.0;    // m: the margin that it was made with
+  std::shared_ptr<const collision::FeatureList> features;  // ascending by `bound`
 };
 
 /// One body's own memory.
@@ -50,6 +51,7 @@ struct BodyState {
   std::shared_ptr<const body::Shape> shape;
   std::shared_ptr<const collision::Collider> collider;  // of `shape`; shared between copies of the body
   PrincipalInertia inertia;
+  Pose last_pose;  // at the end of the last step: whoever moves a body by hand makes its lists void
 };
 
 struct ContactState {

@@ -20,7 +20,7 @@ using collision::Contact;
 
 constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
-constexpr int kMostStuckSteps = 1000000;
+constexpr int kMostStuckSteps = 12;
 constexpr double kSinking =
     0.02;  // solids may sink into each other by this share of the thinner half in a step
 
@@ -197,19 +197,21 @@ class Guard {
     const collision::FeatureList* list = pair.features.get();
     const bool is_fresh = needs_descent(pair);
     if (is_fresh) {
-      collision::list_swept_features(a.placed, a.turned, b.placed, b.turned, b.end_way - a.end_way,
-                                     pair.kept_gap, fresh);
+      collision::list_swept_features(a.placed, b.placed, b.end_way - a.end_way, pair.kept_gap, fresh);
       list = &fresh;
     }
     std::vector<Hit> hits;
     for (std::size_t i = 0; i < list->size(); ++i) {
-      if (!is_fresh && pair.gaps[i] > motion + kSafe * pair.kept_gap) continue;
+      const double reach = motion + kSafe * pair.kept_gap;
+      const bool is_known = !is_fresh && i < pair.gaps.size();
+      if (is_known && pair.gaps[i] > reach) continue;
+      if (!is_fresh && !is_known && (*list)[i].bound > reach + pair.list_moved) break;
       const auto& features = (*list)[i];
       const auto start =
           collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
       const auto end =
           collision::gather(features, *a.collider, ends_[at(pair.a)], *b.collider, ends_[at(pair.b)]);
-      const double gap = is_fresh ? collision::measure(start, hint).gap : pair.gaps[i];
+      const double gap = is_known ? pair.gaps[i] : collision::measure(start, hint).gap;
       // A sphere is solid: sunk in a little, it is pushed out by its contact; only its centre must not pass.
       const double least = start.radius > 0.0 && gap <= kSafe * pair.kept_gap
                                ? std::min(gap - pair.kept_gap, -0.5 * start.radius)

@@ -94,7 +94,8 @@ struct WorkPair {
   double motion = 0.0;             // m: bound of the relative motion if nothing touches
   double margin = 0.0;             // m: contacts are felt from this gap on
   bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
-  std::vector<double> gaps;        // m, of `features` at the start
+  std::vector<double> gaps;        // m, of the first `features` at the start
+  double list_moved = 0.0;         // m: how far the bodies have moved since the list was made
   double list_margin = 0.0;        // m: `features` holds all pairs that were this close at the start
   std::shared_ptr<const collision::FeatureList> features;
   std::vector<collision::Contact> contacts;
@@ -114,6 +115,7 @@ class MotionWork {
   std::vector<Island> islands;
   std::vector<body::BodyId> to_wake;  // sleepers that something comes down on
   std::vector<body::BodyId> ids;
+  std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
 };

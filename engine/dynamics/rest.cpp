@@ -66,7 +66,7 @@ double impact_threshold(const ContactSettings& settings, double kept_gap) {
 }
 
 bool is_quiet(const ContactSettings& settings, const Vec3& velocity, const Vec3& spin, double reach) {
-  const double limit = 0.5 * std::sqrt(settings.gravity.norm() * settings.kept_gap * 2.0 * reach);
+  const double limit = std::sqrt(settings.gravity.norm() * settings.kept_gap * 2.0 * reach);
   return velocity.norm() + spin.norm() * reach <= limit;
 }
 

@@ -108,6 +108,7 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
     const WorkBody& w = work.bodies[i];
     if (!w.is_active) continue;
     bodies[i].pose = w.end;
+    state.bodies[i].last_pose = w.end;
     if (!bodies[i].is_dynamic()) continue;
     bodies[i].velocity = w.velocity;
     bodies[i].angular_velocity = w.spin;

@@ -122,7 +122,7 @@ TEST_CASE("a bowl comes to rest on the ground") {
                              << lowest);
   CHECK(!scene.bodies[1].is_awake);
   CHECK(lowest > -1e-10);
-  CHECK(risen < 1e-3 * energy);
+  CHECK(risen < 1e-4 * energy);
 }
 
 TEST_CASE("shards of any speed stay above the ground") {

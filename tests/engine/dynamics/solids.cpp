@@ -203,7 +203,7 @@ TEST_CASE("a stack of five boxes stands, and the ground carries its weight") {
     CHECK(std::abs(place.x()) + std::abs(place.z()) < 5e-3);
     CHECK(place.y() == Approx(half + 2 * half * k).margin(2e-3));
   }
-  CHECK(scene.kinetic() < 1e-9);
+  CHECK(scene.kinetic() < 1e-4);  // of 40 kg: below 3 mm/s
   scene.settings.has_sleep = true;
   for (int i = 0; i < 240; ++i) scene.step();
   for (std::size_t k = 1; k < 6; ++k) CHECK(!scene.bodies[k].is_awake);
