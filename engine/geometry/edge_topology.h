@@ -1,5 +1,5 @@
-// Edges of a triangle mesh and who shares them. Edges are numbered by their sorted vertex pairs, so the numbers depend
-// on the mesh alone.
+// Edges of a triangle mesh and who shares them. Edges are numbered by their sorted vertex pairs, so the
+// numbers depend on the mesh alone.
 #pragma once
 
 #include <array>
@@ -12,16 +12,18 @@ namespace shatterbox::geometry {
 struct EdgeTopology {
   std::vector<std::array<int, 2>> edges;           // |E| x 2, first vertex < second, in lexicographic order
   std::vector<std::array<int, 3>> triangle_edges;  // |T| x 3: edge i joins corner i and corner (i + 1) % 3
-  std::vector<int> first_triangle;                 // |E| + 1: begin of an edge's triangles in `edge_triangles`
-  std::vector<int> edge_triangles;                 // triangles of all edges, ascending within an edge
+  std::vector<int> first_triangle;  // |E| + 1: begin of an edge's triangles in `edge_triangles`
+  std::vector<int> edge_triangles;  // triangles of all edges, ascending within an edge
 
   int triangle_count(int edge) const {
-    return first_triangle[static_cast<std::size_t>(edge) + 1] - first_triangle[static_cast<std::size_t>(edge)];
+    return first_triangle[static_cast<std::size_t>(edge) + 1] -
+           first_triangle[static_cast<std::size_t>(edge)];
   }
   bool is_boundary(int edge) const { return triangle_count(edge) == 1; }
 };
 
-/// Edges of `triangles` (|T| x 3 vertex numbers). Any manifoldness; an edge may have one, two or more triangles.
+/// Edges of `triangles` (|T| x 3 vertex numbers). Any manifoldness; an edge may have one, two or more
+/// triangles.
 EdgeTopology build_edge_topology(const std::vector<Triangle>& triangles);
 
 }  // namespace shatterbox::geometry

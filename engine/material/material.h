@@ -10,20 +10,20 @@ namespace shatterbox::material {
 
 struct Material {
   std::string name = "glass";
-  double density = 2500.0;           // kg/m3
-  double young = 70e9;               // Young's modulus, Pa
-  double poisson = 0.22;             // Poisson's ratio, in [0, 0.5)
-  double strength = 50e6;            // tensile strength (mean flaw), Pa
-  double fracture_energy = 8.0;      // energy of new crack area, J/m2
-  double weibull_modulus = 5.0;      // scatter of the flaws' strengths, dimensionless: larger is more even
-  double flaw_area = 1e-2;           // area that holds one flaw below the strength on average, m2
-  double crack_spacing = 0.5;        // how far cracks keep apart, share of the shielded length; smaller is finer
-  double grain_size = 0.0;           // mean distance of grain seeds, m; 0: no grains
-  double grain_strength = 0.6;       // strength of grain boundaries, share of the material's
-  double friction = 0.5;             // Coulomb, dimensionless
-  double rolling_friction = 0.0;     // m
-  double restitution = 0.3;          // Newton, in [0, 1]
-  double thickness = 1e-3;           // of shells, m
+  double density = 2500.0;        // kg/m3
+  double young = 70e9;            // Young's modulus, Pa
+  double poisson = 0.22;          // Poisson's ratio, in [0, 0.5)
+  double strength = 50e6;         // tensile strength (mean flaw), Pa
+  double fracture_energy = 8.0;   // energy of new crack area, J/m2
+  double weibull_modulus = 5.0;   // scatter of the flaws' strengths, dimensionless: larger is more even
+  double flaw_area = 1e-2;        // area that holds one flaw below the strength on average, m2
+  double crack_spacing = 0.5;     // how far cracks keep apart, share of the shielded length; smaller is finer
+  double grain_size = 0.0;        // mean distance of grain seeds, m; 0: no grains
+  double grain_strength = 0.6;    // strength of grain boundaries, share of the material's
+  double friction = 0.5;          // Coulomb, dimensionless
+  double rolling_friction = 0.0;  // m
+  double restitution = 0.3;       // Newton, in [0, 1]
+  double thickness = 1e-3;        // of shells, m
 };
 
 /// One preset: the material and where its numbers come from.
@@ -38,7 +38,8 @@ const std::vector<Preset>& presets();
 /// The preset of that name, or nothing.
 std::optional<Material> find_preset(std::string_view name);
 
-/// A sentence that says what is wrong with a material (a value outside its range, with the range), or nothing.
+/// A sentence that says what is wrong with a material (a value outside its range, with the range), or
+/// nothing.
 std::optional<std::string> find_fault(const Material& material);
 
 }  // namespace shatterbox::material

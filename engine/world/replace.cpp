@@ -103,7 +103,7 @@ BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, doubl
   row.crack_generations = decision.generations;
   row.energy_guard_active = decision.energy_guard_active;
   row.generation_bound_active = decision.generation_bound_active;
-  row.place_material = decision.verdict.place;
+  row.place_material = impact.hardest.point_body + parent.shape->material_from_body;
   row.thickness = thickness;
   for (const fracture::CrackSegment& segment : decision.segments) row.cracks.push_back(segment.ends);
   return row;

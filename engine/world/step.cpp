@@ -116,6 +116,7 @@ void World::step() {
 
   dynamics::ContactReport contact;
   std::vector<body::Body> before;
+  BorneImpacts borne;
   s.log.clear();
   for (int pass = 0;; ++pass) {
     MovingState snapshot;
@@ -130,7 +131,7 @@ void World::step() {
     EvaluationFigures figures;
     const auto impacts = timer.time("stress", [&] {
       return evaluate_stress(s.moving.bodies, s.log, s.moving.fragiles, s.settings, s.contact_settings,
-                             time(), s.moving.memories, figures);
+                             time(), s.moving.memories, borne, figures);
     });
     s.report.solver.solves += figures.solves;
     s.report.solver.skipped += figures.skipped;

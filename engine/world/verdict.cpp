@@ -12,11 +12,17 @@ namespace {
 constexpr double kGatherRadius = 0.25;
 /// Resting contact is evaluated again when its force has grown by this factor since the body last held.
 constexpr double kContactGrowth = 1.1;
+/// A body that bore an impact in an earlier pass bears one of that many times its loads, as long as its ratio
+/// of stress to strength times the factor stays below this.
+constexpr double kBorneRatio = 0.95;
+/// Loads smaller than this share of the hardest one do not decide whether two impacts are alike.
+constexpr double kMinorLoad = 0.05;
 
 struct Candidate {
   const body::Body* body = nullptr;
   const Fragile* fragile = nullptr;
   Load hardest;
+  std::vector<Load> loads;
   double first_time = 0.0;  // s
   bool is_piece = false;    // born of a break
   fracture::ShellImpact impact;
@@ -148,6 +154,8 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
     return a.impulse_body.squaredNorm() < b.impulse_body.squaredNorm();
   });
+  candidate.loads = memory.event;
+  candidate.loads.insert(candidate.loads.end(), memory.contact.begin(), memory.contact.end());
   candidate.is_piece = memory.charged_event != 0;
   candidate.first_time = time;
   for (const Load& load : memory.event) candidate.first_time = std::min(candidate.first_time, load.time);
@@ -161,6 +169,31 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
   return true;
 }
 
+/// By how much the loads exceed those of the impact that was borne, place by place; 1e9 where one has no
+/// like.
+double load_growth(const std::vector<Load>& loads, const BorneImpact& borne, double radius) {
+  double hardest = 0.0;
+  for (const Load& load : loads) hardest = std::max(hardest, load.impulse_body.norm());
+  double growth = 0.0;
+  for (const Load& load : loads) {
+    const double impulse = load.impulse_body.norm();
+    if (impulse < kMinorLoad * hardest) continue;
+    double like = 0.0;
+    for (const Load& old : borne.loads)
+      if ((old.point_body - load.point_body).norm() < radius)
+        like = std::max(like, old.impulse_body.dot(load.impulse_body) / impulse);
+    growth = std::max(growth, like > 0.0 ? impulse / like : 1e9);
+  }
+  return growth;
+}
+
+bool is_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
+  const auto found = borne.find(candidate.body->id);
+  if (found == borne.end()) return false;
+  const double radius = kGatherRadius * candidate.body->shape->bounding_radius;
+  return load_growth(candidate.loads, found->second, radius) * found->second.ratio < kBorneRatio;
+}
+
 }  // namespace
 
 std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
@@ -168,7 +201,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
                                              const WorldSettings& settings,
                                              const dynamics::ContactSettings& contact, double time,
                                              std::map<body::BodyId, ImpactMemory>& memories,
-                                             EvaluationFigures& figures) {
+                                             BorneImpacts& borne, EvaluationFigures& figures) {
   const Judge judge{bodies, memories, settings, contact};
   std::vector<body::BodyId> touched;
   for (const body::LoggedImpulse& entry : log)
@@ -183,7 +216,10 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     candidate.body = body::find_body(bodies, id);
     if (!candidate.body) continue;
     candidate.fragile = fragiles.at(id).get();
-    if (gather_impact(judge, log, *candidate.body, time, memories[id], candidate, figures))
+    if (!gather_impact(judge, log, *candidate.body, time, memories[id], candidate, figures)) continue;
+    if (is_like_borne(candidate, borne))
+      ++figures.skipped;
+    else
       candidates.push_back(std::move(candidate));
   }
 
@@ -191,7 +227,8 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   core::parallel_for(candidates.size(), 1, [&](std::size_t i) {
     const Candidate& candidate = candidates[i];
     fracture::FractureSettings how;
-    how.most_generations = settings.most_generations;
+    how.most_generations =
+        candidate.is_piece ? std::min(2, settings.crack_generations) : settings.crack_generations;
     how.least_width = kLeastWidth * candidate.fragile->size;
     // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
     if (candidate.is_piece) how.core_spacing = 0.0;
@@ -200,7 +237,10 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     evaluated[i].first_time = candidate.first_time;
     evaluated[i].decision = fracture::decide_shell(candidate.fragile->subject, candidate.impact, how);
   });
-  for (const EvaluatedImpact& impact : evaluated) {
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
+    const EvaluatedImpact& impact = evaluated[i];
+    if (impact.decision.verdict.outcome == fracture::Outcome::held)
+      borne[impact.id] = {std::move(candidates[i].loads), impact.decision.verdict.ratio};
     ImpactMemory& memory = memories[impact.id];
     memory.event_duration = std::max(memory.event_duration, impact.decision.verdict.duration);
     figures.solves += impact.decision.generations;

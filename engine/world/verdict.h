@@ -25,14 +25,21 @@ struct EvaluationFigures {
   double worst_residual = 0.0;
 };
 
+/// An impact that a body has borne in an earlier pass of the same step.
+struct BorneImpact {
+  std::vector<Load> loads;  // collisions and contact
+  double ratio = 0.0;       // greatest stress over strength
+};
+using BorneImpacts = std::map<body::BodyId, BorneImpact>;
+
 /// Reads the log of the step that begins at `time` (s); writes event sums to `memories`; returns the impacts
-/// that were evaluated, ascending by body. Bodies are evaluated in parallel; the answer does not depend on
-/// it.
+/// that were evaluated, ascending by body. An impact like one that the body has `borne` in an earlier pass of
+/// the step is not solved again. Bodies are evaluated in parallel; the answer does not depend on it.
 std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
                                              const body::ImpulseLog& log, const Fragiles& fragiles,
                                              const WorldSettings& settings,
                                              const dynamics::ContactSettings& contact, double time,
                                              std::map<body::BodyId, ImpactMemory>& memories,
-                                             EvaluationFigures& figures);
+                                             BorneImpacts& borne, EvaluationFigures& figures);
 
 }  // namespace shatterbox::world
