@@ -47,7 +47,7 @@ void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWo
       continue;
     }
     const auto same_shape = [&](const BodyState& s) { return s.shape == b.shape; };
-    BodyState fresh{b.id, b.shape, nullptr, {}, b.pose};
+    BodyState fresh{b.id, b.shape, nullptr, {}, b.pose, b.pose};
     work.is_new.push_back(1);
     if (const auto twin = std::find_if(matched.begin(), matched.end(), same_shape); twin != matched.end()) {
       fresh.collider = twin->collider;

@@ -27,6 +27,11 @@ const PairState* ContactState::find_pair(body::BodyId a, body::BodyId b) const {
 }
 
 void add_to_hash(const ContactState& state, core::Hash& hash) {
+  for (const BodyState& body : state.bodies) {
+    hash.add(static_cast<std::uint64_t>(body.id))
+        .add(body.rest_pose.translation)
+        .add(body.rest_pose.rotation);
+  }
   for (const PairState& pair : state.pairs) {
     hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
     hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));

@@ -51,6 +51,7 @@ struct BodyState {
   std::shared_ptr<const body::Shape> shape;
   std::shared_ptr<const collision::Collider> collider;  // of `shape`; shared between copies of the body
   PrincipalInertia inertia;
+  Pose rest_pose;  // the body has stayed about here for its quiet time
   Pose last_pose;  // at the end of the last step: whoever moves a body by hand makes its lists void
 };
 

@@ -19,6 +19,21 @@ int find_number(const std::vector<Body>& bodies, BodyId id) {
   return place != bodies.end() && place->id == id ? static_cast<int>(place - bodies.begin()) : -1;
 }
 
+BodyState* find_memory(ContactState& state, BodyId id) {
+  const auto place = std::lower_bound(state.bodies.begin(), state.bodies.end(), id,
+                                      [](const BodyState& s, BodyId i) { return s.id < i; });
+  return place != state.bodies.end() && place->id == id ? &*place : nullptr;
+}
+
+// No point of the body is further from where it was at `rest` than two of its usual gaps.
+bool stays_near(const ContactSettings& settings, const Body& b, const Pose& rest) {
+  const double reach = b.shape->bounding_radius;
+  const double apart = std::min((b.pose.rotation.coeffs() - rest.rotation.coeffs()).norm(),
+                                (b.pose.rotation.coeffs() + rest.rotation.coeffs()).norm());
+  const double moved = (b.pose.translation - rest.translation).norm() + 2.0 * apart * reach;
+  return moved <= 2.0 * settings.kept_gap * 2.0 * reach;
+}
+
 // Islands of dynamic bodies that touch, asleep or not: the least number in each.
 std::vector<int> find_islands(const std::vector<Body>& bodies, const ContactState& state) {
   std::vector<int> parent(bodies.size());
@@ -67,7 +82,7 @@ double impact_threshold(const ContactSettings& settings, double kept_gap) {
 
 bool is_quiet(const ContactSettings& settings, const Vec3& velocity, const Vec3& spin, double reach) {
   const double limit = std::sqrt(settings.gravity.norm() * settings.kept_gap * 2.0 * reach);
-  return velocity.norm() + spin.norm() * reach <= limit;
+  return velocity.norm() + spin.norm() * reach <= 0.5 * limit;
 }
 
 void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
@@ -112,8 +127,12 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
   bool anyone_tired = false;
   for (Body& b : bodies) {
     if (!b.is_dynamic() || !b.is_awake) continue;
-    const bool quiet = is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
-    b.quiet_time = quiet ? b.quiet_time + settings.time_step : 0.0;
+    const bool is_still = is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
+    // Or it trembles in a nest, without getting anywhere.
+    BodyState* memory = find_memory(state, b.id);
+    const bool stays = memory != nullptr && stays_near(settings, b, memory->rest_pose);
+    if (!stays && memory != nullptr) memory->rest_pose = b.pose;
+    b.quiet_time = is_still || stays ? b.quiet_time + settings.time_step : 0.0;
     anyone_tired = anyone_tired || b.quiet_time >= settings.sleep_time;
   }
   if (!anyone_tired) return;
