@@ -1,0 +1,98 @@
+// Feature lists against brute force, and paths against sampling.
+#include "engine/collision/feature_gap.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "engine/core/random.h"
+
+namespace shatterbox::collision {
+namespace {
+
+Vec3 draw(core::Random& random) {
+  const double x = random.uniform(-1, 1);
+  const double y = random.uniform(-1, 1);
+  const double z = random.uniform(-1, 1);
+  return {x, y, z};
+}
+
+body::Shape sheet(core::Random& random, int n) {
+  body::Shape shape;
+  shape.kind = body::ShapeKind::shell;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      const double y = random.uniform(-0.1, 0.1);
+      shape.surface.positions.push_back(Vec3(2.0 * i / n - 1.0, y, 2.0 * j / n - 1.0));
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j, b = a + 1, c = a + n + 1, d = c + 1;
+      shape.surface.triangles.push_back({a, b, d});
+      shape.surface.triangles.push_back({a, d, c});
+    }
+  }
+  return shape;
+}
+
+}  // namespace
+
+TEST_CASE("a list holds every feature pair within the margin, each once") {
+  core::Random random(11);
+  for (int n = 0; n < 20; ++n) {
+    const auto a = make_collider(sheet(random, 5)), b = make_collider(sheet(random, 4));
+    PlacedCollider pa, pb;
+    pa.collider = a.get();
+    pb.collider = b.get();
+    pa.start = a->vertices;
+    const Vec3 shift = 0.3 * draw(random) + Vec3(0, 0.3, 0);
+    for (const Vec3& v : b->vertices) pb.start.push_back(v + shift);
+    refit_boxes(pa);
+    refit_boxes(pb);
+    const double margin = 0.1;
+    FeatureList list;
+    list_near_features(pa, pb, margin, list);
+    std::set<std::uint64_t> keys;
+    for (const auto& f : list) CHECK(keys.insert(f.key()).second);
+    const auto must_have = [&](FeatureKind kind, std::size_t count_a, std::size_t count_b) {
+      for (int i = 0; i < static_cast<int>(count_a); ++i) {
+        for (int j = 0; j < static_cast<int>(count_b); ++j) {
+          const FeaturePair pair{kind, i, j, 0.0};
+          const double gap = measure(gather(pair, *a, pa.start, *b, pb.start), Vec3::UnitY()).gap;
+          if (gap <= margin) CHECK(keys.count(pair.key()) == 1);
+        }
+      }
+    };
+    must_have(FeatureKind::vertex_triangle, a->vertices.size(), b->triangles.size());
+    must_have(FeatureKind::triangle_vertex, a->triangles.size(), b->vertices.size());
+    must_have(FeatureKind::edge_edge, a->edges.size(), b->edges.size());
+  }
+}
+
+TEST_CASE("a path that is called free keeps its least separation") {
+  core::Random random(5);
+  int hits = 0, free = 0;
+  for (int n = 0; n < 3000; ++n) {
+    FeaturePoints start, end;
+    start.is_edge_edge = end.is_edge_edge = n % 2 == 0;
+    for (std::size_t i = 0; i < 4; ++i) start.points[i] = draw(random);
+    for (std::size_t i = 0; i < 4; ++i) end.points[i] = start.points[i] + 0.7 * draw(random);
+    const double least = 1e-3;
+    if (measure(start, Vec3::UnitY()).gap < 2e-3) continue;
+    const PathResult path = follow_paths(start, end, least, Vec3::UnitY());
+    (path.has_hit ? hits : free) += 1;
+    const double last = path.has_hit ? path.time : 1.0;
+    for (int k = 0; k <= 200; ++k) {
+      FeaturePoints now = start;
+      const double t = last * k / 200.0;
+      for (std::size_t i = 0; i < 4; ++i) now.points[i] += t * (end.points[i] - start.points[i]);
+      CHECK(measure(now, Vec3::UnitY()).gap >= least * (1.0 - 1e-9));
+    }
+    if (path.has_hit) CHECK(path.gap.gap <= 1.1 * least);
+  }
+  CHECK(hits > 100);
+  CHECK(free > 100);
+}
+
+}  // namespace shatterbox::collision
