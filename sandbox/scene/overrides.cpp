@@ -47,7 +47,7 @@ const TomlValue* parse_value(const std::string& text, const Place& place, TomlVa
     return nullptr;
   }
   move_to(storage, place);
-  return &storage.entries.front().second;
+  return &storage.entries.front().value;
 }
 
 TomlValue* find_named(TomlValue& scene, const std::string& name, std::vector<std::string>& known) {
@@ -57,7 +57,7 @@ TomlValue* find_named(TomlValue& scene, const std::string& name, std::vector<std
     if (scene.find(table) == nullptr) {
       TomlValue empty;
       empty.place = empty.key_place = scene.place;
-      scene.entries.emplace_back(table, empty);
+      scene.entries.push_back({table, empty});
     }
     return scene.find(table);
   }
@@ -106,7 +106,7 @@ void apply_override(TomlValue& scene, const std::string& change, Problems& probl
     if (table->find(path[i]) == nullptr) {
       TomlValue empty;
       empty.place = empty.key_place = place;
-      table->entries.emplace_back(path[i], empty);
+      table->entries.push_back({path[i], empty});
     }
     table = table->find(path[i]);
   }
@@ -118,7 +118,7 @@ void apply_override(TomlValue& scene, const std::string& change, Problems& probl
   if (TomlValue* old = table->find(path.back())) {
     *old = *value;
   } else {
-    table->entries.emplace_back(path.back(), *value);
+    table->entries.push_back({path.back(), *value});
   }
 }
 

@@ -136,7 +136,7 @@ void append_script(TomlValue& tree, const std::string& script_file, Problems& pr
       continue;
     }
     if (TomlValue* events = tree.find("event"); events == nullptr) {
-      tree.entries.emplace_back(key, std::move(value));
+      tree.entries.push_back({key, std::move(value)});
     } else if (events->is_array()) {
       std::move(value.items.begin(), value.items.end(), std::back_inserter(events->items));
     }

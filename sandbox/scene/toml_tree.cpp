@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #define TOML_ENABLE_FORMATTERS 0
 #include <toml++/toml.h>
@@ -31,11 +32,11 @@ TomlValue convert(const toml::node& node, const std::string& file) {
       for (const auto& [key, entry] : *node.as_table()) {
         TomlValue child = convert(entry, file);
         child.key_place = place_of(key.source(), file);
-        value.entries.emplace_back(std::string(key.str()), std::move(child));
+        value.entries.push_back({std::string(key.str()), std::move(child)});
       }
       // toml++ sorts by key; people read in the order of the text.
       std::stable_sort(value.entries.begin(), value.entries.end(), [](const auto& a, const auto& b) {
-        return comes_before(a.second.key_place, b.second.key_place);
+        return comes_before(a.value.key_place, b.value.key_place);
       });
       break;
     case toml::node_type::array:
@@ -69,8 +70,8 @@ TomlValue convert(const toml::node& node, const std::string& file) {
 
 const TomlValue* TomlValue::find(std::string_view key) const {
   const auto found =
-      std::find_if(entries.begin(), entries.end(), [key](const auto& entry) { return entry.first == key; });
-  return found == entries.end() ? nullptr : &found->second;
+      std::find_if(entries.begin(), entries.end(), [key](const auto& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &found->value;
 }
 
 TomlValue* TomlValue::find(std::string_view key) {

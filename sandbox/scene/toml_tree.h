@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "sandbox/scene/problem.h"
@@ -14,6 +13,8 @@
 namespace shatterbox::sandbox::scene {
 
 enum class TomlKind : std::uint8_t { table, array, text, whole, real, truth, date };
+
+struct TomlEntry;
 
 struct TomlValue {
   TomlKind kind = TomlKind::table;
@@ -23,8 +24,8 @@ struct TomlValue {
   std::int64_t whole = 0;
   double real = 0.0;
   bool truth = false;
-  std::vector<TomlValue> items;                            // of an array
-  std::vector<std::pair<std::string, TomlValue>> entries;  // of a table, in the order of the text
+  std::vector<TomlValue> items;    // of an array
+  std::vector<TomlEntry> entries;  // of a table, in the order of the text
 
   bool is_table() const { return kind == TomlKind::table; }
   bool is_array() const { return kind == TomlKind::array; }
@@ -32,6 +33,11 @@ struct TomlValue {
   /// The entry of that key, or null.
   const TomlValue* find(std::string_view key) const;
   TomlValue* find(std::string_view key);
+};
+
+struct TomlEntry {
+  std::string key;
+  TomlValue value;
 };
 
 /// "a table", "a number", ...: for sentences.

@@ -209,7 +209,8 @@ render::Frame View::make_frame() {
   }
   std::erase_if(shapes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
   if (scene_.render.has_caption) {
-    frame.caption = fmt::format("{:.2f} s   {} {}", world.time(), pieces > 0 ? pieces : world.bodies().size(),
+    frame.caption = fmt::format("{:.2f} s   {} {}", world.time(),
+                                pieces > 0 ? pieces : static_cast<int>(world.bodies().size()),
                                 pieces > 0 ? "pieces" : "bodies");
   }
   return frame;

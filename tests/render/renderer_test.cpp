@@ -243,7 +243,7 @@ TEST_CASE("each pass is timed when asked and only then") {
   CHECK(renderer.pass_times().passes.size() >= 6);
 }
 
-TEST_CASE("odd sizes, empty frames and bodies around the eye are drawn; nonsense is refused") {
+TEST_CASE("odd sizes, empty frames and bodies around the eye are drawn, nonsense is refused") {
   Frame frame = busy_frame();
   frame.camera.position = {0.1F, 0.4F, 0.0F};  // inside a body
   for (const Quality quality : {Quality::preview, Quality::full}) {

@@ -45,7 +45,7 @@ TEST_CASE("every scene that comes along passes its check and says what must be s
   }
 }
 
-TEST_CASE("ornament: shatters into at least 20 pieces; a low drop is held, with the verdict in the report") {
+TEST_CASE("ornament: shatters into at least 20 pieces, a low drop is held, with the verdict in the report") {
   const Folder folder;
   const auto broken = play(folder, "ornament --seconds 1");
   CHECK(broken["pieces"].get<int>() >= 20);
@@ -57,7 +57,7 @@ TEST_CASE("ornament: shatters into at least 20 pieces; a low drop is held, with 
   CHECK((held["impacts"].empty() || held["impacts"][0]["verdict"].get<std::string>().rfind("held", 0) == 0));
 }
 
-TEST_CASE("window: breaks where the ball hits, and the ball goes on; a slow ball is held") {
+TEST_CASE("window: breaks where the ball hits, and the ball goes on, a slow ball is held") {
   const Folder folder;
   const auto broken = play(folder, "window --seconds 0.6 --meshes m --fps 20");
   CHECK(broken["pieces"].get<int>() >= 20);
@@ -70,7 +70,7 @@ TEST_CASE("window: breaks where the ball hits, and the ball goes on; a slow ball
   CHECK(worst_ratio(held) < 1.0);
 }
 
-TEST_CASE("bowl: breaks into a few large pieces; a low drop is held") {
+TEST_CASE("bowl: breaks into a few large pieces, a low drop is held") {
   const Folder folder;
   const auto broken = play(folder, "bowl --seconds 1");
   CHECK(broken["pieces"].get<int>() >= 3);

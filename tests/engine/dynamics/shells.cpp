@@ -76,7 +76,7 @@ TEST_CASE("pieces that fly on from one body neither explode nor stick") {
   CHECK((scene.spin() - spin).norm() < 1e-8 * spin.norm());
 }
 
-TEST_CASE("pieces fall, rest and sleep; nothing goes below the ground") {
+TEST_CASE("pieces fall, rest and sleep, nothing goes below the ground") {
   auto scene = pieces_scene(0.5, Vec3(0.3, -1, 0), Vec3(1, 0.5, 2));
   double energy = scene.energy(), risen = 0.0, lowest = 1.0;
   int asleep_at = -1, cut = 0, hits = 0;

@@ -353,7 +353,7 @@ TEST_CASE("the screened solve tends to the balanced one as the window grows, and
   REQUIRE(outside < 0.15 * inside);
 }
 
-TEST_CASE("a plate cut in two is two bodies; half a cut leaves one") {
+TEST_CASE("a plate cut in two is two bodies, half a cut leaves one") {
   const Elements elements = grid(9, 6, 1.0, 0.7, 0.3);
   const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
   const geometry::ShellMesh whole = geometry::make_shell_mesh(elements);

@@ -36,7 +36,7 @@ body::LoggedImpulse push(body::BodyId a, body::BodyId b, const Vec3& point, cons
 
 }  // namespace
 
-TEST_CASE("impulses are gathered by other body, place and direction; their sum is kept") {
+TEST_CASE("impulses are gathered by other body, place and direction, their sum is kept") {
   const body::Body struck = make_sphere(1, 1.0, 2.0);
   const body::ImpulseLog log{push(1, 2, Vec3(0, -1, 0), Vec3(0, 3, 0)),
                              push(1, 2, Vec3(0.1, -1, 0), Vec3(0, 1, 0)),

@@ -84,7 +84,7 @@ TEST_CASE("the same scene gives the same bits with one thread and two") {
   CHECK(hashes[0] != hashes[2]);  // the seed moves the jitter
 }
 
-TEST_CASE("a video and pictures of the size asked for; two runs are equal to the bit") {
+TEST_CASE("a video and pictures of the size asked for, two runs are equal to the bit") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
   const std::string run = "run good.toml --seconds 0.2 --fps 30 --size 64x48 -o v.mp4 --frames f --report ";

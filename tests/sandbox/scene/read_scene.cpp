@@ -141,7 +141,7 @@ TEST_CASE("bodies without a name are called by their number") {
   CHECK(std::get<SphereForm>(reading.scene->bodies[0].form).radius == 0.25);
 }
 
-TEST_CASE("a script's events play on any scene; its faults bear its name") {
+TEST_CASE("a script's events play on any scene, its faults bear its name") {
   const std::string file = "test_script.toml";
   std::ofstream(file)
       << "[[event]]\nat = 0.25\ndo = \"projectile\"\nfrom = [0, 1, 2]\nat_body = \"ball\"\nspeed = 5\n";
