@@ -53,7 +53,7 @@ TEST_CASE("check and list say what there is") {
   }
 }
 
-TEST_CASE("--no-render simulates and reports, with no picture and no bar") {
+TEST_CASE("the option --no-render simulates and reports, with no picture and no bar") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
   const Outcome outcome = program(folder, "run good.toml --no-render --report r.json --meshes m --fps 10");

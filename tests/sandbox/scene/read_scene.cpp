@@ -99,7 +99,7 @@ TEST_CASE("an event after the end is a warning") {
   CHECK(reading.scene->warnings[0].find("\"late\"") != std::string::npos);
 }
 
-TEST_CASE("--set changes named bodies, materials, events and tables") {
+TEST_CASE("the option --set changes named bodies, materials, events and tables") {
   const Reading reading =
       read(kScene, {"ball.radius=0.1", "thin glass.strength=1e7", "late.at=1", "scene.gravity=[0,0,0]",
                     "camera.fov = 50", "ball.repeat.count=3", "ball.material=\"glass\""});
@@ -114,7 +114,7 @@ TEST_CASE("--set changes named bodies, materials, events and tables") {
   CHECK(scene.camera.fov == 50.0);
 }
 
-TEST_CASE("--set is checked with the scene's own words, and named as the place") {
+TEST_CASE("the option --set is checked with the scene's own words, and named as the place") {
   const auto refused = [](const char* change, const char* part) {
     const Reading reading = read(kScene, {change});
     INFO(change << "\n" << reading.text);
