@@ -28,7 +28,6 @@ struct RunRecord {
   std::uint64_t seed = 1;
   int threads = 1;
   int steps_per_second = 240, frames_per_second = 60;
-  double gravity = 9.81;  // m/s2, for potential energy's share
   double simulated_seconds = 0.0, wall_seconds = 0.0, asked_seconds = 0.0;
   bool is_interrupted = false;
   std::uint64_t state_hash = 0;
