@@ -11,6 +11,7 @@
 #include "render/context/context.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/framebuffer.h"
+#include "render/pass/floor.h"
 #include "render/pass/frame_block.h"
 #include "render/pass/glass.h"
 #include "render/pass/light.h"
@@ -86,6 +87,7 @@ struct Renderer::Rooms {
   gpu::Buffer block;
   pass::MeshStore meshes;
   pass::Tiles tiles;
+  pass::FloorPass floor;
   pass::ShadowPass shadow;
   pass::SurfacePass surface;
   pass::OcclusionPass occlusion;
@@ -100,6 +102,7 @@ struct Renderer::Rooms {
         level(level_of(quality_)),
         drawn(size.width, size.height, 1, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT32F),
         tiles(size.width, size.height),
+        floor(size.width, size.height),
         shadow(level.shadow_map),
         surface(size.width * level.samples_across, size.height * level.samples_across),
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
@@ -120,6 +123,8 @@ struct Renderer::Rooms {
     has_shadow = values.sun_radiance.w > 0.0F;
     block.assign(std::span<const pass::FrameBlock>(&values, 1));
     block.bind_uniform(0);
+    meshes.bind_vertices();  // core GL draws nothing without an array, even where none is read
+    floor.run(values, drawn);
   }
 
   void draw(PassClock& clock) {
@@ -133,6 +138,7 @@ struct Renderer::Rooms {
     drawn.bind();
     shadow.bind();
     occlusion.bind();
+    floor.bind();
     meshes.bind_paints();
     light.run(surface.opaque(), tiles);
     clock.mark("light");

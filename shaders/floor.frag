@@ -1,8 +1,21 @@
-// Floor and backdrop. NO_SHADOW, NO_OCCLUSION: for tiles that they cannot reach.
+// The floor where a body darkens it: what floor_base.frag kept, under shadow and occlusion. NO_SHADOW: for tiles that no
+// shadow reaches.
 #include "common/floor.glsl"
 #include "common/paint.glsl"
+#include "common/shadow.glsl"
+#include "common/occlusion.glsl"
+layout(binding = 8) uniform sampler2D floor_map;  // floor_base.frag's parts
 layout(location = 0) out vec4 colour;
 void main() {
   vec2 pixel = gl_FragCoord.xy;
-  colour = vec4(tone_map(floor_light(pixel, ray_at(pixel))), 1.0);
+  vec3 ray = ray_at(pixel);
+  float z = floor_depth(ray);
+  vec4 parts = texelFetch(floor_map, ivec2(pixel), 0);
+  float sky = sky_seen(pixel, z);
+#ifdef NO_SHADOW
+  float seen = 1.0;
+#else
+  float seen = sun_seen(eye_exposure.xyz + ray * min(z, 1e6), vec3(0.0, 1.0, 0.0));
+#endif
+  colour = vec4(tone_map(parts.rgb + parts.a * (floor_sun.rgb * seen + floor_sky.rgb * sky)), 1.0);
 }

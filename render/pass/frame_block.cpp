@@ -29,6 +29,18 @@ void place_soft_boxes(glm::vec3 sun, FrameBlock& block) {
   }
 }
 
+// What a plane that faces up sends back: light.glsl's ambient() of a normal straight up, and the sun.
+void light_floor(FrameBlock& block) {
+  const glm::vec3 colour(block.ground_colour);
+  float boxes = 0.0F;
+  for (int i = 0; i < 2; ++i) {
+    boxes += (i == 0 ? 0.035F : 0.05F) * (0.5F * block.box_axis[i].y + 0.5F) * block.box_axis[i].w;
+  }
+  const glm::vec3 around = glm::vec3(block.sky_radiance) + block.sky_radiance.w * boxes;
+  block.floor_sun = glm::vec4(colour * glm::vec3(block.sun_radiance) * std::max(block.sun.y, 0.0F), 0.0F);
+  block.floor_sky = glm::vec4(colour * around, 0.0F);
+}
+
 }  // namespace
 
 FrameBlock make_frame_block(const Frame& frame, int width, int height) {
@@ -71,6 +83,7 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   block.backdrop_bottom = glm::vec4(frame.backdrop.bottom, frame.backdrop.vignette);
   if (frame.ground) {
     block.ground_colour = glm::vec4(frame.ground->colour, frame.ground->checker);
+    light_floor(block);
     block.ground_place = glm::vec4(frame.ground->height, fade_from, fade_to, 1.0F);
   }
   block.viewport = glm::vec4(w, h, 1.0F / w, 1.0F / h);

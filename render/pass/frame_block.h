@@ -14,6 +14,7 @@ struct FrameBlock {
   glm::vec4 sun, sun_radiance, sky_radiance, ground_radiance;
   glm::vec4 box_axis[2], box_right[2], box_up[2];
   glm::vec4 backdrop_top, backdrop_bottom;
+  glm::vec4 floor_sun, floor_sky;
   glm::vec4 ground_colour, ground_place;
   glm::vec4 viewport, glow_centre;
   glm::vec4 occlusion_scale, view_ray;

@@ -26,9 +26,9 @@ LightPass::LightPass(int shadow_taps, int samples_across, int occlusion_scale, b
       bodies_("tile.vert", "light.frag",
               defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
       floor_("tile.vert", "floor.frag", defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
-      dimmed_("tile.vert", "floor.frag",
-              {"SHADOW_TAPS 1", "OCCLUSION_SCALE " + std::to_string(occlusion_scale), "NO_SHADOW"}),
-      plain_("tile.vert", "floor.frag", {"SHADOW_TAPS 1", "OCCLUSION_SCALE 1", "NO_SHADOW", "NO_OCCLUSION"}) {
+      dimmed_(
+          "tile.vert", "floor.frag",
+          {"SHADOW_TAPS 1", "OCCLUSION_SCALE " + std::to_string(occlusion_scale), "NO_SHADOW", "IF_DIMMED"}) {
 }
 
 void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
@@ -60,8 +60,6 @@ void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
   tiles.draw_shaded_floor();
   dimmed_.use();
   tiles.draw_dimmed_floor();
-  plain_.use();
-  tiles.draw_plain_floor();
 }
 
 }  // namespace shatterbox::render::pass

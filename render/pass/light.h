@@ -1,6 +1,6 @@
-// Light on what the geometry pass saw, pixel by pixel: bodies, floor and backdrop (shaders/cover.frag,
-// light.frag, floor.frag). Lit after the fact because small triangles would run the costly shader for whole
-// blocks of pixels, many times over.
+// Light on what the geometry pass saw, pixel by pixel: bodies, and the floor where they darken it
+// (shaders/cover.frag, light.frag, floor.frag). Lit after the fact because small triangles would run the
+// costly shader for whole blocks of pixels, many times over.
 #pragma once
 #include "render/gpu/program.h"
 #include "render/pass/surface.h"
@@ -11,11 +11,11 @@ namespace shatterbox::render::pass {
 class LightPass {
  public:
   LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
-  // Into the framebuffer that is bound; its depth is used for the cover.
+  // Into the framebuffer that is bound, which shows the empty floor; its depth is used for the cover.
   void run(const Layer& opaque, const Tiles& tiles) const;
 
  private:
-  gpu::Program cover_, bodies_, floor_, dimmed_, plain_;
+  gpu::Program cover_, bodies_, floor_, dimmed_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -11,12 +11,12 @@ class OcclusionPass {
  public:
   OcclusionPass(int width, int height, int taps, int samples_across, int scale);  // of the whole picture
   void run(const gpu::Texture& opaque_depth) const;
-  void bind() const;  // texture unit 3
+  void bind() const;  // texture units 3 and 9
 
  private:
-  gpu::Texture depth_, raw_, blurred_;
-  gpu::Framebuffer depth_target_, raw_target_, blurred_target_;
-  gpu::Program gather_, sample_, blur_;
+  gpu::Texture depth_, raw_, blurred_, tiles_;
+  gpu::Framebuffer depth_target_, raw_target_, blurred_target_, tiles_target_;
+  gpu::Program gather_, sample_, blur_, reduce_;
 };
 
 }  // namespace shatterbox::render::pass

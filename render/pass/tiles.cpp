@@ -59,7 +59,7 @@ void Tiles::mark(const Corners& corners, const FrameBlock& block, float margin_p
   }
 }
 
-Tiles::Range Tiles::append_runs(const Marks& marks, char wanted) {
+Tiles::Range Tiles::append_runs(const Marks& marks, char wanted, int longest) {
   Range range{static_cast<int>(rectangles_.size()), 0};
   for (int y = 0; y < down_; ++y) {
     for (int x = 0; x < across_;) {
@@ -68,7 +68,8 @@ Tiles::Range Tiles::append_runs(const Marks& marks, char wanted) {
         continue;
       }
       const int first = x;
-      while (x < across_ && marks[static_cast<std::size_t>(y * across_ + x)] == wanted) ++x;
+      while (x < across_ && x - first < longest && marks[static_cast<std::size_t>(y * across_ + x)] == wanted)
+        ++x;
       rectangles_.emplace_back(first * kSide, y * kSide, std::min(x * kSide, width_),
                                std::min((y + 1) * kSide, height_));
       ++range.count;
@@ -102,11 +103,10 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
     }
   }
   rectangles_.clear();
-  bodies_ = append_runs(marks_, kBody);
-  shaded_ = append_runs(marks_, kShaded);
-  dimmed_ = append_runs(marks_, kDimmed);
-  plain_ = append_runs(marks_, kPlain);
-  glass_ = append_runs(glass_marks_, kBody);
+  bodies_ = append_runs(marks_, kBody, across_);
+  shaded_ = append_runs(marks_, kShaded, across_);
+  dimmed_ = append_runs(marks_, kDimmed, 1);
+  glass_ = append_runs(glass_marks_, kBody, across_);
   buffer_.assign(std::span<const glm::uvec4>(rectangles_));
   buffer_.bind_storage(2);
 }

@@ -13,6 +13,8 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 box_up[2];           // unit, along; w: half height
   vec4 backdrop_top;        // w: glow
   vec4 backdrop_bottom;     // w: vignette
+  vec4 floor_sun;           // light that the sun alone makes the floor send to the eye; w unused
+  vec4 floor_sky;           // the same of everything else
   vec4 ground_colour;       // w: metres a checker square, 0 if plain
   vec4 ground_place;        // x: height, y: fade from, z: fade to (m from the target), w: 1 if there is a ground
   vec4 viewport;            // width, height, 1/width, 1/height (pixels)
