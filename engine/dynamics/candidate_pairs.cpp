@@ -93,23 +93,28 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   return w;
 }
 
-collision::SweptBound swept_bound(const WorkBody& w, const ContactSettings& settings) {
-  collision::SweptBound bound;
-  if (w.shape->kind == ShapeKind::plane) return bound;  // planes meet everybody, in their own loop
+geometry::Box box_at(const WorkBody& w, const Pose& pose) {
   const auto& box = w.collider->box;
-  const Mat3 r = w.start.rotation.toRotationMatrix();
-  const Vec3 centre = w.start.translation + r * (0.5 * (box.low + box.high));
+  const Mat3 r = pose.rotation.toRotationMatrix();
+  const Vec3 centre = pose.translation + r * (0.5 * (box.low + box.high));
   const Vec3 half = r.cwiseAbs() * (0.5 * (box.high - box.low));
-  bound.box = {centre - half, centre + half};
+  return {centre - half, centre + half};
+}
+
+// How far a body may end from where it was predicted to and still meet nobody but its pairs, m.
+double broad_reserve(const WorkBody& w, const ContactSettings& settings) {
+  const double dt = settings.time_step;
+  return 1.1 * (turn_bound(w, w.predicted) + settings.gravity.norm() * dt * dt) + kBroadSlack * 2.0 * w.reach;
+}
+
+// Over the whole way from start to `end`, `grow` wider; nobody for planes, which have their own loop.
+collision::SweptBound swept_bound(const WorkBody& w, const Pose& end, double grow) {
+  collision::SweptBound bound;
+  if (w.shape->kind == ShapeKind::plane) return bound;
+  bound.box = box_at(w, w.start);
   bound.is_moving = w.is_active;
   if (!w.is_active) return bound;
-  const Vec3 way = 1.1 * (w.predicted.translation - w.start.translation);
-  const Vec3 low = bound.box.low + way, high = bound.box.high + way;
-  bound.box.low = bound.box.low.cwiseMin(low);
-  bound.box.high = bound.box.high.cwiseMax(high);
-  const double dt = settings.time_step;
-  const double grow =
-      1.1 * (turn_bound(w, w.predicted) + settings.gravity.norm() * dt * dt) + kBroadSlack * 2.0 * w.reach;
+  bound.box.include(box_at(w, end));
   bound.box.low.array() -= grow;
   bound.box.high.array() += grow;
   return bound;
@@ -121,11 +126,8 @@ bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& 
   return a.group < 0 || a.group != b.group;
 }
 
-std::vector<collision::IndexPair> find_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
-                                             const MotionWork& work) {
-  std::vector<collision::SweptBound> bounds;
-  bounds.reserve(bodies.size());
-  for (const WorkBody& w : work.bodies) bounds.push_back(swept_bound(w, settings));
+std::vector<collision::IndexPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work,
+                                             const std::vector<collision::SweptBound>& bounds) {
   auto pairs = collision::find_overlapping_pairs(bounds);
   for (std::size_t p = 0; p < bodies.size(); ++p) {
     if (work.bodies[p].shape->kind != ShapeKind::plane) continue;
@@ -195,9 +197,9 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       bodies[at(pair.a)].is_dynamic() && (!bodies[at(pair.b)].is_dynamic() || a.reach <= b.reach);
   pair.material = pair_material(bodies[at(pair.a)], bodies[at(pair.b)], settings);
   pair.size = 2.0 * (a_is_measure ? a.reach : b.reach);
+  const double predicted = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
-  pair.motion = motion_bound(a, a.predicted, b, b.predicted) +
-                settings.gravity.norm() * settings.time_step * settings.time_step;
+  pair.motion = predicted + settings.gravity.norm() * settings.time_step * settings.time_step;
   const double usual_gap = settings.kept_gap * pair.size;
   pair.is_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
   pair.is_flipped = a.shape->kind == ShapeKind::plane;
@@ -207,7 +209,7 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));
   if (pair.is_plane || pair.is_analytic) return;
   const double slack = settings.search_slack * pair.size;
-  pair.is_fast = pair.motion > slack;
+  pair.is_fast = predicted > slack;
   const double list_needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
   pair.needs_list =
       !pair.is_fast && (!settings.has_caches || !memory.features || memory.list_margin < list_needed);
@@ -499,7 +501,11 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     anything_moves = anything_moves || work.bodies.back().is_active;
   }
   if (!anything_moves) return;
-  match_pairs(bodies, find_pairs(bodies, settings, work), work, state);
+  std::vector<collision::SweptBound> bounds;
+  bounds.reserve(bodies.size());
+  for (const WorkBody& w : work.bodies)
+    bounds.push_back(swept_bound(w, w.predicted, broad_reserve(w, settings)));
+  match_pairs(bodies, find_pairs(bodies, work, bounds), work, state);
 
   struct Needs {
     bool place = false, boxes = false, swept = false;
@@ -530,6 +536,52 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   find_sleepers_to_wake(bodies, settings, work);
   add_solver_contacts(state, work);
   build_islands(work);
+}
+
+void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
+                       MotionWork& work) {
+  std::vector<char> has_strayed(bodies.size(), 0);
+  bool anyone = false;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const WorkBody& w = work.bodies[i];
+    if (!w.is_active || w.is_free) continue;
+    const double strayed = (w.end.translation - w.predicted.translation).norm() + turn_bound(w, w.end);
+    has_strayed[i] = strayed > 0.5 * broad_reserve(w, settings) ? 1 : 0;
+    anyone = anyone || has_strayed[i];
+  }
+  if (!anyone) return;
+  std::vector<collision::SweptBound> bounds;
+  bounds.reserve(bodies.size());
+  for (const WorkBody& w : work.bodies) {
+    bounds.push_back(swept_bound(w, w.end, turn_bound(w, w.end) + 2.0 * settings.kept_gap * w.reach));
+  }
+  std::vector<collision::IndexPair> missed = find_pairs(bodies, work, bounds);
+  const auto comes_before = [](const auto& x, const auto& y) {
+    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+  };
+  std::erase_if(missed, [&](const collision::IndexPair& pair) {
+    return !(has_strayed[at(pair.a)] || has_strayed[at(pair.b)]) ||
+           std::binary_search(work.pairs.begin(), work.pairs.end(), pair, comes_before);
+  });
+  for (const auto& found : missed) {
+    WorkPair pair;
+    pair.a = found.a;
+    pair.b = found.b;
+    PairState memory;
+    memory.body_a = bodies[at(pair.a)].id;
+    memory.body_b = bodies[at(pair.b)].id;
+    classify(bodies, settings, memory, work, pair);
+    memory.kept_gap = pair.kept_gap = settings.kept_gap * pair.size;
+    pair.threshold = impact_threshold(settings, pair.kept_gap);
+    const auto place =
+        std::lower_bound(state.pairs.begin(), state.pairs.end(), memory, [](const auto& x, const auto& y) {
+          return std::pair(x.body_a, x.body_b) < std::pair(y.body_a, y.body_b);
+        });
+    pair.state = static_cast<int>(place - state.pairs.begin());
+    for (WorkPair& other : work.pairs) other.state += other.state >= pair.state ? 1 : 0;
+    state.pairs.insert(place, std::move(memory));
+    work.pairs.push_back(std::move(pair));
+  }
 }
 
 }  // namespace shatterbox::dynamics

@@ -134,6 +134,7 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
     find_candidate_pairs(bodies, settings, state, work);
   }
   solve_motion(bodies, settings, work);
+  find_missed_pairs(bodies, settings, state, work);
   guard_motion(settings, state, work, report);
   finish_motion(bodies, state, work, log, report);
   return report;

@@ -51,6 +51,11 @@ void find_candidate_pairs(const std::vector<body::Body>& bodies, const ContactSe
 /// end poses in `work`; `bodies` are not changed yet.
 void solve_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, MotionWork& work);
 
+/// Stage: pairs that only the impulses of this step brought together: bodies that end far from where they
+/// were predicted to. Appends to the pairs of `work`.
+void find_missed_pairs(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                       ContactState& state, MotionWork& work);
+
 /// Stage: no vertex path may cross another surface; hits are opened again in position and tested again, at
 /// last by cutting steps short.
 void guard_motion(const ContactSettings& settings, ContactState& state, MotionWork& work,

@@ -169,6 +169,26 @@ TEST_CASE("a fast ball does not pass a plate") {
   }
 }
 
+TEST_CASE("a shard that a fast ball strikes does not leave through the ground in the same step") {
+  for (const double height : {0.05, 0.3}) {
+    test::Scene scene;
+    scene.add(test::make_plane());
+    scene.add(test::make_box(Vec3(0.5, 0.01, 0.5), Vec3(0, 0.02, 0), false));
+    auto shard = test::make_shell(test::square_mesh(0.03, 3));
+    shard.pose.translation = Vec3(0, height, 0);
+    scene.add(shard);
+    auto& ball = scene.add(test::make_sphere(0.02, Vec3(0.004, height + 0.5, 0.003), 7800.0));
+    ball.velocity = Vec3(0, -300, 0);
+    double lowest = 1.0;
+    for (int i = 0; i < 60; ++i) {
+      scene.step();
+      lowest = std::min(lowest, scene.lowest());
+    }
+    INFO("height " << height);
+    CHECK(lowest > 0.0);
+  }
+}
+
 TEST_CASE("the same bits with and without caches, and on any number of threads") {
   const auto run = [](bool has_caches, int threads) {
     core::set_thread_count(threads);
