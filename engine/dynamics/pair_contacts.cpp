@@ -1,0 +1,210 @@
+#include "engine/dynamics/pair_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/collision/analytic_contact.h"
+#include "engine/collision/feature_gap.h"
+#include "engine/dynamics/rest.h"
+#include "engine/dynamics/solid_touch.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using body::ShapeKind;
+using collision::Contact;
+
+constexpr double kLocalSlack = 0.1;       // sine: neighbouring features may lead closer by this
+constexpr double kManifoldRadius = 0.04;  // share of the pair's size
+constexpr double kAlwaysNear = 3.0;       // of the usual gap
+constexpr double kRaiseTime = 0.5;        // s
+constexpr double kImpactWindow = 0.1;     // share of the step after the first hit in which others count
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+Vec3 hint(const WorkBody& a, const WorkBody& b) {
+  return a.start.translation - b.start.translation;
+}
+
+Contact make_contact(const collision::FeaturePair& features, const collision::FeatureGap& gap) {
+  Contact c;
+  c.key = features.key();
+  c.on_a = gap.on_a;
+  c.on_b = gap.on_b;
+  c.normal = gap.normal;
+  c.gap = gap.gap;
+  c.lean = collision::lean(features);
+  return c;
+}
+
+struct Hit {
+  double time;
+  Contact contact;
+};
+
+void keep_first_hits(std::vector<Hit>& hits, double size, std::vector<Contact>& out) {
+  std::sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) {
+    return x.time < y.time || (x.time == y.time && x.contact.key < y.contact.key);
+  });
+  std::vector<Contact> kept;
+  for (const Hit& hit : hits) {
+    if (hit.time > hits.front().time + kImpactWindow) break;
+    kept.push_back(hit.contact);
+  }
+  for (const Contact& c : out) std::erase_if(kept, [&](const Contact& k) { return k.key == c.key; });
+  collision::reduce_manifold(kept, {}, kManifoldRadius * size, 8);
+  out.insert(out.end(), kept.begin(), kept.end());
+}
+
+double least_on_path(double gap, double kept_gap) {
+  return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
+}
+
+// Nearest first, so that later steps need only look at the list's head.
+void sort_by_gap(const WorkBody& a, const WorkBody& b, collision::FeatureList& list) {
+  for (auto& features : list) {
+    const auto points = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    features.bound = collision::measure(points, hint(a, b)).gap * (1.0 - 1e-12);
+  }
+  std::sort(list.begin(), list.end(), [](const auto& x, const auto& y) {
+    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
+  });
+}
+
+void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
+                   WorkPair& pair) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  collision::FeatureList fresh;
+  if (pair.is_fast) {
+    collision::list_swept_features(a.placed, b.placed, b.end_way - a.end_way, pair.margin, fresh);
+    pair.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
+    pair.list_margin = pair.margin;
+    memory.features.reset();
+  } else {
+    if (pair.needs_list) {
+      memory.list_margin = memory.list_reach = pair.margin + settings.search_slack * pair.size;
+      collision::list_near_features(a.placed, b.placed, memory.list_margin, fresh);
+      sort_by_gap(a, b, fresh);
+      memory.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
+    }
+    pair.features = memory.features;
+    pair.list_margin = memory.list_margin;
+    pair.list_moved = memory.list_reach - memory.list_margin;
+  }
+  const double usual_gap = settings.kept_gap * pair.size;
+  std::vector<Vec3> end_a, end_b;
+  if (pair.is_fast && !pair.features->empty()) {
+    place_at(a, a.predicted, end_a);
+    place_at(b, b.predicted, end_b);
+  }
+  std::vector<Hit> hits;
+  pair.is_free_certified = true;
+  const double reach = std::max(pair.margin, pair.motion + usual_gap) + pair.list_moved;
+  for (const auto& features : *pair.features) {
+    if (!pair.is_fast && features.bound > reach) break;
+    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    const auto gap = collision::measure(start, hint(a, b));
+    pair.gaps.push_back(gap.gap);
+    if (gap.gap <= pair.margin) {
+      // So close that the direction cannot mislead, every feature counts.
+      if (gap.gap <= kAlwaysNear * usual_gap ||
+          collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
+                                      kLocalSlack)) {
+        pair.contacts.push_back(make_contact(features, gap));
+        pair.is_free_certified = false;
+        continue;
+      }
+    }
+    if (!pair.is_fast) {
+      if (gap.gap <= pair.motion + usual_gap) pair.is_free_certified = false;
+      continue;
+    }
+    const auto end = collision::gather(features, *a.collider, end_a, *b.collider, end_b);
+    const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap), hint(a, b));
+    if (path.has_hit) hits.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
+  }
+  if (!hits.empty()) {
+    pair.is_free_certified = false;
+    keep_first_hits(hits, pair.size, pair.contacts);
+  }
+}
+
+// Spheres and boxes: contacts at the start, and the first touch on the way if the pair moves further than
+// they look.
+void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPair& pair) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  const double usual_gap = settings.kept_gap * pair.size;
+  Vec3 normal;
+  const double gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
+  if (gap <= pair.margin) {
+    // Once the direction is fixed, all of a face's corners that the motion may bring down belong to the
+    // contact.
+    collision::find_analytic_contacts(*a.shape, a.start, *b.shape, b.start, pair.margin + pair.motion,
+                                      pair.contacts);
+    return;
+  }
+  if (gap > pair.motion + usual_gap) return;
+  const SolidTouch touch = find_first_touch(a, a.predicted, b, b.predicted, usual_gap, pair.margin);
+  pair.contacts = touch.contacts;
+}
+
+void meet_plane(const MotionWork& work, WorkPair& pair) {
+  const WorkBody& plane = work.bodies[at(pair.is_flipped ? pair.a : pair.b)];
+  const WorkBody& other = work.bodies[at(pair.is_flipped ? pair.b : pair.a)];
+  collision::find_plane_contacts(*other.collider, other.placed.start, plane.start, pair.margin,
+                                 pair.contacts);
+  if (!pair.is_flipped) return;
+  for (Contact& c : pair.contacts) {
+    std::swap(c.on_a, c.on_b);
+    c.normal = -c.normal;
+    c.lean = 0.0;
+  }
+}
+
+// The gap that is kept is the usual one unless the pair was found closer: it never pushes newborn pieces
+// apart.
+void adapt_gap(const ContactSettings& settings, PairState& memory, WorkPair& pair) {
+  const double usual = settings.kept_gap * pair.size;
+  double least = usual;
+  for (const Contact& c : pair.contacts) {
+    if (!c.is_time_of_impact) least = std::min(least, c.gap);
+  }
+  const bool is_new = memory.kept_gap <= 0.0;
+  least = std::max(least, 0.02 * usual);
+  // What lies on something solid from the start is raised to the usual gap, slowly enough to be no push.
+  const bool is_raised = !is_new && (pair.is_plane || pair.is_analytic) && memory.is_touching;
+  if (is_raised) least = std::max(least, memory.kept_gap + usual * settings.time_step / kRaiseTime);
+  memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
+  pair.kept_gap = memory.kept_gap;
+  pair.threshold = impact_threshold(settings, memory.kept_gap);
+}
+
+}  // namespace
+
+void find_pair_contacts(const ContactSettings& settings, const MotionWork& work, PairState& memory,
+                        WorkPair& pair) {
+  if (pair.is_plane) {
+    meet_plane(work, pair);
+  } else if (pair.is_analytic) {
+    meet_solids(settings, work, pair);
+  } else {
+    meet_features(settings, work, memory, pair);
+  }
+  if (memory.is_exempt) {
+    memory.is_exempt = pair.features ? !pair.features->empty() : !pair.contacts.empty();
+    pair.contacts.clear();
+  }
+  adapt_gap(settings, memory, pair);
+  std::vector<std::uint64_t> loaded;
+  for (const auto& c : memory.contacts) {
+    if (c.was_loaded) loaded.push_back(c.feature_key);
+  }
+  const bool is_in_trouble = memory.trouble_age < 30;
+  const double radius = kManifoldRadius * pair.size * (is_in_trouble ? 0.5 : 1.0);
+  collision::reduce_manifold(pair.contacts, loaded, radius, is_in_trouble ? 64 : 16);
+}
+
+}  // namespace shatterbox::dynamics
