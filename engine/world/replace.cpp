@@ -46,7 +46,8 @@ Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture
 
 body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
   body::Body born = parent;
-  born.name = parent.name + "[" + std::to_string(number) + "]";
+  // A crack that sets nothing free leaves the body what it was; pieces are numbered behind a slash.
+  if (number >= 0) born.name = parent.name + "/" + std::to_string(number);
   born.shape = piece.shape;
   const Vec3 centre_in_parent = piece.shape->material_from_body - parent.shape->material_from_body;
   born.pose.translation = parent.pose.apply(centre_in_parent);
@@ -112,9 +113,8 @@ BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, doubl
 void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMemory& memory,
                    const std::vector<Piece>& pieces, std::vector<body::Body> born, double time,
                    double charged_until, body::BodyId charged_other,
-                   std::map<body::BodyId, Ancestry>& ancestry) {
-  const auto found = ancestry.find(parent.id);
-  const body::BodyId original = found == ancestry.end() ? parent.id : found->second.original;
+                   std::map<body::BodyId, Ancestry>& ancestry, BreakRow& row) {
+  const Ancestry before = ancestry.at(parent.id);
   for (std::size_t i = 0; i < born.size(); ++i) {
     born[i].id = moving.next_id++;
     ImpactMemory own;
@@ -125,7 +125,8 @@ void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMe
     own.charged_event = parent.id;
     moving.memories[born[i].id] = own;
     moving.fragiles[born[i].id] = pieces[i].fragile;
-    ancestry[born[i].id] = {parent.id, original, time};
+    ancestry[born[i].id] = born.size() == 1 ? before : Ancestry{parent.id, before.original, time};
+    row.born.push_back(born[i].id);
   }
   const body::BodyId gone = parent.id;
   std::erase_if(moving.bodies, [&](const body::Body& b) { return b.id == gone; });
@@ -193,12 +194,13 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   });
   std::vector<body::Body> born;
   for (std::size_t i = 0; i < pieces.size(); ++i)
-    born.push_back(make_body(parent, pieces[i], static_cast<int>(i)));
+    born.push_back(make_body(parent, pieces[i], pieces.size() == 1 ? -1 : static_cast<int>(i)));
   row.pieces = static_cast<int>(pieces.size());
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);
   insert_pieces(moving, parent, memory, pieces, std::move(born), time,
-                impact.first_time + 2.0 * impact.decision.verdict.duration, impact.hardest.other, ancestry);
+                impact.first_time + 2.0 * impact.decision.verdict.duration, impact.hardest.other, ancestry,
+                row);
   return row;
 }
 

@@ -53,6 +53,7 @@ struct BreakRow {
   /// Cracks as segments in the parent's material space (x, y, z of both ends), for studies of their
   /// orientation.
   std::vector<std::array<Vec3, 2>> cracks;
+  std::vector<body::BodyId> born;                          // the pieces; one if a crack set nothing free
   Vec3 place_material = Vec3::Zero();                      // m
   std::vector<std::shared_ptr<const body::Shape>> shapes;  // of the pieces
 };

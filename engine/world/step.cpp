@@ -185,20 +185,19 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     if (goes_back) pay_for_cracks(s.moving, *impact, impact->decision.fracture_energy, s.log);
     BreakRow row = replace_body(s.moving, *impact, time, s.ancestry);
     row.time = time;
-    inherit_stress(impact->id);
+    inherit_stress(row);
     s.report.breaks.push_back(std::move(row));
   }
   s.is_disturbed = true;
   return goes_back;
 }
 
-void World::inherit_stress(body::BodyId parent) {
-  State& s = *state_;
-  const auto stress = s.element_stress.find(parent);
-  if (stress == s.element_stress.end()) return;
-  for (const auto& [id, from] : s.ancestry)
-    if (from.parent == parent) s.element_stress[id] = stress->second;
-  s.element_stress.erase(parent);
+void World::inherit_stress(const BreakRow& row) {
+  auto& stress = state_->element_stress;
+  const auto found = stress.find(row.id);
+  if (found == stress.end()) return;
+  for (const body::BodyId id : row.born) stress[id] = found->second;
+  stress.erase(row.id);
 }
 
 void World::book_conservation(const std::vector<body::Body>& before) {

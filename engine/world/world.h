@@ -83,7 +83,7 @@ class World {
   /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the step must be taken
   /// again.
   bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, double time, int pass);
-  void inherit_stress(body::BodyId parent);
+  void inherit_stress(const BreakRow& row);
   void book_conservation(const std::vector<body::Body>& before);
 
   std::unique_ptr<State> state_;
