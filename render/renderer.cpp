@@ -31,7 +31,7 @@ struct Level {
   int occlusion_taps, occlusion_scale;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 20, 9, 2} : Level{1, 640, 7, 6, 4};
+  return quality == Quality::full ? Level{2, 1024, 14, 9, 3} : Level{1, 640, 5, 6, 4};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
@@ -104,7 +104,7 @@ struct Renderer::Rooms {
         tiles(size.width, size.height),
         floor(size.width, size.height),
         shadow(level.shadow_map),
-        surface(size.width * level.samples_across, size.height * level.samples_across),
+        surface(size.width, size.height, level.samples_across),
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
         light(level.shadow_taps, level.samples_across, level.occlusion_scale, quality_ == Quality::preview),
         glass(level.samples_across) {
@@ -140,9 +140,9 @@ struct Renderer::Rooms {
     occlusion.bind();
     floor.bind();
     meshes.bind_paints();
-    light.run(surface.opaque(), tiles);
+    light.run(surface.opaque(), tiles, meshes.has_patterns());
     clock.mark("light");
-    if (tiles.has_glass()) glass.run(surface, tiles);
+    if (tiles.has_glass()) glass.run(surface, tiles, meshes.has_patterns());
     clock.mark("glass");
   }
 

@@ -1,45 +1,82 @@
-// One layer of thin glass over what is drawn: mirrored light is added, what is behind is tinted (dual-source
-// blending). Crack rims scatter: milky. Samples that see no glass, or glass behind a body, keep what is there.
-#include "common/shade.glsl"
+// Thin glass over what is drawn (dual-source blending): its faces mirror the surroundings and tint what is behind; its
+// broken rims gather light and show through the faces, bright and a little green. Samples that see none, or glass behind a
+// body, keep what is there.
+#include "common/light.glsl"
+#include "common/paint.glsl"
 #include "common/tone.glsl"
 layout(binding = 7) uniform sampler2D opaque_depth;  // 0..1
-layout(binding = 8) uniform sampler2D near_depth;    // of the layer in front; only for the far one
+layout(binding = 8) uniform usampler2D rim_map;      // as seen_map, of rims and crack lines only
+layout(binding = 9) uniform sampler2D rim_depth;
 layout(location = 0, index = 0) out vec4 added;
 layout(location = 0, index = 1) out vec4 kept;
 
+// Tall windows around the room, each of four lights: what clear glass is known by. Linear, as a share of the sky.
+float room_windows(vec3 d) {
+  float along = abs(fract(atan(d.z, d.x) * (5.0 / (2.0 * kPi)) + 0.2) - 0.5);  // 0 at a window's middle
+  float up = d.y * inversesqrt(max(dot(d.xz, d.xz), 1e-6));
+  float wide = smoothstep(0.30, 0.27, along) * smoothstep(0.008, 0.016, along);
+  float high = smoothstep(-0.02, 0.06, up) * smoothstep(1.05, 0.85, up) * smoothstep(0.015, 0.03, abs(up - 0.42));
+  return wide * high * (0.55 + 0.45 * clamp(up, 0.0, 1.0));
+}
+
+void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
+  vec3 v = normalize(eye_exposure.xyz - s.position);
+  float n_dot_v = clamp(abs(dot(s.normal, v)), 0.05, 1.0);
+  vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
+  float once = schlick(0.042, n_dot_v);
+  float mirror = 2.0 * once / (1.0 + once);  // both faces
+  vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 3.2 * room_windows(r));
+  vec3 h = normalize(sun.xyz + v);
+  float n_dot_l = max(dot(s.normal, sun.xyz), 0.0);
+  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(s.normal, h), 0.0), max(s.roughness, 0.12)) * 0.04;
+  vec3 haze = s.colour * ambient(s.normal) * (0.012 + (1.0 - s.transmission));
+  add += weight * (mirror * light + glance + haze);
+  // The way through is longer at a slant; as an exponent of the tint that is 1 to 4, by squaring.
+  float slant = min(1.0 / n_dot_v, 4.0) - 1.0;
+  vec3 tint = s.colour * mix(vec3(1.0), s.colour * s.colour * s.colour, slant / 3.0);
+  keep -= weight * (1.0 - s.transmission * (1.0 - mirror) * tint);
+}
+
+// Light that entered the faces comes out at a rim, from wherever it came.
+void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
+  vec3 v = normalize(eye_exposure.xyz - s.position);
+  vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
+  vec3 gathered = ambient(s.normal) * 0.9 + sun_radiance.rgb * (0.22 + 0.25 * abs(dot(s.normal, sun.xyz)));
+  bool is_crack = s.roughness > 0.1;
+  vec3 light = s.colour * (is_crack ? vec3(1.0) : vec3(0.18, 0.42, 0.33)) * gathered + 0.1 * surroundings(r, 0.15);
+  float through = is_crack ? 0.3 : 0.45;
+  add = add * 1.0 + weight * light * keep;
+  keep *= 1.0 - weight * (1.0 - through);
+}
+
 void main() {
-  vec2 pixel = gl_FragCoord.xy;
-  ivec2 first = ivec2(pixel) * SIDE;
-  uvec4 seen = uvec4(0u), other_seen = uvec4(0u);
-  float depth = 1.0, other_depth = 1.0, own = 0.0, others = 0.0;
-  vec2 place = pixel, other_place = pixel;
+  ivec2 first = ivec2(gl_FragCoord.xy) * SIDE;
+  uvec4 face = uvec4(0u), rim = uvec4(0u);
+  float face_depth = 0.9999, edge_depth = 0.9999, faces = 0.0, rims = 0.0;
+  vec2 face_place = gl_FragCoord.xy, rim_place = face_place;
+  const float kShare = 1.0 / float(SIDE * SIDE);
   for (int i = 0; i < SIDE * SIDE; ++i) {
     ivec2 shift = ivec2(i % SIDE, i / SIDE);
+    vec2 at = floor(gl_FragCoord.xy) + (vec2(shift) + 0.5) / float(SIDE);
+    float wall = texelFetch(opaque_depth, first + shift, 0).x;
     float d = texelFetch(seen_depth, first + shift, 0).x;
-    uvec4 s = texelFetch(seen_map, first + shift, 0);
-    bool is_seen = d > 0.0 && d < texelFetch(opaque_depth, first + shift, 0).x;
-#ifdef FAR_LAYER
-    is_seen = is_seen && d > texelFetch(near_depth, first + shift, 0).x + 1e-6;
-#endif
-    vec2 at = floor(pixel) + (vec2(shift) + 0.5) / float(SIDE);
-    bool is_first = is_seen && (own == 0.0 || s.y == seen.y);
-    bool is_other = is_seen && !is_first;
-    if (is_first) { seen = s; depth = d; place = at; own += 1.0 / float(SIDE * SIDE); }
-    if (is_other) { other_seen = s; other_depth = d; other_place = at; others += 1.0 / float(SIDE * SIDE); }
+    float e = texelFetch(rim_depth, first + shift, 0).x;
+    if (d < wall) {
+      face = texelFetch(seen_map, first + shift, 0);
+      face_depth = d;
+      face_place = at;
+      faces += kShare;
+    }
+    if (e < wall) {
+      rim = texelFetch(rim_map, first + shift, 0);
+      edge_depth = e;
+      rim_place = at;
+      rims += kShare;
+    }
   }
-  vec3 add = vec3(0.0), keep = vec3(1.0 - own - others);
-  int turns = others > 0.0 ? 2 : own > 0.0 ? 1 : 0;
-  for (int turn = 0; turn < turns; ++turn) {
-    float weight = turn == 0 ? own : others;
-    Surface s = surface_at(turn == 0 ? seen : other_seen, turn == 0 ? depth : other_depth,
-                           turn == 0 ? place : other_place);
-    float n_dot_v = max(dot(s.normal, normalize(eye_exposure.xyz - s.position)), 0.05);
-    float mirror = 2.0 * schlick(0.04, n_dot_v);
-    mirror = mirror / (1.0 + 0.5 * mirror);
-    s.roughness = s.transmission > 0.9 ? 0.03 : s.roughness;
-    add += weight * tone_map(shade(s, pixel, 1.0 - s.transmission));
-    keep += weight * s.transmission * (1.0 - mirror) * pow(s.colour, vec3(0.5 + 0.5 / n_dot_v));
-  }
-  added = vec4(add, 1.0);
+  vec3 add = vec3(0.0), keep = vec3(1.0);
+  add_face(surface_at(face, face_depth, face_place), faces, add, keep);
+  add_rim(surface_at(rim, edge_depth, rim_place), rims, add, keep);
+  added = vec4(tone_map(add), 1.0);
   kept = vec4(keep, 1.0);
 }

@@ -41,7 +41,7 @@ void main() {
   for (int turn = 0; turn < turns; ++turn) {
     Surface s = surface_at(turn == 0 ? seen : other_seen, min(turn == 0 ? depth : other_depth, 0.9999999),
                            turn == 0 ? place : other_place);
-    sum += (turn == 0 ? own : others) * tone_map(shade(s, pixel, 1.0));
+    sum += (turn == 0 ? own : others) * tone_map(shade(s, pixel));
   }
   float all = max(own + others, 1.0);
   colour = vec4(sum / all, (own + others) / float(SIDE * SIDE));

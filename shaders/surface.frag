@@ -4,13 +4,7 @@ in vec3 normal_world;
 in vec4 pattern_scalar;
 flat in uint paint;
 layout(location = 0) out uvec4 seen;
-#ifdef FAR_LAYER
-layout(binding = 0) uniform sampler2D opaque_depth;
-#endif
 void main() {
-#ifdef FAR_LAYER
-  if (gl_FragCoord.z >= texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).x) discard;
-#endif
   vec3 n = normal_world / (abs(normal_world.x) + abs(normal_world.y) + abs(normal_world.z) + 1e-9);
   vec2 folded = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
   seen = uvec4(packSnorm2x16(n.z < 0.0 ? folded : n.xy), paint, packHalf2x16(pattern_scalar.xy),

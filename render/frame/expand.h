@@ -29,7 +29,9 @@ struct DrawnMesh {
   std::vector<DrawnVertex> vertices;
   std::vector<std::uint32_t> indices;
   IndexRange outer, inner, rim;  // of indices, in this order; solids have outer only
-  glm::vec3 centre{0.0F};        // of the bounding box, and the radius about it
+  IndexRange
+      crack_lines;  // after them, pairs: cracked edges of the outer face, so that thin rims do not fray
+  glm::vec3 centre{0.0F};  // of the bounding box, and the radius about it
   float radius = 0.0F;
   glm::vec3 box_least{0.0F}, box_most{0.0F};
 };

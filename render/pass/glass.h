@@ -1,4 +1,4 @@
-// Thin glass over the lit picture, the far layer first (shaders/glass.frag).
+// Thin glass over the lit picture: faces and rims at once (shaders/glass.frag).
 #pragma once
 #include "render/gpu/program.h"
 #include "render/pass/surface.h"
@@ -9,10 +9,10 @@ namespace shatterbox::render::pass {
 class GlassPass {
  public:
   explicit GlassPass(int samples_across);
-  void run(const SurfacePass& surface, const Tiles& tiles) const;
+  void run(const SurfacePass& surface, const Tiles& tiles, bool has_patterns) const;
 
  private:
-  gpu::Program near_, far_;
+  gpu::Program plain_, patterned_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -8,12 +8,13 @@
 namespace shatterbox::render::pass {
 namespace {
 
-std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occlusion_scale,
-                                    bool is_preview) {
+std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview,
+                                    bool has_patterns) {
   std::vector<std::string> defines = {"SHADOW_TAPS " + std::to_string(shadow_taps),
                                       "SIDE " + std::to_string(samples_across),
                                       "OCCLUSION_SCALE " + std::to_string(occlusion_scale)};
   if (is_preview) defines.emplace_back("PREVIEW");
+  if (has_patterns) defines.emplace_back("PATTERNS");
   return defines;
 }
 
@@ -23,15 +24,18 @@ constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
 
 LightPass::LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview)
     : cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
+      plain_bodies_("tile.vert", "light.frag",
+                    defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false)),
       bodies_("tile.vert", "light.frag",
-              defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
-      floor_("tile.vert", "floor.frag", defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
+              defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, true)),
+      floor_("tile.vert", "floor.frag",
+             defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false)),
       dimmed_(
           "tile.vert", "floor.frag",
           {"SHADOW_TAPS 1", "OCCLUSION_SCALE " + std::to_string(occlusion_scale), "NO_SHADOW", "IF_DIMMED"}) {
 }
 
-void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
+void LightPass::run(const Layer& opaque, const Tiles& tiles, bool has_patterns) const {
   opaque.bind(4, 5);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
@@ -49,7 +53,7 @@ void LightPass::run(const Layer& opaque, const Tiles& tiles) const {
   glDepthFunc(GL_LESS);  // where there is one
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  bodies_.use();
+  (has_patterns ? bodies_ : plain_bodies_).use();
   gpu::Program::set(kTileDepth, 0.01F);
   tiles.draw_bodies();
   glDisable(GL_BLEND);

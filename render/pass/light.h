@@ -12,10 +12,10 @@ class LightPass {
  public:
   LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
   // Into the framebuffer that is bound, which shows the empty floor; its depth is used for the cover.
-  void run(const Layer& opaque, const Tiles& tiles) const;
+  void run(const Layer& opaque, const Tiles& tiles, bool has_patterns) const;
 
  private:
-  gpu::Program cover_, bodies_, floor_, dimmed_;
+  gpu::Program cover_, plain_bodies_, bodies_, floor_, dimmed_;
 };
 
 }  // namespace shatterbox::render::pass

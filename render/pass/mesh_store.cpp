@@ -145,6 +145,7 @@ std::uint32_t MeshStore::add_paints(const Draw& draw, const Overlay& overlay) {
     for (const Face face : {Face::outside, Face::inside, Face::crack}) {
       PaintRow row = to_paint(look, face);
       lay_over(row, draw, overlay, face);
+      has_patterns_ = has_patterns_ || row.pattern.w >= 1.0F;
       const auto* values = reinterpret_cast<const float*>(&row);
       paint_rows_.insert(paint_rows_.end(), values, values + kFloats);
     }
@@ -172,6 +173,7 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
   std::vector<float> scalars;
   items_.clear();
   paint_rows_.clear();
+  has_patterns_ = false;
   for (const Draw& draw : frame.draws) {
     if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
     if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
@@ -221,9 +223,23 @@ void MeshStore::draw(const Item& item, Part part) const {
   glVertexArrayVertexBuffer(vertex_array_.get(), 0, stored.vertices.name(), 0, sizeof(DrawnVertex));
   glVertexArrayElementBuffer(vertex_array_.get(), stored.indices.name());
   gpu::Program::set(0, item.row);
-  const std::uint32_t whole = shape.outer.count + shape.inner.count + shape.rim.count;
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part == Part::all ? whole : shape.outer.count),
-                 GL_UNSIGNED_INT, nullptr);
+  const auto draw_range = [](GLenum kind, std::uint32_t from, std::uint32_t count) {
+    if (count == 0) return;
+    const std::uintptr_t offset = from * sizeof(std::uint32_t);
+    glDrawElements(kind, static_cast<GLsizei>(count), GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
+  };
+  const std::uint32_t faces = shape.outer.count + shape.inner.count;
+  switch (part) {
+    case Part::all:
+      return draw_range(GL_TRIANGLES, 0, faces + shape.rim.count);
+    case Part::outer:
+      return draw_range(GL_TRIANGLES, 0, shape.outer.count);
+    case Part::faces:
+      return draw_range(GL_TRIANGLES, 0, faces);
+    case Part::rims:
+      draw_range(GL_TRIANGLES, shape.rim.first, shape.rim.count);
+      return draw_range(GL_LINES, shape.crack_lines.first, shape.crack_lines.count);
+  }
 }
 
 Part MeshStore::shadow_part(const Item& item) const {

@@ -6,23 +6,23 @@ namespace shatterbox::render::pass {
 namespace {
 
 // The colours need no clearing: only samples with a depth are read.
-void clear_depth(double depth) {
-  glClearDepth(depth);
-  glClear(GL_DEPTH_BUFFER_BIT);
+void clear_depth() {
+  glDepthMask(GL_TRUE);
   glClearDepth(1.0);
+  glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-void draw_items(const MeshStore& meshes, bool is_glass) {
+void draw_items(const MeshStore& meshes, bool is_glass, Part part) {
   glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glEnable(GL_CULL_FACE);
   meshes.bind_vertices();
   for (const Item& item : meshes.items()) {
-    if (item.is_on_screen && item.is_glass == is_glass) meshes.draw(item, Part::all);
+    if (item.is_on_screen && item.is_glass == is_glass) meshes.draw(item, part);
   }
   glDisable(GL_CULL_FACE);
-  glDepthFunc(GL_LESS);
 }
 
 }  // namespace
@@ -37,35 +37,32 @@ void Layer::bind(unsigned seen_unit, unsigned depth_unit) const {
   depth.bind(depth_unit);
 }
 
-SurfacePass::SurfacePass(int width, int height)
-    : opaque_(width, height),
+SurfacePass::SurfacePass(int width, int height, int samples_across)
+    : opaque_(width * samples_across, height * samples_across),
       program_("surface.vert", "surface.frag"),
-      far_program_("surface.vert", "surface.frag", {"FAR_LAYER"}) {}
+      samples_across_(samples_across) {}
 
 void SurfacePass::run(const MeshStore& meshes) const {
   opaque_.target.bind();
-  clear_depth(1.0);
-  glDepthFunc(GL_LESS);
+  clear_depth();
   program_.use();
-  draw_items(meshes, false);
+  draw_items(meshes, false, Part::all);
 }
 
 void SurfacePass::run_glass(const MeshStore& meshes) {
-  if (glass_near_.seen.name() == 0) {
-    glass_near_ = Layer(opaque_.seen.width(), opaque_.seen.height());
-    glass_far_ = Layer(opaque_.seen.width(), opaque_.seen.height());
+  if (glass_faces_.seen.name() == 0) {
+    glass_faces_ = Layer(opaque_.seen.width(), opaque_.seen.height());
+    glass_rims_ = Layer(opaque_.seen.width(), opaque_.seen.height());
   }
-  glass_near_.target.bind();
-  clear_depth(1.0);
-  glDepthFunc(GL_LESS);
   program_.use();
-  draw_items(meshes, true);
-  glass_far_.target.bind();
-  clear_depth(0.0);
-  glDepthFunc(GL_GREATER);
-  far_program_.use();
-  opaque_.depth.bind(0);
-  draw_items(meshes, true);
+  glass_faces_.target.bind();
+  clear_depth();
+  draw_items(meshes, true, Part::faces);
+  glass_rims_.target.bind();
+  clear_depth();
+  glLineWidth(static_cast<float>(samples_across_));  // a pixel
+  draw_items(meshes, true, Part::rims);
+  glLineWidth(1.0F);
 }
 
 }  // namespace shatterbox::render::pass

@@ -1,5 +1,5 @@
 // Geometry: what each sample sees, packed for the light pass (shaders/surface). Glass has two layers of its
-// own, the nearest and the farthest: cheap, and enough for panes, shards and vessels.
+// own: the nearest face and the nearest rim, which shows through faces.
 #pragma once
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
@@ -19,16 +19,17 @@ struct Layer {
 
 class SurfacePass {
  public:
-  SurfacePass(int width, int height);  // in samples
+  SurfacePass(int width, int height, int samples_across);  // a pixel has as many samples down
   void run(const MeshStore& meshes) const;
   void run_glass(const MeshStore& meshes);  // after run; its layers are made at the first call
   const Layer& opaque() const { return opaque_; }
-  const Layer& glass_near() const { return glass_near_; }
-  const Layer& glass_far() const { return glass_far_; }
+  const Layer& glass_faces() const { return glass_faces_; }
+  const Layer& glass_rims() const { return glass_rims_; }
 
  private:
-  Layer opaque_, glass_near_, glass_far_;
-  gpu::Program program_, far_program_;
+  Layer opaque_, glass_faces_, glass_rims_;
+  gpu::Program program_;
+  int samples_across_;
 };
 
 }  // namespace shatterbox::render::pass

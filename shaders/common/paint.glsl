@@ -73,13 +73,14 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
   ivec2 row = ivec2(int(seen.y & 255u) * 4, int(seen.y >> 8));
   vec4 paint = texelFetch(paint_table, row, 0);                    // colour, roughness
   vec4 finish = texelFetch(paint_table, row + ivec2(1, 0), 0);     // metalness, coat, its roughness, transmission
-  vec4 pattern = texelFetch(paint_table, row + ivec2(2, 0), 0);    // colour, kind + metalness / 2; 8: heat map
   s.colour = paint.rgb;
   s.roughness = paint.a;
   s.metalness = finish.x;
   s.coat = finish.y;
   s.coat_roughness = finish.z;
   s.transmission = finish.w;
+#ifdef PATTERNS  // llvmpipe runs both sides of a branch: frames without patterns take a program without
+  vec4 pattern = texelFetch(paint_table, row + ivec2(2, 0), 0);    // colour, kind + metalness / 2; 8: heat map
   if (pattern.a >= 1.0) {
     vec4 place = texelFetch(paint_table, row + ivec2(3, 0), 0);    // centre, size
     vec2 xy = unpackHalf2x16(seen.z), z_scalar = unpackHalf2x16(seen.w);
@@ -90,5 +91,6 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
     s.colour = kind == 8 ? heat_colour(z_scalar.y) : mix(s.colour, pattern.rgb, share);
     s.metalness = mix(s.metalness, fract(pattern.a) * 2.0, share);
   }
+#endif
   return s;
 }

@@ -1,13 +1,11 @@
 // Light from a painted surface towards the eye: sun, sky, soft boxes; linear.
 #include "common/light.glsl"
-#ifndef GLASS
 #include "common/shadow.glsl"
 #include "common/occlusion.glsl"
-#endif
 #include "common/paint.glsl"
 
-// diffuse_share: less for glass. pixel: gl_FragCoord.xy.
-vec3 shade(Surface s, vec2 pixel, float diffuse_share) {
+// pixel: gl_FragCoord.xy.
+vec3 shade(Surface s, vec2 pixel) {
   vec3 n = s.normal;
   vec3 v = normalize(eye_exposure.xyz - s.position);
   float n_dot_v = max(dot(n, v), 1e-3);
@@ -18,24 +16,19 @@ vec3 shade(Surface s, vec2 pixel, float diffuse_share) {
   float v_dot_h = max(dot(v, h), 0.0);
   vec3 r = 2.0 * dot(n, v) * n - v;
 
-#ifdef GLASS  // hardly anything diffuse to darken
-  vec3 sunlight = sun_radiance.rgb;
-  float sky = 1.0;
-#else
   vec3 sunlight = sun_radiance.rgb * sun_seen(s.position, n);
   float sky = sky_seen(pixel, s.view_depth);
-#endif
   float sky_mirrored = clamp(sky * 1.5 - 0.3, 0.06, 1.0);
 
   vec3 f0 = mix(vec3(0.04), s.colour, s.metalness);
-  vec3 diffuse = s.colour * (1.0 - s.metalness) * diffuse_share;
+  vec3 diffuse = s.colour * (1.0 - s.metalness);
   vec2 share = reflected_share(n_dot_v, s.roughness);
   vec3 mirrored = f0 * share.x + share.y;
 
   // Light that bounced in the surface's own hollow: occlusion takes the paint's tint instead of going grey.
   vec3 sky_tinted = sky / (1.0 - 0.6 * s.colour * (1.0 - sky));
   vec3 light = diffuse * (sunlight * n_dot_l + ambient(n) * sky_tinted * (1.0 - share.y));
-#if defined(PREVIEW) || defined(GLASS)  // one look at the surroundings instead of two
+#ifdef PREVIEW  // one look at the surroundings instead of two
   vec3 around = surroundings(r, s.coat > 0.3 ? s.coat_roughness : s.roughness);
   vec3 around_base = around;
 #else
