@@ -106,7 +106,8 @@ struct Renderer::Rooms {
         shadow(level.shadow_map),
         surface(size.width, size.height, level.samples_across),
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
-        light(level.shadow_taps, level.samples_across, level.occlusion_scale, quality_ == Quality::preview),
+        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale,
+              quality_ == Quality::preview),
         glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
@@ -135,9 +136,11 @@ struct Renderer::Rooms {
     clock.mark("surface");
     occlusion.run(surface.opaque().depth);
     clock.mark("occlusion");
-    drawn.bind();
     shadow.bind();
     occlusion.bind();
+    light.dim(surface.opaque(), tiles);
+    clock.mark("dimming");
+    drawn.bind();
     floor.bind();
     meshes.bind_paints();
     light.run(surface.opaque(), tiles, meshes.has_patterns());

@@ -10,13 +10,13 @@ layout(binding = 9) uniform sampler2D rim_depth;
 layout(location = 0, index = 0) out vec4 added;
 layout(location = 0, index = 1) out vec4 kept;
 
-// Tall windows around the room, each of four lights: what clear glass is known by. Linear, as a share of the sky.
+// Tall windows around the room, each of four panes: what clear glass is known by. Linear, as a share of the sky.
 float room_windows(vec3 d) {
-  float along = abs(fract(atan(d.z, d.x) * (5.0 / (2.0 * kPi)) + 0.2) - 0.5);  // 0 at a window's middle
+  float along = abs(fract(atan(d.z, d.x) * (6.0 / (2.0 * kPi)) + 0.2) - 0.5);  // 0 at a window's middle
   float up = d.y * inversesqrt(max(dot(d.xz, d.xz), 1e-6));
-  float wide = smoothstep(0.30, 0.27, along) * smoothstep(0.008, 0.016, along);
-  float high = smoothstep(-0.02, 0.06, up) * smoothstep(1.05, 0.85, up) * smoothstep(0.015, 0.03, abs(up - 0.42));
-  return wide * high * (0.55 + 0.45 * clamp(up, 0.0, 1.0));
+  float wide = smoothstep(0.36, 0.33, along) * smoothstep(0.010, 0.022, along);
+  float high = smoothstep(-0.16, -0.10, up) * smoothstep(1.05, 0.85, up) * smoothstep(0.006, 0.014, abs(up - 0.22));
+  return wide * high * (0.4 + 0.6 * clamp(2.0 * up + 0.3, 0.0, 1.0));
 }
 
 void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
@@ -41,11 +41,11 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
 void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
   vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
-  vec3 gathered = ambient(s.normal) * 0.9 + sun_radiance.rgb * (0.22 + 0.25 * abs(dot(s.normal, sun.xyz)));
+  vec3 gathered = ambient(s.normal) * 0.7 + sun_radiance.rgb * (0.04 + 0.5 * dot(s.normal, sun.xyz) * dot(s.normal, sun.xyz));
   bool is_crack = s.roughness > 0.1;
   vec3 light = s.colour * (is_crack ? vec3(1.0) : vec3(0.18, 0.42, 0.33)) * gathered + 0.1 * surroundings(r, 0.15);
   float through = is_crack ? 0.3 : 0.45;
-  add = add * 1.0 + weight * light * keep;
+  add += weight * light * keep;
   keep *= 1.0 - weight * (1.0 - through);
 }
 

@@ -2,6 +2,8 @@
 
 #include <glad/gl.h>
 
+#include <array>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -18,11 +20,17 @@ std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occ
   return defines;
 }
 
+std::vector<std::string> with(std::vector<std::string> defines, std::initializer_list<const char*> more) {
+  defines.insert(defines.end(), more.begin(), more.end());
+  return defines;
+}
+
 constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
 
 }  // namespace
 
-LightPass::LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview)
+LightPass::LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale,
+                     bool is_preview)
     : cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
       plain_bodies_("tile.vert", "light.frag",
                     defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false)),
@@ -30,9 +38,31 @@ LightPass::LightPass(int shadow_taps, int samples_across, int occlusion_scale, b
               defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, true)),
       floor_("tile.vert", "floor.frag",
              defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false)),
-      dimmed_(
-          "tile.vert", "floor.frag",
-          {"SHADOW_TAPS 1", "OCCLUSION_SCALE " + std::to_string(occlusion_scale), "NO_SHADOW", "IF_DIMMED"}) {
+      dimmed_("tile.vert", "floor.frag",
+              with(defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false),
+                   {"NO_SHADOW", "IF_DIMMED"})) {
+  if (!is_preview) return;
+  dimming_ = gpu::Texture((width + 1) / 2, (height + 1) / 2, GL_R32UI, gpu::Filter::nearest);
+  dimming_target_ = gpu::Framebuffer({&dimming_}, nullptr);
+  const auto defines = defines_of(shadow_taps, samples_across, occlusion_scale, false, false);
+  dim_ = gpu::Program("tile.vert", "dimming.frag", defines);
+  dim_if_dimmed_ = gpu::Program("tile.vert", "dimming.frag", with(defines, {"IF_DIMMED"}));
+}
+
+void LightPass::dim(const Layer& opaque, const Tiles& tiles) const {
+  if (dimming_.name() == 0) return;
+  dimming_target_.bind();
+  const std::array<unsigned, 4> undimmed = {0x3c007fffU, 0U, 0U, 0U};  // as dimming.glsl packs it
+  glClearBufferuiv(GL_COLOR, 0, undimmed.data());
+  opaque.bind(4, 5);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  dim_.use();
+  tiles.draw_bodies();
+  tiles.draw_shaded_floor();
+  dim_if_dimmed_.use();
+  tiles.draw_dimmed_floor();
+  dimming_.bind(10);
 }
 
 void LightPass::run(const Layer& opaque, const Tiles& tiles, bool has_patterns) const {

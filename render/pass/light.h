@@ -2,7 +2,9 @@
 // (shaders/cover.frag, light.frag, floor.frag). Lit after the fact because small triangles would run the
 // costly shader for whole blocks of pixels, many times over.
 #pragma once
+#include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
+#include "render/gpu/texture.h"
 #include "render/pass/surface.h"
 #include "render/pass/tiles.h"
 
@@ -10,11 +12,16 @@ namespace shatterbox::render::pass {
 
 class LightPass {
  public:
-  LightPass(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
+  // is_preview: shadow and occlusion are looked up at each second pixel only.
+  LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
+  void dim(const Layer& opaque, const Tiles& tiles) const;  // before run; nothing unless in preview
   // Into the framebuffer that is bound, which shows the empty floor; its depth is used for the cover.
   void run(const Layer& opaque, const Tiles& tiles, bool has_patterns) const;
 
  private:
+  gpu::Texture dimming_;  // preview only
+  gpu::Framebuffer dimming_target_;
+  gpu::Program dim_, dim_if_dimmed_;
   gpu::Program cover_, plain_bodies_, bodies_, floor_, dimmed_;
 };
 

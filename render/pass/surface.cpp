@@ -38,9 +38,7 @@ void Layer::bind(unsigned seen_unit, unsigned depth_unit) const {
 }
 
 SurfacePass::SurfacePass(int width, int height, int samples_across)
-    : opaque_(width * samples_across, height * samples_across),
-      program_("surface.vert", "surface.frag"),
-      samples_across_(samples_across) {}
+    : opaque_(width * samples_across, height * samples_across), program_("surface.vert", "surface.frag") {}
 
 void SurfacePass::run(const MeshStore& meshes) const {
   opaque_.target.bind();
@@ -60,9 +58,7 @@ void SurfacePass::run_glass(const MeshStore& meshes) {
   draw_items(meshes, true, Part::faces);
   glass_rims_.target.bind();
   clear_depth();
-  glLineWidth(static_cast<float>(samples_across_));  // a pixel
   draw_items(meshes, true, Part::rims);
-  glLineWidth(1.0F);
 }
 
 }  // namespace shatterbox::render::pass

@@ -29,7 +29,6 @@ class SurfacePass {
  private:
   Layer opaque_, glass_faces_, glass_rims_;
   gpu::Program program_;
-  int samples_across_;
 };
 
 }  // namespace shatterbox::render::pass
