@@ -60,15 +60,15 @@ double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
 }
 
 /// Momentum that gravity and the logged impulses of fixed bodies explain.
-Vec3 explained_momentum(const std::vector<body::Body>& before, const body::ImpulseLog& log,
+Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::ImpulseLog& log,
                         const Vec3& gravity, double time_step) {
   Vec3 sum = Vec3::Zero();
-  for (const body::Body& body : before)
+  for (const body::Body& body : bodies)
     if (body.is_dynamic() && body.is_awake) sum += body.shape->mass * time_step * gravity;
   for (const body::LoggedImpulse& entry : log) {
     if (entry.kind == body::ImpulseKind::fracture) continue;  // was given before this pass began
-    const body::Body* a = body::find_body(before, entry.body_a);
-    const body::Body* b = body::find_body(before, entry.body_b);
+    const body::Body* a = body::find_body(bodies, entry.body_a);
+    const body::Body* b = body::find_body(bodies, entry.body_b);
     if (a && a->is_dynamic()) sum += entry.impulse_world;
     if (b && b->is_dynamic()) sum -= entry.impulse_world;
   }
@@ -139,9 +139,9 @@ void World::step() {
     s.report.solver.worst_residual = std::max(s.report.solver.worst_residual, figures.worst_residual);
     if (!timer.time("fracture", [&] { return break_bodies(impacts, snapshot, end_time, pass); })) break;
   }
+  book_conservation(before);
   timer.time("sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   book_contact(contact, s.steps, s.report.contact);
-  book_conservation(before);
   ++s.steps;
   s.report.steps = s.steps;
   s.hash = timer.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
@@ -206,7 +206,8 @@ void World::book_conservation(const std::vector<body::Body>& before) {
   ConservationFigures start;
   total_energy(before, s.settings.gravity, start);
   const double energy = total_energy(s.moving.bodies, s.settings.gravity, figures);
-  const Vec3 explained = explained_momentum(before, s.log, s.settings.gravity, s.contact_settings.time_step);
+  const Vec3 explained =
+      explained_momentum(s.moving.bodies, s.log, s.settings.gravity, s.contact_settings.time_step);
   const double error = (figures.momentum - start.momentum - explained).norm();
   figures.momentum_error = std::max(figures.momentum_error, error);
   if (!s.is_disturbed)
