@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace shatterbox::render::pass {
@@ -121,22 +123,57 @@ void blend(std::uint8_t* pixel, const std::array<std::uint8_t, 3>& colour, float
   }
 }
 
+// How far the pixels around a glyph are from its strokes. Glyphs start at whole pixels, so that each is
+// measured once.
+struct Field {
+  int left = 0, top = 0, width = 0, height = 0;  // pixels from the pen, y down
+  std::vector<float> distance;                   // pixels to the ink's edge, less than 0 inside
+};
+
+float half_stroke(float unit) {
+  return std::max(0.34F * unit, 0.5F);
+}
+float edge_reach(float unit) {
+  return 1.1F * unit + 1.0F;
+}
+
+Field measure(const Glyph& glyph, float unit) {
+  const float half = half_stroke(unit), pad = half + edge_reach(unit) + 1.0F;
+  Field field;
+  field.left = static_cast<int>(std::floor(-pad));
+  field.top = static_cast<int>(std::floor(-7.0F * unit - pad));
+  field.width = static_cast<int>(std::ceil(glyph.width * unit + pad)) - field.left;
+  field.height = static_cast<int>(std::ceil(2.0F * unit + pad)) - field.top;
+  for (int y = 0; y < field.height; ++y) {
+    for (int x = 0; x < field.width; ++x) {
+      const glm::vec2 p((static_cast<float>(field.left + x) + 0.5F) / unit,
+                        -(static_cast<float>(field.top + y) + 0.5F) / unit);
+      field.distance.push_back(distance_to(glyph, p) * unit - half);
+    }
+  }
+  return field;
+}
+
+const Field& field_of(char c, float unit) {
+  static thread_local std::map<std::pair<char, float>, Field> fields;
+  const auto [place, is_new] = fields.try_emplace({c, unit});
+  if (is_new) place->second = measure(glyph_of(c), unit);
+  return place->second;
+}
+
 // First the dark edges of the whole line, then the ink, so that no edge falls on a neighbour's ink.
-void draw_glyph(Image& image, const Glyph& glyph, glm::vec2 origin, float unit,
+void draw_glyph(Image& image, const Field& field, glm::ivec2 pen, float unit,
                 const std::array<std::uint8_t, 3>& colour, bool is_edge) {
-  const float half = std::max(0.34F * unit, 0.5F), edge = is_edge ? 1.1F * unit + 1.0F : 0.0F;
-  const float pad = half + edge + 1.0F;
-  const int left = std::max(static_cast<int>(origin.x - pad), 0);
-  const int right = std::min(static_cast<int>(origin.x + glyph.width * unit + pad), image.width - 1);
-  const int top = std::max(static_cast<int>(origin.y - 7.0F * unit - pad), 0);
-  const int bottom = std::min(static_cast<int>(origin.y + 2.0F * unit + pad), image.height - 1);
-  for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) {
-      const glm::vec2 p((static_cast<float>(x) + 0.5F - origin.x) / unit,
-                        (origin.y - static_cast<float>(y) - 0.5F) / unit);
-      const float d = distance_to(glyph, p) * unit - half;
-      const float share =
-          is_edge ? 0.42F * std::clamp(1.0F - d / edge, 0.0F, 1.0F) : std::clamp(0.5F - d, 0.0F, 1.0F);
+  const int left = std::max(pen.x + field.left, 0),
+            right = std::min(pen.x + field.left + field.width, image.width);
+  const int top = std::max(pen.y + field.top, 0),
+            bottom = std::min(pen.y + field.top + field.height, image.height);
+  for (int y = top; y < bottom; ++y) {
+    const auto row = static_cast<std::size_t>((y - pen.y - field.top) * field.width);
+    for (int x = left; x < right; ++x) {
+      const float d = field.distance[row + static_cast<std::size_t>(x - pen.x - field.left)];
+      const float share = is_edge ? 0.42F * std::clamp(1.0F - d / edge_reach(unit), 0.0F, 1.0F)
+                                  : std::clamp(0.5F - d, 0.0F, 1.0F);
       if (share > 0.0F) blend(image.at(x, y), is_edge ? std::array<std::uint8_t, 3>{} : colour, share);
     }
   }
@@ -152,7 +189,8 @@ void draw_text(Image& image, float x, float y, float unit, std::array<std::uint8
     float pen = x;
     for (const char c : text) {
       const Glyph& glyph = glyph_of(c);
-      draw_glyph(image, glyph, {pen, y}, unit, colour, is_edge);
+      const glm::ivec2 at(static_cast<int>(std::lround(pen)), static_cast<int>(std::lround(y)));
+      draw_glyph(image, field_of(c, unit), at, unit, colour, is_edge);
       pen += (glyph.width + kGap) * unit;
     }
   }

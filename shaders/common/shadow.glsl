@@ -19,7 +19,7 @@ float sun_seen(vec3 position_world, vec3 normal) {
   float gap = max(p.z - caster.x / max(caster.y, 1e-4), 0.0) * shadow_texel.z;  // m
   float reach = gap * sun.w;                                                    // m, radius of the disc
   vec2 texel = 1.0 / map_size;
-  vec2 radius = clamp(reach / shadow_texel.xy, vec2(1.2), vec2(0.94 * shadow_texel.w)) * texel;
+  vec2 radius = clamp(reach / shadow_texel.xy, vec2(SHADOW_TAPS < 8 ? 2.0 : 1.2), vec2(0.94 * shadow_texel.w)) * texel;
 
   // Depth change per unit of texture coordinate along the receiver's plane; grazing planes are followed less far.
   vec3 extent = vec3(shadow_texel.xy * map_size, shadow_texel.z);  // m
@@ -29,16 +29,18 @@ float sun_seen(vec3 position_world, vec3 normal) {
   float bias = dot(abs(slope), texel) + 0.5 * max(shadow_texel.x, shadow_texel.y) / extent.z;
   float spread = dot(abs(slope), radius);
   bool lit = bounds.x >= 1.0 || p.z - bias - spread <= bounds.x;
-  bool dark = bounds.y < 1.0 && p.z - bias - spread > bounds.y;
-  int taps = inside && !lit && !dark ? SHADOW_TAPS : 0;
+  bool dark = dot(normal, sun.xyz) <= 0.0 || (bounds.y < 1.0 && p.z - bias - spread > bounds.y);
+  // A small disc needs few taps: each blends four texels.
+  float across = max(radius.x * map_size.x, radius.y * map_size.y);
+  int most = clamp(int(4.0 * across), min(6, SHADOW_TAPS), SHADOW_TAPS);
+  int taps = inside && !lit && !dark ? most : 0;
   float sum = 0.0;
   vec2 way = vec2(1.0, 0.0);  // golden-angle spiral
   const mat2 kTurn = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
   for (int i = 0; i < taps; ++i) {
-    vec2 shift = sqrt((float(i) + 0.5) / float(SHADOW_TAPS)) * radius * way;
+    vec2 shift = sqrt((float(i) + 0.5) / float(most)) * radius * way;
     way = kTurn * way;
     sum += texture(shadow_map, vec3(p.xy + shift, min(p.z - bias + dot(slope, shift), 1.0)));
   }
-  if (!inside || lit) return 1.0;
-  return dark ? 0.0 : sum / float(SHADOW_TAPS);
+  return dark ? 0.0 : !inside || lit ? 1.0 : sum / float(most);
 }
