@@ -21,6 +21,7 @@ std::vector<Preset> make_presets() {
   ceramic.fracture_energy = 25.0;
   ceramic.weibull_modulus = 10.0;
   ceramic.flaw_area = 1e-3;
+  ceramic.crack_spacing = 1.5;  // by eye: pots break into few large pieces
   ceramic.friction = 0.5;
   ceramic.restitution = 0.35;
   ceramic.thickness = 4e-3;
