@@ -15,12 +15,8 @@ Size at(int i) {
 
 constexpr int kMostGroups = 24;        // pieces that share one load; the lightest beyond that carry nothing
 constexpr double kLeastWeight = 0.01;  // nor do those with less than this share of the patch
-
-/// A load's pieces and their unit loads, in a row with those of the other loads.
-struct Groups {
-  std::vector<double> weights;
-  int first = 0;
-};
+// Of a solve; the compliance is then right to its square over the share of the load in the softest motion.
+constexpr double kVerdictResidual = 1e-6;
 
 /// Shares p of the total force under which all pieces sink equally, none of them pulled; they sum to 1.
 Eigen::VectorXd share_force(const Eigen::MatrixXd& flexibility, std::vector<int> active) {
@@ -48,66 +44,75 @@ Eigen::VectorXd share_force(const Eigen::MatrixXd& flexibility, std::vector<int>
 
 }  // namespace
 
-std::vector<ContactAnswer> press(const stress::ShellSystem& system, const geometry::ShellMesh& mesh,
-                                 const std::vector<geometry::CellContact>& contacts, const VecX& mass,
-                                 const std::vector<ContactPress>& loads) {
-  std::vector<Groups> groups;
-  std::vector<VecX> forces;
-  for (const ContactPress& load : loads) {
-    const stress::LoadPatch patch = stress::find_load_patch(mesh, load.point, load.radius);
-    const std::vector<int> group_of_share = stress::group_patch(patch, contacts);
-    const int count =
-        group_of_share.empty() ? 0 : *std::max_element(group_of_share.begin(), group_of_share.end()) + 1;
-    std::vector<int> heaviest(at(count));
-    std::iota(heaviest.begin(), heaviest.end(), 0);
-    std::vector<double> weight(at(count));
-    for (int g = 0; g < count; ++g) weight[at(g)] = stress::group_weight(patch, group_of_share, g);
-    std::sort(heaviest.begin(), heaviest.end(), [&](int a, int b) {
-      return weight[at(a)] != weight[at(b)] ? weight[at(a)] > weight[at(b)] : a < b;
-    });
-    if (count > kMostGroups) heaviest.resize(kMostGroups);
-    while (heaviest.size() > 1 && weight[at(heaviest.back())] < kLeastWeight) heaviest.pop_back();
-    std::sort(heaviest.begin(), heaviest.end());
-    Groups own;
-    own.first = static_cast<int>(forces.size());
-    for (const int g : heaviest) {
-      own.weights.push_back(weight[at(g)]);
-      forces.push_back(stress::group_load(mesh, patch, group_of_share, g, load.direction));
-    }
-    groups.push_back(std::move(own));
+PressGroups find_press_groups(const geometry::ShellMesh& mesh,
+                              const std::vector<geometry::CellContact>& contacts, const ContactPress& load) {
+  const stress::LoadPatch patch = stress::find_load_patch(mesh, load.point, load.radius);
+  const std::vector<int> group_of_share = stress::group_patch(patch, contacts);
+  const int count =
+      group_of_share.empty() ? 0 : *std::max_element(group_of_share.begin(), group_of_share.end()) + 1;
+  std::vector<int> heaviest(at(count));
+  std::iota(heaviest.begin(), heaviest.end(), 0);
+  std::vector<double> weight(at(count));
+  for (int g = 0; g < count; ++g) weight[at(g)] = stress::group_weight(patch, group_of_share, g);
+  std::sort(heaviest.begin(), heaviest.end(), [&](int a, int b) {
+    return weight[at(a)] != weight[at(b)] ? weight[at(a)] > weight[at(b)] : a < b;
+  });
+  if (count > kMostGroups) heaviest.resize(kMostGroups);
+  while (heaviest.size() > 1 && weight[at(heaviest.back())] < kLeastWeight) heaviest.pop_back();
+  std::sort(heaviest.begin(), heaviest.end());
+  PressGroups groups;
+  groups.hertz_compliance = load.hertz_compliance;
+  for (const int g : heaviest) {
+    groups.weights.push_back(weight[at(g)]);
+    groups.forces.push_back(stress::group_load(mesh, patch, group_of_share, g, load.direction));
   }
-  const std::vector<stress::ShellSolution> solutions = system.solve(forces);
+  return groups;
+}
 
-  std::vector<ContactAnswer> answers;
+namespace {
+
+/// One load's answer from those of its pieces: `solutions` are |pieces| long.
+ContactAnswer combine(const PressGroups& load, const stress::ShellSolution* solutions, const VecX& mass,
+                      double screening_squared) {
+  const auto n = static_cast<Eigen::Index>(load.weights.size());
+  Eigen::MatrixXd flexibility(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      flexibility(i, j) = load.forces[static_cast<Size>(i)].dot(solutions[j].displacement);
+  flexibility = (0.5 * (flexibility + flexibility.transpose())).eval();
+  Eigen::MatrixXd pressed = flexibility;
+  for (Eigen::Index i = 0; i < n; ++i)
+    pressed(i, i) += load.hertz_compliance / load.weights[static_cast<Size>(i)];
+  std::vector<int> all(load.weights.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::VectorXd shares = share_force(pressed, all);
+  ContactAnswer answer;
+  answer.displacement = VecX::Zero(mass.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    answer.residual = std::max(answer.residual, solutions[i].residual);
+    if (shares[i] == 0.0) continue;
+    answer.displacement += shares[i] * solutions[i].displacement;
+    ++answer.groups;
+  }
+  answer.compliance = shares.dot(flexibility * shares);
+  const double inertial = screening_squared * (mass.array() * answer.displacement.array().square()).sum();
+  answer.elastic_compliance = std::max(0.0, answer.compliance - inertial);
+  return answer;
+}
+
+}  // namespace
+
+std::vector<ContactAnswer> press(const stress::ShellSystem& system, const VecX& mass,
+                                 const std::vector<PressGroups>& loads) {
+  std::vector<VecX> forces;
+  for (const PressGroups& load : loads) forces.insert(forces.end(), load.forces.begin(), load.forces.end());
+  const std::vector<stress::ShellSolution> solutions = system.solve(forces, kVerdictResidual);
   const double screening_squared = system.screening() * system.screening();
-  for (Size l = 0; l < loads.size(); ++l) {
-    const Groups& own = groups[l];
-    const auto n = static_cast<Eigen::Index>(own.weights.size());
-    Eigen::MatrixXd flexibility(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j)
-        flexibility(i, j) = forces[at(own.first) + static_cast<Size>(i)].dot(
-            solutions[at(own.first) + static_cast<Size>(j)].displacement);
-    flexibility = (0.5 * (flexibility + flexibility.transpose())).eval();
-    Eigen::MatrixXd pressed = flexibility;
-    for (Eigen::Index i = 0; i < n; ++i)
-      pressed(i, i) += loads[l].hertz_compliance / own.weights[static_cast<Size>(i)];
-    std::vector<int> all(own.weights.size());
-    std::iota(all.begin(), all.end(), 0);
-    const Eigen::VectorXd shares = share_force(pressed, all);
-    ContactAnswer answer;
-    answer.displacement = VecX::Zero(mesh.degree_of_freedom_count());
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const stress::ShellSolution& solution = solutions[at(own.first) + static_cast<Size>(i)];
-      answer.residual = std::max(answer.residual, solution.residual);
-      if (shares[i] == 0.0) continue;
-      answer.displacement += shares[i] * solution.displacement;
-      ++answer.groups;
-    }
-    answer.compliance = shares.dot(flexibility * shares);
-    const double inertial = screening_squared * (mass.array() * answer.displacement.array().square()).sum();
-    answer.elastic_compliance = std::max(0.0, answer.compliance - inertial);
-    answers.push_back(std::move(answer));
+  std::vector<ContactAnswer> answers;
+  const stress::ShellSolution* next = solutions.data();
+  for (const PressGroups& load : loads) {
+    answers.push_back(combine(load, next, mass, screening_squared));
+    next += load.forces.size();
   }
   return answers;
 }

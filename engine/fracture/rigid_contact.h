@@ -26,10 +26,20 @@ struct ContactAnswer {
   int groups = 0;  // pieces that carry the load
 };
 
+/// A load's pieces on one mesh, each under its own unit force; any number of systems of that mesh can be
+/// asked.
+struct PressGroups {
+  double hertz_compliance = 0.0;  // m/N
+  std::vector<double> weights;    // of each piece, share of the patch
+  std::vector<VecX> forces;       // |dof| each
+};
+
+PressGroups find_press_groups(const geometry::ShellMesh& mesh,
+                              const std::vector<geometry::CellContact>& contacts, const ContactPress& load);
+
 /// Each load by itself under a unit force, on one factor. `mass` is the lumped mass (|dof|), for the elastic
 /// part of a screened compliance.
-std::vector<ContactAnswer> press(const stress::ShellSystem& system, const geometry::ShellMesh& mesh,
-                                 const std::vector<geometry::CellContact>& contacts, const VecX& mass,
-                                 const std::vector<ContactPress>& loads);
+std::vector<ContactAnswer> press(const stress::ShellSystem& system, const VecX& mass,
+                                 const std::vector<PressGroups>& loads);
 
 }  // namespace shatterbox::fracture

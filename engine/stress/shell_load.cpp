@@ -126,15 +126,23 @@ std::vector<int> flood_elements(const geometry::ShellElements& elements, int fir
   return found;
 }
 
-}  // namespace
-
-LoadPatch find_load_patch(const geometry::ShellMesh& mesh, const Vec3& point, double radius) {
-  constexpr double kPointsPerRadius = 6.0;
-  LoadPatch patch;
-  patch.radius = radius;
-  if (mesh.cells.empty()) return patch;
+/// Sets the patch's centre and cell: the nearest point of the material, in the first cell of those that tie.
+void find_nearest_cell(const geometry::ShellMesh& mesh, const Vec3& point, LoadPatch& patch) {
+  // A cell is within its element's longest edge of each of the element's corners: that leaves few to measure.
+  const auto& positions = mesh.elements->mesh.positions;
+  std::vector<double> to_corner(mesh.cells.size()), reach(mesh.cells.size());
+  double farthest_needed = 0.0;
+  for (Size c = 0; c < mesh.cells.size(); ++c) {
+    const geometry::Triangle& t = mesh.elements->mesh.triangles[at(mesh.cells[c].element)];
+    const Vec3 &p0 = positions[at(t[0])], &p1 = positions[at(t[1])], &p2 = positions[at(t[2])];
+    to_corner[c] = core::sqrt((point - p0).squaredNorm());
+    reach[c] = core::sqrt(std::max((p1 - p0).squaredNorm(), (p2 - p0).squaredNorm()));
+    if (c == 0 || to_corner[c] + reach[c] < farthest_needed) farthest_needed = to_corner[c] + reach[c];
+  }
+  farthest_needed *= 1.0 + 1e-9;
   double least = 0.0;
   for (Size c = 0; c < mesh.cells.size(); ++c) {
+    if (to_corner[c] - reach[c] > farthest_needed) continue;
     const geometry::ShellCell& cell = mesh.cells[c];
     const Vec3 nearest =
         nearest_on_polygon(point, cell_polygon(mesh, cell), element_normal(*mesh.elements, cell.element));
@@ -143,8 +151,18 @@ LoadPatch find_load_patch(const geometry::ShellMesh& mesh, const Vec3& point, do
     least = distance;
     patch.nearest_cell = static_cast<int>(c);
     patch.centre = nearest;
+    farthest_needed = std::min(farthest_needed, core::sqrt(distance) * (1.0 + 1e-9));
   }
+}
 
+}  // namespace
+
+LoadPatch find_load_patch(const geometry::ShellMesh& mesh, const Vec3& point, double radius) {
+  constexpr double kPointsPerRadius = 6.0;
+  LoadPatch patch;
+  patch.radius = radius;
+  if (mesh.cells.empty()) return patch;
+  find_nearest_cell(mesh, point, patch);
   const int first = mesh.cells[at(patch.nearest_cell)].element;
   std::vector<char> is_near(mesh.elements->mesh.triangles.size(), 0);
   for (const int element : flood_elements(*mesh.elements, first, patch.centre, radius))

@@ -5,11 +5,14 @@
 #include <array>
 #include <mutex>
 #include <optional>
+#include <span>
 
 #include "engine/core/elementary.h"
+#include "engine/core/parallel.h"
 #include "engine/core/random.h"
 #include "engine/stress/elimination_order.h"
 #include "engine/stress/front_factor.h"
+#include "engine/stress/front_tiles.h"
 #include "engine/stress/rigid_modes.h"
 
 namespace shatterbox::stress {
@@ -21,7 +24,6 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr double kTolerance = 1e-10;   // of the residual
 constexpr int kIterations = 40;        // of the refinement; 1 to 3 do for a body without mechanisms
 constexpr double kShiftRetry = 100.0;  // a factor that fails is made again with a shift so much larger
 
@@ -32,8 +34,60 @@ struct SystemCell {
   std::array<int, kElementDofs> dofs{};
 };
 
+constexpr Size kMostLanes = 4;
+
+/// product += element's matrix times x, one vector.
+void add_product(const double* entry, const SystemCell& cell, const double* x, double* product) {
+  std::array<double, kElementDofs> u;
+  std::array<double, kElementDofs> f{};
+  for (Size i = 0; i < kElementDofs; ++i) u[i] = x[cell.dofs[i]];
+  for (Size column = 0; column < kElementDofs; ++column) {
+    double sum = *entry++ * u[column];
+    for (Size row = column + 1; row < kElementDofs; ++row, ++entry) {
+      f[row] += *entry * u[column];
+      sum += *entry * u[row];
+    }
+    f[column] += sum;
+  }
+  for (Size i = 0; i < kElementDofs; ++i) product[cell.dofs[i]] += cell.fraction * f[i];
+}
+
+/// The same for four vectors side by side.
+void add_products(const double* entry, const SystemCell& cell, const double* x, double* product) {
+  using tiles::Pair;
+  Pair u[kElementDofs][2];
+  Pair f[kElementDofs][2] = {};
+  for (Size i = 0; i < kElementDofs; ++i) {
+    const double* const from = x + kMostLanes * at(cell.dofs[i]);
+    u[i][0] = *reinterpret_cast<const Pair*>(from);
+    u[i][1] = *reinterpret_cast<const Pair*>(from + 2);
+  }
+  for (Size column = 0; column < kElementDofs; ++column) {
+    const Pair diagonal = {*entry, *entry};
+    ++entry;
+    const Pair u0 = u[column][0], u1 = u[column][1];
+    Pair sum0 = diagonal * u0, sum1 = diagonal * u1;
+    for (Size row = column + 1; row < kElementDofs; ++row, ++entry) {
+      const Pair e = {*entry, *entry};
+      f[row][0] += e * u0;
+      f[row][1] += e * u1;
+      sum0 += e * u[row][0];
+      sum1 += e * u[row][1];
+    }
+    f[column][0] += sum0;
+    f[column][1] += sum1;
+  }
+  const Pair fraction = {cell.fraction, cell.fraction};
+  for (Size i = 0; i < kElementDofs; ++i) {
+    double* const to = product + kMostLanes * at(cell.dofs[i]);
+    *reinterpret_cast<Pair*>(to) += fraction * f[i][0];
+    *reinterpret_cast<Pair*>(to + 2) += fraction * f[i][1];
+  }
+}
+
 struct Refinement {
-  VecX x, residual, direction, product;
+  VecX x, image;  // image: K x
+  VecX residual, direction;
   double rho = 0.0, load_norm = 0.0;
   bool is_done = false;
 };
@@ -64,13 +118,10 @@ struct ShellSystem::State {
 
   double seconds() const;  // unit of time: length / speed of sound
   bool is_balanced() const { return screening_squared == 0.0; }
-  VecX multiply_stiffness(const VecX& x) const;
-  VecX multiply(const VecX& x) const {
-    return multiply_stiffness(x) + screening_squared * mass.cwiseProduct(x);
-  }
+  std::vector<VecX> multiply_stiffness(const std::vector<const VecX*>& all) const;
   void restrict_to_active(VecX& x) const;
   std::vector<VecX> precondition(const std::vector<const VecX*>& loads) const;
-  void refine(std::vector<Refinement>& all) const;
+  void refine(std::span<Refinement> all, double tolerance) const;
   double compute_period() const;
 };
 
@@ -168,25 +219,31 @@ double ShellSystem::State::seconds() const {
   return stiffness->length * core::sqrt(stiffness->properties.density / stiffness->properties.youngs_modulus);
 }
 
-VecX ShellSystem::State::multiply_stiffness(const VecX& x) const {
-  VecX result = VecX::Zero(x.size());
-  for (const SystemCell& cell : cells) {
-    const double* entry = stiffness->matrices[at(cell.element)].stiffness.data();
-    std::array<double, kElementDofs> u;
-    std::array<double, kElementDofs> f{};
-    for (Size i = 0; i < kElementDofs; ++i) u[i] = x(cell.dofs[i]);
-    for (Size column = 0; column < kElementDofs; ++column) {
-      double sum = *entry++ * u[column];
-      for (Size row = column + 1; row < kElementDofs; ++row, ++entry) {
-        f[row] += *entry * u[column];
-        sum += *entry * u[row];
-      }
-      f[column] += sum;
+/// K times each vector; lanes never mix and sum in one order, so company changes no bits.
+std::vector<VecX> ShellSystem::State::multiply_stiffness(const std::vector<const VecX*>& all) const {
+  std::vector<VecX> results(all.size());
+  for (Size first = 0; first < all.size(); first += kMostLanes) {
+    const Size count = std::min(kMostLanes, all.size() - first);
+    const Size lanes = count == 1 ? 1 : kMostLanes;
+    const Size size = static_cast<Size>(mass.size());
+    std::vector<double> x(size * lanes, 0.0), product(size * lanes, 0.0);
+    for (Size l = 0; l < count; ++l)
+      for (Size i = 0; i < size; ++i) x[lanes * i + l] = (*all[first + l])(static_cast<Eigen::Index>(i));
+    for (const SystemCell& cell : cells) {
+      const double* const entries = stiffness->matrices[at(cell.element)].stiffness.data();
+      if (lanes == 1)
+        add_product(entries, cell, x.data(), product.data());
+      else
+        add_products(entries, cell, x.data(), product.data());
     }
-    for (Size i = 0; i < kElementDofs; ++i) result(cell.dofs[i]) += cell.fraction * f[i];
+    for (Size l = 0; l < count; ++l) {
+      VecX& result = results[first + l];
+      result.resize(mass.size());
+      for (Size i = 0; i < size; ++i) result(static_cast<Eigen::Index>(i)) = product[lanes * i + l];
+      restrict_to_active(result);
+    }
   }
-  restrict_to_active(result);
-  return result;
+  return results;
 }
 
 void ShellSystem::State::restrict_to_active(VecX& x) const {
@@ -215,7 +272,7 @@ std::vector<VecX> ShellSystem::State::precondition(const std::vector<const VecX*
 /// Conjugate gradients with the factor as preconditioner: iterative refinement that also copes with the few
 /// soft modes that the factor's shift disturbs. Each load goes its own way; only the solves are done
 /// together.
-void ShellSystem::State::refine(std::vector<Refinement>& all) const {
+void ShellSystem::State::refine(std::span<Refinement> all, double tolerance) const {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     std::vector<const VecX*> residuals;
     std::vector<Refinement*> open;
@@ -226,29 +283,32 @@ void ShellSystem::State::refine(std::vector<Refinement>& all) const {
       }
     if (open.empty()) return;
     const std::vector<VecX> corrections = precondition(residuals);
+    std::vector<const VecX*> directions;
     for (Size i = 0; i < open.size(); ++i) {
       Refinement& one = *open[i];
       const double rho = one.residual.dot(corrections[i]);
-      if (!(rho > 0.0)) {
-        one.is_done = true;
-        continue;
-      }
+      one.is_done = !(rho > 0.0);
       if (iteration == 0)
         one.direction = corrections[i];
       else
         one.direction = corrections[i] + (rho / one.rho) * one.direction;
       one.rho = rho;
-      one.product = multiply(one.direction);
-      const double curvature = one.direction.dot(one.product);
-      if (!(curvature > 1e-30 * rho)) {
-        one.is_done = true;
-        continue;
-      }
-      const double step = rho / curvature;
+      directions.push_back(&one.direction);
+    }
+    const std::vector<VecX> images = multiply_stiffness(directions);
+    for (Size i = 0; i < open.size(); ++i) {
+      Refinement& one = *open[i];
+      if (one.is_done) continue;
+      const VecX product = images[i] + screening_squared * mass.cwiseProduct(one.direction);
+      const double curvature = one.direction.dot(product);
+      one.is_done = !(curvature > 1e-30 * one.rho);
+      if (one.is_done) continue;
+      const double step = one.rho / curvature;
       one.x += step * one.direction;
-      one.residual -= step * one.product;
+      one.image += step * images[i];
+      one.residual -= step * product;
       if (is_balanced()) rigid.balance(one.residual);
-      one.is_done = one.residual.norm() <= kTolerance * one.load_norm;
+      one.is_done = one.residual.norm() <= tolerance * one.load_norm;
     }
   }
 }
@@ -274,8 +334,10 @@ double ShellSystem::State::compute_period() const {
       x /= norm;
     }
     Eigen::Matrix4d stiff, heavy;
+    for (Size j = 0; j < kVectors; ++j) pointers[j] = &basis[j];
+    const std::vector<VecX> products = multiply_stiffness(pointers);
     for (Size j = 0; j < kVectors; ++j) {
-      const VecX product = multiply_stiffness(basis[j]);
+      const VecX& product = products[j];
       const VecX momentum = mass.cwiseProduct(basis[j]);
       for (Size i = 0; i < kVectors; ++i) {
         stiff(static_cast<int>(i), static_cast<int>(j)) = basis[i].dot(product);
@@ -323,44 +385,40 @@ core::Result<std::shared_ptr<const ShellSystem>> ShellSystem::make(
   return std::shared_ptr<const ShellSystem>(new ShellSystem(std::move(state)));
 }
 
-std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads) const {
+std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads, double tolerance) const {
   const State& state = *state_;
   const double length = state.stiffness->length;
   const double force = state.stiffness->force_unit();
-  std::vector<Refinement> work(loads.size());
-  for (Size l = 0; l < loads.size(); ++l) {
-    Refinement& one = work[l];
-    one.residual = loads[l] / force;
-    one.residual.tail(one.residual.size() - state.vertex_dofs) /= length;
-    state.restrict_to_active(one.residual);
-    one.load_norm = one.residual.norm();
-    if (state.is_balanced()) state.rigid.balance(one.residual);
-    one.x = VecX::Zero(one.residual.size());
-    one.is_done = !(one.residual.norm() > 1e-14 * one.load_norm);  // nothing, or a pure rigid acceleration
-  }
-  std::vector<VecX> balanced(loads.size());
-  for (Size l = 0; l < loads.size(); ++l) balanced[l] = work[l].residual;
-  state.refine(work);
-
   std::vector<ShellSolution> solutions(loads.size());
-  for (Size l = 0; l < loads.size(); ++l) {
-    VecX& x = work[l].x;
-    if (state.is_balanced()) state.rigid.remove_motion(x);
-    const VecX product = state.multiply_stiffness(x);
-    VecX residual = balanced[l] - product - state.screening_squared * state.mass.cwiseProduct(x);
-    if (state.is_balanced()) state.rigid.balance(residual);
-    ShellSolution& solution = solutions[l];
-    solution.residual = work[l].load_norm > 0.0 ? residual.norm() / work[l].load_norm : 0.0;
-    solution.elastic_compliance = x.dot(product) * force * length;
-    x.head(state.vertex_dofs) *= length;
-    solution.displacement = std::move(x);
-    solution.compliance = loads[l].dot(solution.displacement);
-  }
+  core::parallel_chunks(loads.size(), kMostLanes, [&](Size begin, Size end) {
+    std::vector<Refinement> work(end - begin);
+    for (Size l = 0; l < work.size(); ++l) {
+      Refinement& one = work[l];
+      one.residual = loads[begin + l] / force;
+      one.residual.tail(one.residual.size() - state.vertex_dofs) /= length;
+      state.restrict_to_active(one.residual);
+      one.load_norm = one.residual.norm();
+      if (state.is_balanced()) state.rigid.balance(one.residual);
+      one.x = one.image = VecX::Zero(one.residual.size());
+      one.is_done = !(one.residual.norm() > 1e-14 * one.load_norm);  // nothing, or a rigid acceleration
+    }
+    state.refine(work, tolerance);
+    for (Size l = 0; l < work.size(); ++l) {
+      Refinement& one = work[l];
+      if (state.is_balanced()) state.rigid.remove_motion(one.x);
+      ShellSolution& solution = solutions[begin + l];
+      solution.residual = one.load_norm > 0.0 ? one.residual.norm() / one.load_norm : 0.0;
+      solution.elastic_compliance = one.x.dot(one.image) * force * length;
+      one.x.head(state.vertex_dofs) *= length;
+      solution.displacement = std::move(one.x);
+      solution.compliance = loads[begin + l].dot(solution.displacement);
+    }
+  });
   return solutions;
 }
 
-ShellSolution ShellSystem::solve(const VecX& load) const {
-  return solve(std::vector<VecX>{load}).front();
+ShellSolution ShellSystem::solve(const VecX& load, double tolerance) const {
+  return solve(std::vector<VecX>{load}, tolerance).front();
 }
 
 double ShellSystem::first_period() const {

@@ -38,10 +38,11 @@ class ShellSystem {
 
   /// Solves for each load (|dof|: N at vertices, N m at edges). With s = 0 every connected part of the mesh
   /// is first relieved of the rigid motion that its load causes and that its support allows, weighted by
-  /// mass: b = J - M R R^T J. With s > 0 the raw load is used. Same bits whatever the number of loads or
-  /// threads.
-  std::vector<ShellSolution> solve(const std::vector<VecX>& loads) const;
-  ShellSolution solve(const VecX& load) const;
+  /// mass: b = J - M R R^T J. With s > 0 the raw load is used. `tolerance`: of the residual that is good
+  /// enough. Same bits whatever the number of loads or threads.
+  std::vector<ShellSolution> solve(const std::vector<VecX>& loads, double tolerance = kFineResidual) const;
+  ShellSolution solve(const VecX& load, double tolerance = kFineResidual) const;
+  static constexpr double kFineResidual = 1e-10;
 
   /// Longest period of free (or supported) vibration, s, to about 1 %; computed at the first call, then kept.
   /// Only of use with s = 0.

@@ -45,6 +45,11 @@ const ShellSystemCache::System& ShellSystemCache::screened(int exponent) {
   return get(exponent, screening_of(exponent));
 }
 
+const ShellFigures& ShellSystemCache::figures() {
+  std::call_once(has_figures_, [this] { figures_ = make_shell_figures(*stiffness_, *mesh_); });
+  return figures_;
+}
+
 int ShellSystemCache::count() const {
   const std::lock_guard lock(mutex_);
   return static_cast<int>(systems_.size());

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "engine/core/result.h"
+#include "engine/stress/shell_figures.h"
 #include "engine/stress/shell_system.h"
 
 namespace shatterbox::stress {
@@ -28,6 +29,9 @@ class ShellSystemCache {
   /// The system with s = 2^exponent. Any thread; made once.
   const System& screened(int exponent);
 
+  /// What does not depend on a load. Any thread; made at the first call.
+  const ShellFigures& figures();
+
   const geometry::ShellMesh& mesh() const { return *mesh_; }
   const ShellStiffness& stiffness() const { return *stiffness_; }
   const std::shared_ptr<const ShellStiffness>& shared_stiffness() const { return stiffness_; }
@@ -41,6 +45,8 @@ class ShellSystemCache {
   std::shared_ptr<const ShellStiffness> stiffness_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;
   ShellSupport support_;
+  std::once_flag has_figures_;
+  ShellFigures figures_;
   // Guards systems_, and is never held while one is made: a thread that waits inside a parallel loop may pick
   // up work that asks for the same system. Two threads that ask at once both make it, to the same bits, and
   // the first is kept.

@@ -35,29 +35,30 @@ double least_stressed_area(const geometry::ShellMesh& mesh) {
   return least;
 }
 
-double least_stressed_area(const geometry::ShellMesh& mesh,
-                           const std::vector<geometry::CellContact>& contacts) {
+std::vector<double> stressed_areas(const geometry::ShellMesh& mesh,
+                                   const std::vector<geometry::CellContact>& contacts) {
   std::vector<double> sum(mesh.cells.size()), weighted(mesh.cells.size());
   const auto add = [&](Size to, Size from) {
     const double area = mesh.cells[from].area;
+    const double stiff = stiff_area(mesh, from);
     sum[to] += area;
-    weighted[to] += area * area / stiff_area(mesh, from);
+    if (stiff > 0.0) weighted[to] += area * area / stiff;
   };
   for (Size c = 0; c < mesh.cells.size(); ++c) add(c, c);
   for (const geometry::CellContact& contact : contacts) {
     add(static_cast<Size>(contact.cell_a), static_cast<Size>(contact.cell_b));
     add(static_cast<Size>(contact.cell_b), static_cast<Size>(contact.cell_a));
   }
-  double least = 0.0;
-  bool has_any = false;
-  for (Size c = 0; c < mesh.cells.size(); ++c) {
-    if (!(weighted[c] > 0.0))
-      return least_stressed_area(mesh);  // a cell without area: no average to speak of
-    const double area = sum[c] * sum[c] / weighted[c];
-    least = has_any ? std::min(least, area) : area;
-    has_any = true;
-  }
-  return least;
+  for (Size c = 0; c < mesh.cells.size(); ++c)
+    // Without area there is no average: the cell's own stress is taken.
+    sum[c] = weighted[c] > 0.0 ? sum[c] * sum[c] / weighted[c] : stiff_area(mesh, c);
+  return sum;
+}
+
+double least_stressed_area(const geometry::ShellMesh& mesh,
+                           const std::vector<geometry::CellContact>& contacts) {
+  const std::vector<double> areas = stressed_areas(mesh, contacts);
+  return areas.empty() ? 0.0 : *std::min_element(areas.begin(), areas.end());
 }
 
 double stress_bound(const ShellProperties& properties, double least_area, double energy) {

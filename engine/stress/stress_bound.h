@@ -15,6 +15,10 @@ double least_stressed_area(const geometry::ShellMesh& mesh);
 double least_stressed_area(const geometry::ShellMesh& mesh,
                            const std::vector<geometry::CellContact>& contacts);
 
+/// The same for the average of each cell (|cells|), m2.
+std::vector<double> stressed_areas(const geometry::ShellMesh& mesh,
+                                   const std::vector<geometry::CellContact>& contacts);
+
 /// No cell's first principal stress on either face is above this, Pa, when the elastic energy of the shell is
 /// at most `energy` (J): sqrt(8 E / (1 - nu^2) * energy / (thickness * area)). The energy of a contact is at
 /// most the kinetic energy m_eff v^2 / 2 before it. The stress of a spin or another load comes on top.

@@ -1,0 +1,343 @@
+#include "engine/fracture/impact_force.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <Eigen/Eigenvalues>
+
+#include "engine/core/elementary.h"
+#include "engine/fracture/cell_flaws.h"
+#include "engine/stress/contact_duration.h"
+#include "engine/stress/shell_load.h"
+#include "engine/stress/stress_bound.h"
+
+namespace shatterbox::fracture {
+namespace {
+
+using Size = std::size_t;
+Size at(int i) {
+  return static_cast<Size>(i);
+}
+
+constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
+// The same, as a share of the unbroken body's size: a mesh finer than that gives the same answer, crumbs
+// included.
+constexpr double kPatchShare = 0.05;
+constexpr int kMostScreenings = 6;         // steps of the search for the duration
+constexpr double kLargestResidual = 1e-4;  // of a solve that is an answer
+// Compliance of a thin plate at a corner over that far from its rim, about: the search for the duration
+// begins below the screening that it ends at.
+constexpr double kRimCompliance = 8.0;
+
+using Clock = std::chrono::steady_clock;
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+stress::ShellProperties properties_of(const ShellSubject& subject) {
+  stress::ShellProperties p;
+  p.youngs_modulus = subject.material.young;
+  p.poisson_ratio = subject.material.poisson;
+  p.density = subject.material.density;
+  p.thickness = subject.thickness;
+  return p;
+}
+
+stress::ShellSupport support_of(const ShellSubject& subject, const geometry::ShellMesh& mesh) {
+  if (subject.clamped_vertices.empty()) return {};
+  const geometry::ShellElements& elements = *mesh.elements;
+  std::vector<char> vertices(elements.mesh.positions.size(), 0);
+  for (const int v : subject.clamped_vertices) vertices[at(v)] = 1;
+  std::vector<char> edges(elements.topology.edges.size(), 0);
+  for (Size e = 0; e < edges.size(); ++e) {
+    const auto& ends = elements.topology.edges[e];
+    edges[e] = vertices[at(ends[0])] && vertices[at(ends[1])];
+  }
+  return stress::find_support(mesh, vertices, edges);
+}
+
+bool is_collision(const ShellLoad& load) {
+  return load.closing_speed > 0.0 && load.effective_mass > 0.0;
+}
+
+ImpactForce::ImpactForce(const ShellSubject& subject, const ShellImpact& impact,
+                         const FractureSettings& settings)
+    : subject_(subject), impact_(impact), settings_(settings) {}
+
+bool ImpactForce::prepare(std::string& problem) {
+  if (!subject_.mesh || subject_.mesh->cells.empty()) {
+    problem = "there is no material";
+    return false;
+  }
+  const stress::ShellFigures& figures = subject_.systems->figures();
+  const double least_radius =
+      std::max({subject_.thickness, kPatchShare * figures.size, kPatchElements * figures.mean_edge_length});
+  for (const ShellLoad& load : impact_.loads) {
+    if (!(load.impulse > 0.0) && !(load.closing_speed > 0.0)) continue;
+    if (!(load.direction.squaredNorm() > 0.5)) continue;
+    Press press;
+    press.load = &load;
+    press.contact.point = load.point_material;
+    press.contact.direction = load.direction;
+    press.contact.hertz_compliance = std::max(0.0, load.hertz_compliance);
+    press.contact.radius =
+        settings_.patch_radius > 0.0 ? settings_.patch_radius : std::max(least_radius, load.hertz_radius);
+    if (presses_.empty() || load.impulse > hardest().load->impulse) hardest_ = presses_.size();
+    presses_.push_back(press);
+  }
+  if (presses_.empty()) problem = "no load";
+  return !presses_.empty();
+}
+
+std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
+  // Loads add up, so do the roots of their energies.
+  double root_energy = 0.0;
+  for (const Press& press : presses_) {
+    const ShellLoad& load = *press.load;
+    if (!is_collision(load) || impact_.given_duration) return std::nullopt;
+    root_energy += core::sqrt(0.5 * load.effective_mass) * load.closing_speed;
+  }
+  const stress::ShellFigures& figures = subject_.systems->figures();
+  if (impact_.spin_material.norm() * figures.size > 1.0) return std::nullopt;
+  const double energy = root_energy * root_energy;
+  const double per_root_area = stress::stress_bound(properties_of(subject_), 1.0, energy);
+  Bound worst;
+  for (Size c = 0; c < subject_.mesh->cells.size(); ++c) {
+    const double area = figures.stressed_areas[c];
+    if (!(area > 0.0)) return std::nullopt;
+    const double strength = weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(c));
+    const double stress = per_root_area / core::sqrt(area);
+    if (!(stress < strength)) return std::nullopt;
+    if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
+  }
+  return worst;
+}
+
+bool ImpactForce::use(const System& system, std::string& problem) {
+  if (system)
+    system_ = system.value();
+  else
+    problem = system.error();
+  return static_cast<bool>(system);
+}
+
+bool ImpactForce::has_accuracy(std::string& problem) const {
+  if (residual() < kLargestResidual) return true;
+  problem = "the solve did not reach its accuracy";
+  return false;
+}
+
+double ImpactForce::residual() const {
+  double worst = 0.0;
+  for (const ContactAnswer& answer : answers_) worst = std::max(worst, answer.residual);
+  return worst;
+}
+
+bool ImpactForce::answer_lead(Size lead, Decision& decision, std::string& problem) {
+  const auto start = Clock::now();
+  answers_ = press(*system_, subject_.systems->figures().lumped_mass, {groups_[lead]});
+  decision.solve_ms += milliseconds_since(start);
+  return has_accuracy(problem);
+}
+
+bool ImpactForce::answer_all(Decision& decision, std::string& problem) {
+  const auto start = Clock::now();
+  answers_ = press(*system_, subject_.systems->figures().lumped_mass, groups_);
+  decision.solve_ms += milliseconds_since(start);
+  return has_accuracy(problem);
+}
+
+/// A ball on a held body feels the body's inertia in its way; for free bodies it is in the effective mass.
+double ImpactForce::felt_compliance(const ContactAnswer& answer) const {
+  return subject_.clamped_vertices.empty() ? answer.elastic_compliance : answer.compliance;
+}
+
+double ImpactForce::duration_of(const Press& press, const ContactAnswer& answer) const {
+  if (impact_.given_duration) return *impact_.given_duration;
+  return stress::series_duration(press.load->effective_mass, press.contact.hertz_compliance,
+                                 felt_compliance(answer));
+}
+
+/// The load whose duration counts: the hardest that has one.
+std::optional<Size> ImpactForce::find_lead() const {
+  std::optional<Size> lead;
+  for (Size i = 0; i < presses_.size(); ++i) {
+    if (!is_collision(*presses_[i].load) && !impact_.given_duration) continue;
+    if (!lead || presses_[i].load->impulse > presses_[*lead].load->impulse) lead = i;
+  }
+  return lead;
+}
+
+/// Shorter than half the first period? The lead's own static displacement is a trial motion: by Rayleigh's
+/// quotient the first period is at least as long as the one it would have, which mostly settles the matter.
+bool ImpactForce::is_short() const {
+  const VecX& u = answers_.front().displacement;
+  const double inertia = (subject_.systems->figures().lumped_mass.array() * u.array().square()).sum();
+  const double trial_period =
+      2.0 * core::kPi * core::sqrt(inertia / std::max(answers_.front().elastic_compliance, 1e-300));
+  return duration_ < 0.5 * trial_period || duration_ < 0.5 * system_->first_period();
+}
+
+/// A screening that is most likely at or below the one of the duration: from an infinite plate, whose
+/// compliance under screening s is 1 / (8 s sqrt(D rho t)), half of it elastic, times the effect of a rim.
+int ImpactForce::guess_exponent(const Press& lead) const {
+  if (impact_.given_duration) return stress::quantise_screening(1.0 / duration_);
+  const stress::ShellProperties p = properties_of(subject_);
+  const double t = p.thickness;
+  const double stiffness = p.youngs_modulus * t * t * t / (12.0 * (1.0 - p.poisson_ratio * p.poisson_ratio));
+  const double a = core::kPi * core::kPi * lead.load->effective_mass * kRimCompliance / 16.0 /
+                   core::sqrt(stiffness * p.density * t);
+  const double b = core::kPi * core::kPi * lead.load->effective_mass * lead.contact.hertz_compliance;
+  const double duration = 0.5 * (a + core::sqrt(a * a + 4.0 * b));  // T^2 = a T + b
+  return std::max(stress::quantise_screening(1.0 / duration), stress::quantise_screening(1.0 / duration_));
+}
+
+bool ImpactForce::screen(int exponent, Size lead, Decision& decision, std::string& problem) {
+  const auto start = Clock::now();
+  const System& screened = subject_.systems->screened(exponent);
+  decision.factor_ms += milliseconds_since(start);
+  if (!use(screened, problem) || !answer_lead(lead, decision, problem)) return false;
+  duration_ = duration_of(presses_[lead], answers_.front());
+  return true;
+}
+
+/// The lowest screening that is the nearest power of two to one over its own duration. A higher screening
+/// never makes the duration longer, so the search from below ends there, wherever it begins.
+bool ImpactForce::find_screening(Size lead, Decision& decision, std::string& problem) {
+  const int lowest = stress::quantise_screening(1.0 / duration_);
+  exponent_ = guess_exponent(presses_[lead]);
+  if (exponent_ > lowest) {
+    if (!screen(exponent_, lead, decision, problem)) return false;
+    const int next = stress::quantise_screening(1.0 / duration_);
+    exponent_ = next > exponent_ ? next : lowest;  // else it began too high
+  }
+  std::vector<int> tried;
+  while (static_cast<int>(tried.size()) < kMostScreenings &&
+         std::find(tried.begin(), tried.end(), exponent_) == tried.end()) {
+    tried.push_back(exponent_);
+    if (!screen(exponent_, lead, decision, problem)) return false;
+    exponent_ = stress::quantise_screening(1.0 / duration_);
+  }
+  exponent_ = tried.back();
+  return true;
+}
+
+bool ImpactForce::settle(Decision& decision, std::string& problem) {
+  const stress::ShellFigures& figures = subject_.systems->figures();
+  for (const Press& press : presses_)
+    groups_.push_back(find_press_groups(*subject_.mesh, figures.contacts, press.contact));
+  const auto start = Clock::now();
+  const int made_before = subject_.systems->count();
+  const System& unscreened = subject_.systems->unscreened();
+  decision.factor_ms += milliseconds_since(start);
+  if (!use(unscreened, problem)) return false;
+  duration_ = impact_.contact_average;
+  if (const auto lead = find_lead()) {
+    has_lead_ = true;
+    if (!answer_lead(*lead, decision, problem)) return false;
+    duration_ = duration_of(presses_[*lead], answers_.front());
+    exponent_ = stress::quantise_screening(1.0 / duration_);
+    is_screened_ = is_short();
+    if (is_screened_ && !find_screening(*lead, decision, problem)) return false;
+  }
+  if ((!has_lead_ || presses_.size() > 1) && !answer_all(decision, problem)) return false;
+  decision.factorisations += subject_.systems->count() - made_before;
+  for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
+  return true;
+}
+
+void ImpactForce::settle_force(Press& press, const ContactAnswer& answer) {
+  const ShellLoad& load = *press.load;
+  const double compliance = press.contact.hertz_compliance + felt_compliance(answer);
+  if (impact_.given_duration) {
+    press.duration = *impact_.given_duration;
+    press.first_force = stress::kPeakOverMeanHalfSine * load.impulse / press.duration;
+  } else if (is_collision(load)) {
+    press.duration = duration_of(press, answer);
+    press.first_force = load.closing_speed * core::sqrt(load.effective_mass / compliance);
+    press.energy = 0.5 * load.effective_mass * load.closing_speed * load.closing_speed;
+  } else {
+    press.duration = impact_.contact_average;
+    press.first_force = load.impulse / press.duration;
+  }
+  press.force = press.first_force;
+  press.first_compliance = answer.compliance;
+  const double elastic =
+      0.5 * press.force * press.force * (press.contact.hertz_compliance + answer.elastic_compliance);
+  if (press.energy == 0.0) press.energy = elastic;
+  elastic_energy_ += std::min(elastic, press.energy);
+}
+
+/// Later generations are screened. Below the first frequency that adds the body's own inertia, as one rigid
+/// whole.
+void ImpactForce::prepare_cracked() {
+  if (is_cracked_) return;
+  is_cracked_ = true;
+  if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / system_->first_period());
+  if (is_screened_ || !subject_.clamped_vertices.empty()) return;
+  const double s = stress::screening_of(exponent_);
+  for (Press& press : presses_) press.first_compliance += rigid_mobility(*press.load) / (s * s);
+}
+
+/// Inverse mass at a load along its direction, 1/kg.
+double ImpactForce::rigid_mobility(const ShellLoad& load) const {
+  const geometry::MassProperties& mass = subject_.systems->figures().mass;
+  const Vec3 arm = (load.point_material - mass.centre).cross(load.direction);
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);
+  double turning = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double moment = axes.eigenvalues()[i];
+    const double a = axes.eigenvectors().col(i).dot(arm);
+    if (moment > 1e-12 * mass.mass * axes.eigenvalues()[2]) turning += a * a / moment;
+  }
+  return 1.0 / mass.mass + turning;
+}
+
+bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
+                               const std::vector<geometry::CellContact>& contacts, Decision& decision,
+                               std::string& problem) {
+  prepare_cracked();
+  const auto start = Clock::now();
+  const auto& stiffness = subject_.systems->shared_stiffness();
+  const System system =
+      stress::ShellSystem::make(stiffness, mesh, stress::screening_of(exponent_), support_of(subject_, mesh));
+  decision.factor_ms += milliseconds_since(start);
+  ++decision.factorisations;
+  if (!use(system, problem)) return false;
+  const auto solve_start = Clock::now();
+  groups_.clear();
+  for (const Press& press : presses_) groups_.push_back(find_press_groups(mesh, contacts, press.contact));
+  answers_ = press(*system_, stress::lumped_mass(*stiffness, mesh), groups_);
+  decision.solve_ms += milliseconds_since(solve_start);
+  if (!has_accuracy(problem)) return false;
+  const double s = system_->screening();
+  for (Size i = 0; i < presses_.size(); ++i) {
+    Press& press = presses_[i];
+    const double hertz = press.contact.hertz_compliance;
+    const double other = press.load->other_inverse_mass / (s * s);
+    const double left = std::max(0.0, 1.0 - decision.fracture_energy / std::max(press.energy, 1e-300));
+    press.force = press.first_force * (hertz + press.first_compliance + other) /
+                  (hertz + answers_[i].compliance + other) * core::sqrt(left);
+    press.force = std::min(press.force, press.first_force);
+    // The springs cannot hold more than the energy that is left.
+    const double most = core::sqrt(2.0 * press.energy * left / (hertz + answers_[i].elastic_compliance));
+    press.force = std::min(press.force, most);
+  }
+  return true;
+}
+
+VecX ImpactForce::displacement(const geometry::ShellMesh& mesh) const {
+  VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
+  for (Size i = 0; i < presses_.size(); ++i) displacement += presses_[i].force * answers_[i].displacement;
+  if (impact_.spin_material.squaredNorm() > 0.0)
+    displacement +=
+        system_
+            ->solve(stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh,
+                                             impact_.spin_material, subject_.systems->figures().mass.centre))
+            .displacement;
+  return displacement;
+}
+
+}  // namespace shatterbox::fracture

@@ -1,0 +1,99 @@
+// How hard and how long an impact presses on a shell: its duration from the compliances of both bodies, the
+// peak force of each load, and what is left of it once the body cracks.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/fracture/decide_shell.h"
+#include "engine/fracture/rigid_contact.h"
+#include "engine/stress/shell_stiffness.h"
+#include "engine/stress/shell_system.h"
+
+namespace shatterbox::fracture {
+
+/// A load on the way to its force.
+struct Press {
+  const ShellLoad* load = nullptr;
+  ContactPress contact;
+  double first_force = 0.0;       // N, peak, on the intact body
+  double first_compliance = 0.0;  // m/N, intact, in the system of the later generations
+  double force = 0.0;             // N, in this generation
+  double duration = 0.0;          // s
+  double energy = 0.0;            // J, kinetic energy behind a collision; else elastic energy
+};
+
+stress::ShellProperties properties_of(const ShellSubject& subject);
+
+/// The support of a mesh of this body; edges between clamped vertices are held in a frame that does not turn.
+stress::ShellSupport support_of(const ShellSubject& subject, const geometry::ShellMesh& mesh);
+
+bool is_collision(const ShellLoad& load);
+
+/// All loads of one impact on one prepared subject. Both must outlive it.
+class ImpactForce {
+ public:
+  ImpactForce(const ShellSubject& subject, const ShellImpact& impact, const FractureSettings& settings);
+
+  /// Places the loads. False, and `problem` says why, if there is nothing to press or to be pressed.
+  bool prepare(std::string& problem);
+
+  /// Stress bound over strength, at the worst place, if the kinetic energy can break nothing; none if a solve
+  /// has to tell.
+  struct Bound {
+    double stress = 0.0, strength = 0.0;  // Pa
+  };
+  std::optional<Bound> harmless_bound() const;
+
+  /// Duration of the hardest collision, by a fixed point over screenings; then the peak forces. Factors and
+  /// times are booked in `decision`. False, and `problem` says why, if there is no answer.
+  bool settle(Decision& decision, std::string& problem);
+
+  /// The cracked body under the force that its compliance and the energy left allow.
+  bool settle_again(const geometry::ShellMesh& mesh, const std::vector<geometry::CellContact>& contacts,
+                    Decision& decision, std::string& problem);
+
+  /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads together.
+  VecX displacement(const geometry::ShellMesh& mesh) const;
+
+  const std::vector<Press>& presses() const { return presses_; }
+  const Press& hardest() const { return presses_[hardest_]; }
+  double duration() const { return duration_; }              // s
+  double elastic_energy() const { return elastic_energy_; }  // J
+  double residual() const;
+
+ private:
+  using System = stress::ShellSystemCache::System;
+  std::optional<std::size_t> find_lead() const;
+  bool use(const System& system, std::string& problem);
+  bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);
+  bool answer_all(Decision& decision, std::string& problem);
+  bool has_accuracy(std::string& problem) const;
+  double felt_compliance(const ContactAnswer& answer) const;
+  double duration_of(const Press& press, const ContactAnswer& answer) const;
+  bool is_short() const;
+  int guess_exponent(const Press& lead) const;
+  bool find_screening(std::size_t lead, Decision& decision, std::string& problem);
+  bool screen(int exponent, std::size_t lead, Decision& decision, std::string& problem);
+  void settle_force(Press& press, const ContactAnswer& answer);
+  void prepare_cracked();
+  double rigid_mobility(const ShellLoad& load) const;
+
+  const ShellSubject& subject_;
+  const ShellImpact& impact_;
+  const FractureSettings& settings_;
+  std::vector<Press> presses_;
+  std::vector<PressGroups> groups_;     // of the mesh last solved
+  std::vector<ContactAnswer> answers_;  // of the loads, or of the lead alone while the duration is sought
+  std::shared_ptr<const stress::ShellSystem> system_;
+  std::size_t hardest_ = 0;
+  double duration_ = 0.0;        // s, of the lead; contact_average without one
+  double elastic_energy_ = 0.0;  // J
+  bool has_lead_ = false;
+  bool is_screened_ = false;
+  bool is_cracked_ = false;
+  int exponent_ = 0;  // of the screening of the cracked body
+};
+
+}  // namespace shatterbox::fracture

@@ -1,0 +1,28 @@
+#include "engine/stress/shell_figures.h"
+
+#include "engine/geometry/shell_surface.h"
+#include "engine/stress/shell_load.h"
+#include "engine/stress/stress_bound.h"
+
+namespace shatterbox::stress {
+
+ShellFigures make_shell_figures(const ShellStiffness& stiffness, const geometry::ShellMesh& mesh) {
+  ShellFigures figures;
+  figures.contacts = find_cell_contacts(mesh);
+  figures.lumped_mass = lumped_mass(stiffness, mesh);
+  figures.mass = shell_mass_properties(mesh, stiffness.properties.thickness, stiffness.properties.density);
+  const auto& positions = mesh.elements->mesh.positions;
+  if (!positions.empty()) {
+    Vec3 low = positions.front(), high = low;
+    for (const Vec3& p : positions) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    figures.size = (high - low).maxCoeff();
+  }
+  figures.mean_edge_length = mean_edge_length(mesh);
+  figures.stressed_areas = stressed_areas(mesh, figures.contacts);
+  return figures;
+}
+
+}  // namespace shatterbox::stress
