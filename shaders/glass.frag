@@ -3,6 +3,7 @@
 // body, keep what is there.
 #include "common/light.glsl"
 #include "common/paint.glsl"
+#include "common/samples.glsl"
 #include "common/tone.glsl"
 layout(binding = 7) uniform sampler2D opaque_depth;  // 0..1
 layout(binding = 8) uniform usampler2D rim_map;      // as seen_map, of rims and crack lines only
@@ -51,32 +52,24 @@ void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
 
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SIDE;
-  uvec4 face = uvec4(0u), rim = uvec4(0u);
-  float face_depth = 0.9999, edge_depth = 0.9999, faces = 0.0, rims = 0.0;
-  vec2 face_place = gl_FragCoord.xy, rim_place = face_place;
-  const float kShare = 1.0 / float(SIDE * SIDE);
+  vec4 walls = depths_at(opaque_depth, first), ds = depths_at(seen_depth, first), es = depths_at(rim_depth, first);
+  int face = -1, rim = -1;
+  float faces = 0.0, rims = 0.0;
   for (int i = 0; i < SIDE * SIDE; ++i) {
-    ivec2 shift = ivec2(i % SIDE, i / SIDE);
-    vec2 at = floor(gl_FragCoord.xy) + (vec2(shift) + 0.5) / float(SIDE);
-    float wall = texelFetch(opaque_depth, first + shift, 0).x;
-    float d = texelFetch(seen_depth, first + shift, 0).x;
-    float e = texelFetch(rim_depth, first + shift, 0).x;
-    if (d < wall) {
-      face = texelFetch(seen_map, first + shift, 0);
-      face_depth = d;
-      face_place = at;
-      faces += kShare;
-    }
-    if (e < wall) {
-      rim = texelFetch(rim_map, first + shift, 0);
-      edge_depth = e;
-      rim_place = at;
-      rims += kShare;
-    }
+    bool is_face = ds[i] < walls[i], is_rim = es[i] < walls[i];
+    face = is_face ? i : face;
+    rim = is_rim ? i : rim;
+    faces += is_face ? 1.0 / float(SIDE * SIDE) : 0.0;
+    rims += is_rim ? 1.0 / float(SIDE * SIDE) : 0.0;
   }
+  ivec2 at = sample_shift(max(face, 0)), at_rim = sample_shift(max(rim, 0));
+  float depth = min(texelFetch(seen_depth, first + at, 0).x, 0.9999);
+  float depth_of_rim = min(texelFetch(rim_depth, first + at_rim, 0).x, 0.9999);
+  vec2 place = floor(gl_FragCoord.xy) + (vec2(at) + 0.5) / float(SIDE);
+  vec2 place_of_rim = floor(gl_FragCoord.xy) + (vec2(at_rim) + 0.5) / float(SIDE);
   vec3 add = vec3(0.0), keep = vec3(1.0);
-  add_face(surface_at(face, face_depth, face_place), faces, add, keep);
-  add_rim(surface_at(rim, edge_depth, rim_place), rims, add, keep);
+  add_face(surface_at(texelFetch(seen_map, first + at, 0), depth, place), faces, add, keep);
+  add_rim(surface_at(texelFetch(rim_map, first + at_rim, 0), depth_of_rim, place_of_rim), rims, add, keep);
   added = vec4(tone_map(add), 1.0);
   kept = vec4(keep, 1.0);
 }
