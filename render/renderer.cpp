@@ -143,9 +143,9 @@ struct Renderer::Rooms {
     drawn.bind();
     floor.bind();
     meshes.bind_paints();
-    light.run(surface.opaque(), tiles, meshes.has_patterns());
+    light.run(surface.opaque(), tiles, meshes.pattern_kinds());
     clock.mark("light");
-    if (tiles.has_glass()) glass.run(surface, tiles, meshes.has_patterns());
+    if (tiles.has_glass()) glass.run(surface, tiles, meshes.pattern_kinds());
     clock.mark("glass");
   }
 

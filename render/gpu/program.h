@@ -17,6 +17,7 @@ class Program {
   // as "TAPS 16". Throws std::runtime_error with the compiler's words.
   Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines = {});
   void use() const;
+  unsigned name() const { return handle_.get(); }  // 0: none
   // Uniforms of the program in use.
   static void set(int location, int value);
   static void set(int location, float value);

@@ -6,18 +6,20 @@
 
 namespace shatterbox::render::pass {
 
-GlassPass::GlassPass(int samples_across)
-    : plain_("tile.vert", "glass.frag", {"SIDE " + std::to_string(samples_across)}),
-      patterned_("tile.vert", "glass.frag", {"SIDE " + std::to_string(samples_across), "PATTERNS"}) {}
+GlassPass::GlassPass(int samples_across) : side_("SIDE " + std::to_string(samples_across)) {}
 
-void GlassPass::run(const SurfacePass& surface, const Tiles& tiles, bool has_patterns) const {
+void GlassPass::run(const SurfacePass& surface, const Tiles& tiles, unsigned pattern_kinds) {
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC1_COLOR);
   surface.glass_faces().bind(4, 5);
   surface.opaque().depth.bind(7);
   surface.glass_rims().bind(8, 9);
-  (has_patterns ? patterned_ : plain_).use();
+  gpu::Program& program = programs_[pattern_kinds];
+  if (program.name() == 0) {
+    program = gpu::Program("tile.vert", "glass.frag", {side_, "PATTERNS " + std::to_string(pattern_kinds)});
+  }
+  program.use();
   tiles.draw_glass();
   glDisable(GL_BLEND);
   glBlendFunc(GL_ONE,

@@ -10,13 +10,12 @@
 namespace shatterbox::render::pass {
 namespace {
 
-std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occlusion_scale, bool is_preview,
-                                    bool has_patterns) {
+std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occlusion_scale,
+                                    bool is_preview) {
   std::vector<std::string> defines = {"SHADOW_TAPS " + std::to_string(shadow_taps),
                                       "SIDE " + std::to_string(samples_across),
                                       "OCCLUSION_SCALE " + std::to_string(occlusion_scale)};
   if (is_preview) defines.emplace_back("PREVIEW");
-  if (has_patterns) defines.emplace_back("PATTERNS");
   return defines;
 }
 
@@ -31,22 +30,25 @@ constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
 
 LightPass::LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale,
                      bool is_preview)
-    : cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
-      plain_bodies_("tile.vert", "light.frag",
-                    defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false)),
-      bodies_("tile.vert", "light.frag",
-              defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, true)),
-      floor_("tile.vert", "floor.frag",
-             defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false)),
-      dimmed_("tile.vert", "floor.frag",
-              with(defines_of(shadow_taps, samples_across, occlusion_scale, is_preview, false),
-                   {"NO_SHADOW", "IF_DIMMED"})) {
+    : defines_(defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
+      cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
+      floor_("tile.vert", "floor.frag", defines_),
+      dimmed_("tile.vert", "floor.frag", with(defines_, {"NO_SHADOW", "IF_DIMMED"})) {
   if (!is_preview) return;
   dimming_ = gpu::Texture((width + 1) / 2, (height + 1) / 2, GL_R32UI, gpu::Filter::nearest);
   dimming_target_ = gpu::Framebuffer({&dimming_}, nullptr);
-  const auto defines = defines_of(shadow_taps, samples_across, occlusion_scale, false, false);
+  const auto defines = defines_of(shadow_taps, samples_across, occlusion_scale, false);
   dim_ = gpu::Program("tile.vert", "dimming.frag", defines);
   dim_if_dimmed_ = gpu::Program("tile.vert", "dimming.frag", with(defines, {"IF_DIMMED"}));
+}
+
+const gpu::Program& LightPass::bodies(unsigned pattern_kinds) {
+  gpu::Program& program = bodies_[pattern_kinds];
+  if (program.name() == 0) {
+    const std::string patterns = "PATTERNS " + std::to_string(pattern_kinds);
+    program = gpu::Program("tile.vert", "light.frag", with(defines_, {patterns.c_str()}));
+  }
+  return program;
 }
 
 void LightPass::dim(const Layer& opaque, const Tiles& tiles) const {
@@ -65,7 +67,7 @@ void LightPass::dim(const Layer& opaque, const Tiles& tiles) const {
   dimming_.bind(10);
 }
 
-void LightPass::run(const Layer& opaque, const Tiles& tiles, bool has_patterns) const {
+void LightPass::run(const Layer& opaque, const Tiles& tiles, unsigned pattern_kinds) {
   opaque.bind(4, 5);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
@@ -83,7 +85,7 @@ void LightPass::run(const Layer& opaque, const Tiles& tiles, bool has_patterns) 
   glDepthFunc(GL_LESS);  // where there is one
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  (has_patterns ? bodies_ : plain_bodies_).use();
+  bodies(pattern_kinds).use();
   gpu::Program::set(kTileDepth, 0.01F);
   tiles.draw_bodies();
   glDisable(GL_BLEND);

@@ -2,6 +2,10 @@
 // (shaders/cover.frag, light.frag, floor.frag). Lit after the fact because small triangles would run the
 // costly shader for whole blocks of pixels, many times over.
 #pragma once
+#include <map>
+#include <string>
+#include <vector>
+
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
 #include "render/gpu/texture.h"
@@ -16,13 +20,17 @@ class LightPass {
   LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
   void dim(const Layer& opaque, const Tiles& tiles) const;  // before run; nothing unless in preview
   // Into the framebuffer that is bound, which shows the empty floor; its depth is used for the cover.
-  void run(const Layer& opaque, const Tiles& tiles, bool has_patterns) const;
+  void run(const Layer& opaque, const Tiles& tiles, unsigned pattern_kinds);
 
  private:
   gpu::Texture dimming_;  // preview only
   gpu::Framebuffer dimming_target_;
   gpu::Program dim_, dim_if_dimmed_;
-  gpu::Program cover_, plain_bodies_, bodies_, floor_, dimmed_;
+  const gpu::Program& bodies(unsigned pattern_kinds);  // built when first wanted
+
+  std::vector<std::string> defines_;
+  std::map<unsigned, gpu::Program> bodies_;  // by pattern kinds
+  gpu::Program cover_, floor_, dimmed_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -145,7 +145,7 @@ std::uint32_t MeshStore::add_paints(const Draw& draw, const Overlay& overlay) {
     for (const Face face : {Face::outside, Face::inside, Face::crack}) {
       PaintRow row = to_paint(look, face);
       lay_over(row, draw, overlay, face);
-      has_patterns_ = has_patterns_ || row.pattern.w >= 1.0F;
+      if (row.pattern.w >= 1.0F) pattern_kinds_ |= 1U << static_cast<unsigned>(row.pattern.w);
       const auto* values = reinterpret_cast<const float*>(&row);
       paint_rows_.insert(paint_rows_.end(), values, values + kFloats);
     }
@@ -173,7 +173,7 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
   std::vector<float> scalars;
   items_.clear();
   paint_rows_.clear();
-  has_patterns_ = false;
+  pattern_kinds_ = 0;
   for (const Draw& draw : frame.draws) {
     if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
     if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {

@@ -41,7 +41,9 @@ class MeshStore {
   void draw(const Item& item, Part part) const;  // the program in use gets the row in uniform 0
   // What draws in the shadow map: solids wholly, shells by one face.
   Part shadow_part(const Item& item) const;
-  bool has_patterns() const { return has_patterns_; }  // or a heat map: on any draw of the frame
+  unsigned pattern_kinds() const {
+    return pattern_kinds_;
+  }  // on any draw of the frame: bits by kind, as in a PaintRow
   int mesh_count() const { return static_cast<int>(meshes_.size()); }
   const DrawnMesh& shape(const Item& item) const { return meshes_.at(item.mesh).shape; }
 
@@ -61,7 +63,7 @@ class MeshStore {
   gpu::Buffer draw_rows_, scalars_;
   gpu::Texture paints_;  // one row a look and face; grows
   std::vector<float> paint_rows_;
-  bool has_patterns_ = false;
+  unsigned pattern_kinds_ = 0;
   gpu::Handle<delete_vertex_array> vertex_array_;
   std::uint64_t frame_ = 0;
 };

@@ -1,5 +1,8 @@
 // From the geometry pass's samples to surfaces with paint on them.
 #include "common/frame.glsl"
+#ifndef PATTERNS
+#define PATTERNS 0
+#endif
 layout(binding = 4) uniform usampler2D seen_map;    // as surface.frag packs it
 layout(binding = 5) uniform sampler2D seen_depth;   // 0..1, 1 where nothing is
 layout(binding = 6) uniform sampler2D paint_table;  // four texels a row, 256 rows abreast
@@ -39,6 +42,7 @@ float cell_noise(vec3 cell) {
 
 // The share of the pattern's colour; p in pattern sizes, width of a pixel there.
 float pattern_share(int kind, vec3 p, float width) {
+#if PATTERNS & 2
   if (kind == 1) {  // rings and diamonds
     float y = abs(p.y);
     float ring = abs(y - 0.42) - 0.06;
@@ -46,12 +50,15 @@ float pattern_share(int kind, vec3 p, float width) {
     float diamond = abs(fract(around) - 0.5) * 0.55 + y - 0.21;
     return max(covered(ring, width), covered(diamond, width));
   }
+#endif
+#if PATTERNS & 4
   if (kind == 2) {  // speckle
     vec3 cell = floor(p);
     float size = cell_noise(cell + 17.0);
     vec3 shift = vec3(cell_noise(cell), cell_noise(cell + 5.0), size) - 0.5;
     return 0.85 * covered(length(fract(p) - 0.5 - 0.4 * shift) - 0.32 * size, max(width, 0.02));
   }
+#endif
   vec3 s = (abs(fract(p * 0.5) - 0.5) - 0.25) * 2.0;  // checker
   vec3 side = clamp(s / width + 0.5, 0.0, 1.0) * 2.0 - 1.0;
   return 0.5 + 0.5 * side.x * side.y * side.z;
@@ -79,7 +86,7 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
   s.coat = finish.y;
   s.coat_roughness = finish.z;
   s.transmission = finish.w;
-#ifdef PATTERNS  // llvmpipe runs both sides of a branch: frames without patterns take a program without
+#if PATTERNS  // bits by kind. llvmpipe runs both sides of a branch: a program has only the kinds that the frame shows
   vec4 pattern = texelFetch(paint_table, row + ivec2(2, 0), 0);    // colour, kind + metalness / 2; 8: heat map
   if (pattern.a >= 1.0) {
     vec4 place = texelFetch(paint_table, row + ivec2(3, 0), 0);    // centre, size
@@ -87,9 +94,16 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
     vec3 v = normalize(eye_exposure.xyz - s.position);
     float width = s.view_depth * view_ray.y * 2.0 * viewport.w / place.w / max(dot(s.normal, v), 0.25);
     int kind = int(pattern.a);
+#if PATTERNS == 256
+    s.colour = heat_colour(z_scalar.y);
+#else
     float share = kind == 8 ? 0.0 : pattern_share(kind, (vec3(xy, z_scalar.x) - place.xyz) / place.w, width);
-    s.colour = kind == 8 ? heat_colour(z_scalar.y) : mix(s.colour, pattern.rgb, share);
+    s.colour = mix(s.colour, pattern.rgb, share);
     s.metalness = mix(s.metalness, fract(pattern.a) * 2.0, share);
+#if PATTERNS & 256
+    s.colour = kind == 8 ? heat_colour(z_scalar.y) : s.colour;
+#endif
+#endif
   }
 #endif
   return s;
