@@ -84,7 +84,8 @@ struct Renderer::Rooms {
   Level level;
   Context context;
   gpu::Framebuffer drawn;  // sRGB, read back
-  gpu::Buffer block;
+  pass::FrameBlock values{};
+  gpu::Buffer block;  // of the values
   pass::MeshStore meshes;
   pass::Tiles tiles;
   pass::FloorPass floor;
@@ -117,7 +118,7 @@ struct Renderer::Rooms {
   ~Rooms() { context.make_current(); }
 
   void fill_block(const Frame& frame) {
-    pass::FrameBlock values = pass::make_frame_block(frame, size.width, size.height);
+    values = pass::make_frame_block(frame, size.width, size.height);
     meshes.prepare(frame, values.clip_from_world);
     shadow.fit(frame, meshes, values);
     tiles.find(meshes, values);
@@ -129,7 +130,7 @@ struct Renderer::Rooms {
   }
 
   void draw(PassClock& clock) {
-    if (has_shadow) shadow.run(meshes);
+    if (has_shadow) shadow.run(meshes, values);
     clock.mark("shadow");
     surface.run(meshes);
     if (tiles.has_glass()) surface.run_glass(meshes);

@@ -13,7 +13,7 @@ layout(location = 0, index = 1) out vec4 kept;
 
 // Tall windows around the room, each of four panes: what clear glass is known by. Linear, as a share of the sky.
 float room_windows(vec3 d) {
-  float along = abs(fract(atan(d.z, d.x) * (9.0 / (2.0 * kPi)) + 0.3) - 0.5);  // 0 at a window's middle
+  float along = abs(fract(atan(d.z, d.x) * (9.0 / (2.0 * kPi)) + 0.6) - 0.5);  // 0 at a window's middle
   float up = d.y * inversesqrt(max(dot(d.xz, d.xz), 1e-6));
   float wide = smoothstep(0.36, 0.33, along) * smoothstep(0.010, 0.022, along);
   float high = smoothstep(-0.16, -0.10, up) * smoothstep(1.05, 0.85, up) * smoothstep(0.006, 0.014, abs(up - 0.14));

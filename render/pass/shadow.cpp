@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace shatterbox::render::pass {
 namespace {
@@ -101,7 +102,14 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   block.sun_radiance.w = 1.0F;
 }
 
-void ShadowPass::run(const MeshStore& meshes) const {
+void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
+  std::vector<Caster> casters;
+  for (const Item& item : meshes.items()) {
+    if (item.casts_shadow) casters.push_back({item.mesh, item.world_from_body, item.is_glass});
+  }
+  if (block.shadow_from_world == drawn_place_ && casters == drawn_casters_) return;
+  drawn_place_ = block.shadow_from_world;
+  drawn_casters_ = std::move(casters);
   map_.bind();
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);

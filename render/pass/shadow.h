@@ -1,5 +1,8 @@
 // The sun's depth map, fitted about what casts shadows into the picture, and its tiles (shaders/shadow*).
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "render/frame/frame.h"
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
@@ -17,14 +20,24 @@ class ShadowPass {
   // shadow members; sun_radiance.w stays 0 when nothing casts.
   void fit(const Frame& frame, const MeshStore& meshes, FrameBlock& block) const;
 
-  void run(const MeshStore& meshes) const;  // the block must be bound
-  void bind() const;                        // texture units 0, 1, 2
+  // The block must be bound. Draws nothing when every caster, and the map's place, is as it was.
+  void run(const MeshStore& meshes, const FrameBlock& block);
+  void bind() const;  // texture units 0, 1, 2
 
  private:
   gpu::Texture depth_compared_, tile_bounds_, tile_casters_, near_bounds_, near_casters_;
   gpu::Framebuffer map_, tiles_, near_;
   gpu::Program opaque_, glass_, reduce_, spread_;
   int map_size_;
+
+  struct Caster {
+    std::uint64_t mesh;
+    glm::mat4 world_from_body;
+    bool is_glass;
+    bool operator==(const Caster&) const = default;
+  };
+  std::vector<Caster> drawn_casters_;
+  glm::mat4 drawn_place_{0.0F};  // shadow_from_world; no map has this one
 };
 
 }  // namespace shatterbox::render::pass
