@@ -119,7 +119,7 @@ struct Renderer::Rooms {
 
   void fill_block(const Frame& frame) {
     values = pass::make_frame_block(frame, size.width, size.height);
-    meshes.prepare(frame, values.clip_from_world);
+    meshes.prepare(frame, values.clip_from_world, 2.0F * values.view_ray.y / static_cast<float>(size.height));
     shadow.fit(frame, meshes, values);
     tiles.find(meshes, values);
     has_shadow = values.sun_radiance.w > 0.0F;

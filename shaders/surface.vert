@@ -11,7 +11,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 pattern;
 layout(location = 3) in uint source;     // vertex of the mesh as given
 layout(location = 4) in uint face_part;  // 0 outside, 1 inside, 2 crack; part in bits 8-15
-layout(location = 0) uniform int draw;
+layout(location = 5) in uint draw;  // the same for all of a draw; a uniform would cost llvmpipe more
 
 out vec3 normal_world;
 out vec4 pattern_scalar;  // pattern space, m; the scalar as a share of its range

@@ -6,10 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <stdexcept>
-
-#include "render/gpu/program.h"
 
 namespace shatterbox::render::pass {
 
@@ -34,6 +33,8 @@ struct PaintRow {
 };
 constexpr float kHeatMap = 8.0F;  // a pattern kind of its own
 constexpr int kRowsAbreast = 256;
+constexpr float kLeastPixels = 0.25F;  // bodies of a smaller radius are not drawn
+constexpr GLuint kRowAttribute = 5;
 
 PaintRow to_paint(const Look& look, Face face) {
   PaintRow row{};
@@ -106,6 +107,10 @@ unsigned create_vertex_array() {
   attribute(2, 3, GL_FLOAT, GL_FALSE, offsetof(DrawnVertex, pattern));
   whole(3, offsetof(DrawnVertex, source));
   whole(4, offsetof(DrawnVertex, face_part));
+  glEnableVertexArrayAttrib(name, kRowAttribute);  // stepped by instance: a draw's base instance is its row
+  glVertexArrayAttribIFormat(name, kRowAttribute, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(name, kRowAttribute, 1);
+  glVertexArrayBindingDivisor(name, 1, 1);
   return name;
 }
 
@@ -166,7 +171,7 @@ void MeshStore::upload_paints() {
   }
 }
 
-void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
+void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope) {
   ++frame_;
   const std::array<glm::vec4, 4> sides = find_sides(clip_from_world);
   std::vector<DrawRow> draws;
@@ -197,16 +202,21 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world) {
     item.is_glass = frame.overlay.kind != OverlayKind::pieces &&
                     std::any_of(draw.looks.begin(), draw.looks.end(),
                                 [](const Look& look) { return look.transmission > 0.0F; });
-    item.is_on_screen = std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {
+    const bool is_dust = item.radius < kLeastPixels * pixel_slope * item.eye_distance;
+    item.is_on_screen = !is_dust && std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {
       return glm::dot(glm::vec3(side), item.centre_world) + side.w > -item.radius;
     });
-    item.casts_shadow = draw.casts_shadow;
+    item.casts_shadow = draw.casts_shadow && !is_dust;
     items_.push_back(item);
   }
   drop_unseen();
   std::stable_sort(items_.begin(), items_.end(),
                    [](const Item& a, const Item& b) { return a.eye_distance < b.eye_distance; });
   draw_rows_.assign(std::span<const DrawRow>(draws));
+  std::vector<std::uint32_t> rows(std::max<std::size_t>(draws.size(), 1));
+  std::iota(rows.begin(), rows.end(), 0U);
+  rows_.assign(std::span<const std::uint32_t>(rows));
+  glVertexArrayVertexBuffer(vertex_array_.get(), 1, rows_.name(), 0, sizeof(std::uint32_t));
   scalars_.assign(std::span<const float>(scalars));
   upload_paints();
   draw_rows_.bind_storage(0);
@@ -222,11 +232,12 @@ void MeshStore::draw(const Item& item, Part part) const {
   const DrawnMesh& shape = stored.shape;
   glVertexArrayVertexBuffer(vertex_array_.get(), 0, stored.vertices.name(), 0, sizeof(DrawnVertex));
   glVertexArrayElementBuffer(vertex_array_.get(), stored.indices.name());
-  gpu::Program::set(0, item.row);
-  const auto draw_range = [](GLenum kind, std::uint32_t from, std::uint32_t count) {
+  const auto draw_range = [&item](GLenum kind, std::uint32_t from, std::uint32_t count) {
     if (count == 0) return;
     const std::uintptr_t offset = from * sizeof(std::uint32_t);
-    glDrawElements(kind, static_cast<GLsizei>(count), GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
+    glDrawElementsInstancedBaseInstance(kind, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
+                                        reinterpret_cast<const void*>(offset), 1,
+                                        static_cast<GLuint>(item.row));
   };
   const std::uint32_t faces = shape.outer.count + shape.inner.count;
   switch (part) {

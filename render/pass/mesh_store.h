@@ -33,12 +33,13 @@ class MeshStore {
 
   // Uploads meshes not seen before, drops those not in the frame, writes the rows and binds them.
   // Throws std::invalid_argument (see expand) and then keeps what it had.
-  void prepare(const Frame& frame, const glm::mat4& clip_from_world);
+  // pixel_slope: a pixel's height at one metre's distance, m.
+  void prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope);
 
   const std::vector<Item>& items() const { return items_; }  // near to far
   void bind_vertices() const;
   void bind_paints() const { paints_.bind(6); }
-  void draw(const Item& item, Part part) const;  // the program in use gets the row in uniform 0
+  void draw(const Item& item, Part part) const;
   // What draws in the shadow map: solids wholly, shells by one face.
   Part shadow_part(const Item& item) const;
   unsigned pattern_kinds() const {
@@ -60,8 +61,8 @@ class MeshStore {
 
   std::map<std::uint64_t, Stored> meshes_;
   std::vector<Item> items_;
-  gpu::Buffer draw_rows_, scalars_;
-  gpu::Texture paints_;  // one row a look and face; grows
+  gpu::Buffer draw_rows_, rows_, scalars_;  // rows: 0, 1, 2, ..
+  gpu::Texture paints_;                     // one row a look and face; grows
   std::vector<float> paint_rows_;
   unsigned pattern_kinds_ = 0;
   gpu::Handle<delete_vertex_array> vertex_array_;
