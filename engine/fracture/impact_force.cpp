@@ -25,6 +25,7 @@ constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in el
 constexpr double kPatchShare = 0.05;
 constexpr int kMostScreenings = 6;         // steps of the search for the duration
 constexpr double kLargestResidual = 1e-4;  // of a solve that is an answer
+constexpr double kSpinThatCounts = 1e-3;   // least stress of a spin worth a solve, in strengths
 // Compliance of a thin plate at a corner over that far from its rim, about: the search for the duration
 // begins below the screening that it ends at.
 constexpr double kRimCompliance = 8.0;
@@ -331,12 +332,17 @@ bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
 VecX ImpactForce::displacement(const geometry::ShellMesh& mesh) const {
   VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
   for (Size i = 0; i < presses_.size(); ++i) displacement += presses_[i].force * answers_[i].displacement;
-  if (impact_.spin_material.squaredNorm() > 0.0)
-    displacement +=
-        system_
-            ->solve(stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh,
-                                             impact_.spin_material, subject_.systems->figures().mass.centre))
-            .displacement;
+  const stress::ShellFigures& figures = subject_.systems->figures();
+  // Bending by a spin is at most about 3/4 rho (spin size)^2 size / thickness.
+  const double rim_speed = impact_.spin_material.norm() * figures.size;
+  const double spin_stress =
+      0.75 * subject_.material.density * rim_speed * rim_speed * figures.size / subject_.thickness;
+  if (spin_stress > kSpinThatCounts * subject_.material.strength)
+    displacement += system_
+                        ->solve(stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh,
+                                                         impact_.spin_material, figures.mass.centre),
+                                kVerdictResidual)
+                        .displacement;
   return displacement;
 }
 

@@ -15,8 +15,6 @@ Size at(int i) {
 
 constexpr int kMostGroups = 24;        // pieces that share one load; the lightest beyond that carry nothing
 constexpr double kLeastWeight = 0.01;  // nor do those with less than this share of the patch
-// Of a solve; the compliance is then right to its square over the share of the load in the softest motion.
-constexpr double kVerdictResidual = 1e-6;
 
 /// Shares p of the total force under which all pieces sink equally, none of them pulled; they sum to 1.
 Eigen::VectorXd share_force(const Eigen::MatrixXd& flexibility, std::vector<int> active) {

@@ -10,6 +10,10 @@
 
 namespace shatterbox::fracture {
 
+/// Residual of a solve that is good enough for a verdict; the compliance is then right to its square over the
+/// share of the load in the softest motion.
+inline constexpr double kVerdictResidual = 1e-6;
+
 struct ContactPress {
   Vec3 point = Vec3::Zero();      // m
   Vec3 direction = Vec3::Zero();  // unit

@@ -487,3 +487,21 @@ TEST_CASE("the cache makes each system once and shares it") {
   REQUIRE(quantise_screening(400.0) == 9);
   REQUIRE(quantise_screening(0.3) == -2);
 }
+
+TEST_CASE("a solve stopped early is as near as it says, and its energy is that of its displacement") {
+  const Elements elements = icosphere(3);
+  const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+  load.segment<3>(vertex_dof(7)) = Vec3(0.3, 1.0, -0.5);
+  for (const double screening : {0.0, 1000.0}) {
+    const auto system = make_system(stiffness, mesh, screening);
+    const ShellSolution fine = system->solve(load);
+    const ShellSolution rough = system->solve(load, 1e-5);
+    REQUIRE(rough.residual <= 1e-5);
+    REQUIRE(rough.compliance == Approx(fine.compliance).epsilon(1e-6));
+    REQUIRE((rough.displacement - fine.displacement).norm() < 1e-4 * fine.displacement.norm());
+    const VecX image = apply_stiffness(*stiffness, mesh, fine.displacement);
+    REQUIRE(fine.elastic_compliance == Approx(fine.displacement.dot(image)).epsilon(1e-6));
+  }
+}
