@@ -23,9 +23,13 @@ struct LoggedImpulse {
   Vec3 point_world = Vec3::Zero();    // m
   Vec3 normal_world = Vec3::Zero();   // unit, from b towards a
   Vec3 impulse_world = Vec3::Zero();  // N s, normal and friction together
-  double time = 0.0;                  // s since the step's start: when the collision arrived; 0 for contact
-  double closing_speed = 0.0;         // m/s along the normal before the collision; 0 for contact
-  double effective_mass = 0.0;        // kg along the normal, from both full inverse masses
+  // The same as either body feels it, each in its own body space at the time of the impulse: pose by pose, so
+  // that it does not matter how far the bodies went on in the step.
+  Vec3 point_a = Vec3::Zero(), point_b = Vec3::Zero();      // m
+  Vec3 impulse_a = Vec3::Zero(), impulse_b = Vec3::Zero();  // N s, on a and on b
+  double time = 0.0;            // s since the step's start: when the collision arrived; 0 for contact
+  double closing_speed = 0.0;   // m/s along the normal before the collision; 0 for contact
+  double effective_mass = 0.0;  // kg along the normal, from both full inverse masses
 };
 
 using ImpulseLog = std::vector<LoggedImpulse>;

@@ -310,11 +310,22 @@ class IslandSolver {
     return std::abs(change[0]) * c.response(0, 0);
   }
 
+  static const Quat& rotation_now(const WorkBody& b) {
+    return b.inverse_mass > 0.0 ? b.rotation : b.start.rotation;
+  }
+
   // An impact's impulse says nothing about the next substep: start that one from what was before.
   void book(bool was_impact) {
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
       if (!was_impact) c.warm = c.impulse;
+      if (c.impulse.squaredNorm() == 0.0) continue;
+      const Quat from_a = rotation_now(body(c.a)).conjugate(), from_b = rotation_now(body(c.b)).conjugate();
+      const Vec3 p = c.impulse[0] * c.normal + c.impulse[1] * c.tangent_u + c.impulse[2] * c.tangent_v;
+      c.impulse_a += from_a * p;
+      c.impulse_b -= from_b * p;
+      c.moment_a += c.impulse[0] * (from_a * c.arm_a);
+      c.moment_b += c.impulse[0] * (from_b * c.arm_b);
       c.moment_point += c.impulse[0] * c.point;
       c.moment_weight += c.impulse[0];
     }

@@ -346,6 +346,10 @@ class Guard {
       entry.point_world = a.end.translation + o.arm_a;
       entry.normal_world = o.normal;
       entry.impulse_world = p;
+      entry.point_a = a.end.rotation.conjugate() * o.arm_a;
+      entry.point_b = b.end.rotation.conjugate() * o.arm_b;
+      entry.impulse_a = a.end.rotation.conjugate() * p;
+      entry.impulse_b = b.end.rotation.conjugate() * Vec3(-p);
       entry.closing_speed = closing;
       entry.effective_mass = o.weight;
       work_.continuous_log.push_back(entry);

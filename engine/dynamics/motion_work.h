@@ -71,8 +71,10 @@ struct SolverContact {
   bool is_arriving = false;
 
   // Of the whole step.
-  Vec3 total = Vec3::Zero();         // N s, world, on a
-  Vec3 moment_point = Vec3::Zero();  // sum of |normal impulse| point
+  Vec3 total = Vec3::Zero();                                // N s, world, on a
+  Vec3 moment_point = Vec3::Zero();                         // sum of |normal impulse| point
+  Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();    // the same in the body spaces of a and b
+  Vec3 impulse_a = Vec3::Zero(), impulse_b = Vec3::Zero();  // N s, on a and b in their body spaces
   double moment_weight = 0.0;
   double closing_speed = 0.0;   // m/s, greatest of an arrival
   double arrival_time = 0.0;    // s since the step's start, of the first arrival

@@ -30,6 +30,15 @@ void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body:
     entry.body_a = bodies[at(c.a)].id;
     entry.body_b = bodies[at(c.b)].id;
     entry.point_world = c.moment_weight > 0.0 ? Vec3(c.moment_point / c.moment_weight) : c.point;
+    if (c.moment_weight > 0.0) {
+      entry.point_a = c.moment_a / c.moment_weight;
+      entry.point_b = c.moment_b / c.moment_weight;
+    } else {
+      entry.point_a = bodies[at(c.a)].pose.apply_inverse(c.point);
+      entry.point_b = bodies[at(c.b)].pose.apply_inverse(c.point);
+    }
+    entry.impulse_a = c.impulse_a;
+    entry.impulse_b = c.impulse_b;
     entry.normal_world = c.normal;
     entry.impulse_world = c.total;
     if (entry.kind == ImpulseKind::collision) {

@@ -22,16 +22,18 @@ void merge(Load& into, const Load& load) {
   const double weight = into.impulse_body.norm();
   const double other_weight = load.impulse_body.norm();
   const double sum = weight + other_weight;
-  if (sum > 0.0) into.point_body = (weight * into.point_body + other_weight * load.point_body) / sum;
+  if (sum > 0.0) {
+    const auto mean = [&](const Vec3& a, const Vec3& b) {
+      return Vec3((weight * a + other_weight * b) / sum);
+    };
+    into.point_body = mean(into.point_body, load.point_body);
+    into.other_point = mean(into.other_point, load.other_point);
+    into.point_world = mean(into.point_world, load.point_world);
+  }
+  into.other_impulse += load.other_impulse;
   into.impulse_body += load.impulse_body;
   into.closing_speed = std::max(into.closing_speed, load.closing_speed);
   into.time = std::max(into.time, load.time);
-}
-
-double inverse_mass_at(const body::Body& body, const Vec3& point, const Vec3& direction) {
-  if (!body.is_dynamic()) return 0.0;
-  const Vec3 turn = (point - body.pose.translation).cross(direction);
-  return body.inverse_mass + turn.dot(body.inverse_inertia_world() * turn);
 }
 
 }  // namespace
@@ -52,9 +54,11 @@ std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind ki
     const bool is_a = entry.body_a == struck.id;
     Load load;
     load.other = is_a ? entry.body_b : entry.body_a;
-    load.point_body = struck.pose.apply_inverse(entry.point_world);
-    load.impulse_body =
-        struck.pose.rotation.conjugate() * (is_a ? entry.impulse_world : Vec3(-entry.impulse_world));
+    load.point_body = is_a ? entry.point_a : entry.point_b;
+    load.impulse_body = is_a ? entry.impulse_a : entry.impulse_b;
+    load.other_point = is_a ? entry.point_b : entry.point_a;
+    load.other_impulse = is_a ? entry.impulse_b : entry.impulse_a;
+    load.point_world = entry.point_world;
     load.closing_speed = entry.closing_speed;
     load.time = step_start + entry.time;
     if (pass_over && pass_over(load.other, load.time)) continue;
@@ -83,10 +87,19 @@ void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, doub
   }
 }
 
+double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body) {
+  if (!body.is_dynamic()) return 0.0;
+  const Vec3 turn = point_body.cross(direction_body);
+  return body.inverse_mass + turn.dot(body.inverse_inertia * turn);
+}
+
 double effective_mass(const body::Body& struck, const body::Body* other, const Vec3& point_world,
                       const Vec3& direction_world) {
-  double inverse = inverse_mass_at(struck, point_world, direction_world);
-  if (other) inverse += inverse_mass_at(*other, point_world, direction_world);
+  const auto at_present = [&](const body::Body& body) {
+    return mobility(body, body.pose.apply_inverse(point_world),
+                    body.pose.rotation.conjugate() * direction_world);
+  };
+  const double inverse = at_present(struck) + (other ? at_present(*other) : 0.0);
   return inverse > 0.0 ? 1.0 / inverse : 0.0;
 }
 

@@ -14,10 +14,13 @@ namespace shatterbox::world {
 /// Impulses on one body by one other body about one place.
 struct Load {
   body::BodyId other = 0;
-  Vec3 point_body = Vec3::Zero();    // m, body space of the struck body
-  Vec3 impulse_body = Vec3::Zero();  // N s, on the struck body, its body space
-  double closing_speed = 0.0;        // m/s, greatest of the gathered collisions
-  double time = 0.0;                 // s, of the last impulse
+  Vec3 point_body = Vec3::Zero();     // m, body space of the struck body
+  Vec3 impulse_body = Vec3::Zero();   // N s, on the struck body, its body space
+  Vec3 other_point = Vec3::Zero();    // m, the same point in the body space of the other
+  Vec3 other_impulse = Vec3::Zero();  // N s, on the other, its body space
+  Vec3 point_world = Vec3::Zero();    // m, when it happened
+  double closing_speed = 0.0;         // m/s, greatest of the gathered collisions
+  double time = 0.0;                  // s, of the last impulse
 };
 
 /// What a fragile body remembers of its impacts between steps. Part of the state.
@@ -55,8 +58,11 @@ std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind ki
 /// Adds `loads` to the sums in `event`, at the place of a load that is already there.
 void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, double radius);
 
-/// Effective mass (kg) of two bodies at a point along a unit direction: 1 / (direction . K direction).
-/// `other` may be null or fixed (infinite mass); the result is 0 when neither can move.
+/// How a body gives way at a point along a unit direction, both in body space: 1/kg; 0 if it cannot move.
+double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body);
+
+/// Effective mass (kg) of two bodies at a point along a unit direction at their present poses: 1 / (sum of
+/// mobilities). `other` may be null or fixed (infinite mass); the result is 0 when neither can move.
 double effective_mass(const body::Body& struck, const body::Body* other, const Vec3& point_world,
                       const Vec3& direction_world);
 

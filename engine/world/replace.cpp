@@ -180,7 +180,7 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   const ImpactMemory memory = moving.memories[impact.id];
   BreakRow row = describe(parent, impact, thickness);
   row.generation = memory.generation;
-  row.place = parent.pose.apply(impact.hardest.point_body);
+  row.place = impact.hardest.point_world;
 
   fracture::ShellSplit split = fracture::split_shell(*impact.decision.mesh, {kLeastWidth * fragile->size});
   row.merged = split.merged_count;

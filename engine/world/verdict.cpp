@@ -59,13 +59,11 @@ struct Judge {
     out.point_material = load.point_body + struck.shape->material_from_body;
     out.impulse = load.impulse_body.norm();
     out.direction = load.impulse_body / out.impulse;
-    const Vec3 point_world = struck.pose.apply(load.point_body);
-    const Vec3 direction_world = struck.pose.rotation * out.direction;
-    out.effective_mass = effective_mass(struck, partner, point_world, direction_world);
-    if (partner) {
-      const double other_mass = effective_mass(*partner, nullptr, point_world, direction_world);
-      out.other_inverse_mass = other_mass > 0.0 ? 1.0 / other_mass : 0.0;
-    }
+    double inverse = mobility(struck, load.point_body, out.direction);
+    if (partner && load.other_impulse.squaredNorm() > 0.0)
+      out.other_inverse_mass = mobility(*partner, load.other_point, load.other_impulse.normalized());
+    inverse += out.other_inverse_mass;
+    out.effective_mass = inverse > 0.0 ? 1.0 / inverse : 0.0;
     if (!is_collision || !(out.effective_mass > 0.0)) return out;
     out.closing_speed = out.impulse / ((1.0 + restitution(struck, load.other)) * out.effective_mass);
     const stress::HertzContact contact_pair = hertz(struck, load.other);

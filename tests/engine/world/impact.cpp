@@ -28,8 +28,9 @@ body::LoggedImpulse push(body::BodyId a, body::BodyId b, const Vec3& point, cons
   entry.kind = kind;
   entry.body_a = a;
   entry.body_b = b;
-  entry.point_world = point;
-  entry.impulse_world = impulse;
+  entry.point_world = entry.point_a = entry.point_b = point;
+  entry.impulse_world = entry.impulse_a = impulse;
+  entry.impulse_b = -impulse;
   entry.normal_world = impulse.normalized();
   return entry;
 }
@@ -55,19 +56,26 @@ TEST_CASE("impulses are gathered by other body, place and direction, their sum i
   CHECK(loads[1].point_body.x() == Approx(0.025));  // the impulses' centre
 }
 
-TEST_CASE("loads are in body space") {
+TEST_CASE("a load is as the struck body felt it, wherever it has gone since") {
   body::Body struck = make_sphere(1, 1.0, 2.0);
   struck.pose.rotation = Quat(Eigen::AngleAxisd(core::kPi / 2.0, Vec3::UnitZ()));
   struck.pose.translation = Vec3(5, 0, 0);
-  const auto loads = world::gather_loads({push(1, 2, Vec3(5, 1, 0), Vec3(0, -1, 0))},
-                                         body::ImpulseKind::collision, struck, 0.25, 0.0);
+  body::LoggedImpulse entry = push(2, 1, Vec3(5, 1, 0), Vec3(0, 1, 0));
+  entry.point_b = Vec3(1, 0, 0);
+  entry.impulse_b = Vec3(-1, 0, 0);
+  const auto loads = world::gather_loads({entry}, body::ImpulseKind::collision, struck, 0.25, 0.0);
   REQUIRE(loads.size() == 1);
   CHECK((loads[0].point_body - Vec3(1, 0, 0)).norm() < 1e-15);
   CHECK((loads[0].impulse_body - Vec3(-1, 0, 0)).norm() < 1e-15);
+  CHECK((loads[0].other_impulse - Vec3(0, 1, 0)).norm() < 1e-15);
+  CHECK((loads[0].point_world - Vec3(5, 1, 0)).norm() < 1e-15);
 }
 
 TEST_CASE("one impulse in parts is the same event as the whole") {
-  const Load whole{2, Vec3(0, -1, 0), Vec3(0, 8, 0), 4.0, 0.0};
+  Load whole;
+  whole.other = 2;
+  whole.point_body = Vec3(0, -1, 0);
+  whole.impulse_body = Vec3(0, 8, 0);
   std::vector<Load> event;
   for (int i = 0; i < 8; ++i) {
     Load part = whole;
