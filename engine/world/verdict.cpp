@@ -65,7 +65,15 @@ struct Judge {
     inverse += out.other_inverse_mass;
     out.effective_mass = inverse > 0.0 ? 1.0 / inverse : 0.0;
     if (!is_collision || !(out.effective_mass > 0.0)) return out;
-    out.closing_speed = out.impulse / ((1.0 + restitution(struck, load.other)) * out.effective_mass);
+    // What stands behind a body that is squeezed, or shares its impact with other places, shows in the
+    // impulse: the mass that was stopped at the speed of the impact. A single contact has the pair's own
+    // effective mass.
+    const double bounce = 1.0 + restitution(struck, load.other);
+    out.closing_speed = load.closing_speed;
+    if (load.closing_speed > 0.0)
+      out.effective_mass = out.impulse / (bounce * load.closing_speed);
+    else
+      out.closing_speed = out.impulse / (bounce * out.effective_mass);
     const stress::HertzContact contact_pair = hertz(struck, load.other);
     const double force = stress::peak_force(contact_pair, out.effective_mass, out.closing_speed);
     out.hertz_compliance = stress::hertz_compliance(contact_pair, force);
