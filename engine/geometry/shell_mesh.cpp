@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/core/disjoint_sets.h"
+
 namespace shatterbox::geometry {
 namespace {
 
@@ -12,24 +14,6 @@ using Size = std::size_t;
 Size at(int i) {
   return static_cast<Size>(i);
 }
-
-/// Disjoint sets whose representative is the smallest member, so that the order of unions does not matter.
-class DisjointSets {
- public:
-  explicit DisjointSets(Size count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void unite(int i, int j) {
-    i = find(i);
-    j = find(j);
-    if (i != j) parent_[at(std::max(i, j))] = std::min(i, j);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// A side of a cell that lies on an element's edge: the stretch of the edge, from its lower-numbered vertex.
 struct Stretch {
@@ -222,8 +206,8 @@ std::vector<CellContact> find_cell_contacts(const ShellMesh& mesh, double tolera
 }
 
 void assign_degrees_of_freedom(ShellMesh& mesh, const std::vector<CellContact>& contacts) {
-  DisjointSets vertices(3 * mesh.cells.size());
-  DisjointSets edges(3 * mesh.cells.size());
+  core::DisjointSets vertices(3 * mesh.cells.size());
+  core::DisjointSets edges(3 * mesh.cells.size());
   const ShellElements& elements = *mesh.elements;
   for (const CellContact& contact : contacts) {
     const int element_a = mesh.cells[at(contact.cell_a)].element;

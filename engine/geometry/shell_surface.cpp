@@ -4,6 +4,8 @@
 #include <memory>
 #include <numeric>
 
+#include "engine/core/disjoint_sets.h"
+
 namespace shatterbox::geometry {
 namespace {
 
@@ -31,24 +33,6 @@ struct Stretch {
   int edge, cell, side;
   double begin, end;  // parameters along the edge
   bool is_forward;    // the side runs from begin to end
-};
-
-/// Two nodes that are one vertex of the surface.
-class Welds {
- public:
-  explicit Welds(Size count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void unite(int i, int j) {
-    i = find(i);
-    j = find(j);
-    if (i != j) parent_[at(std::max(i, j))] = std::min(i, j);
-  }
-
- private:
-  std::vector<int> parent_;
 };
 
 /// What the border of a surface vertex asks of its kerf.
@@ -204,7 +188,7 @@ class SurfaceBuilder {
   }
 
   void weld() {
-    welds_ = std::make_unique<Welds>(nodes_.size());
+    welds_ = std::make_unique<core::DisjointSets>(nodes_.size());
     touches_.assign(stretches_.size(), 0);
     for_neighbours([this](Size i, Size j) {
       if (i > j) return;
@@ -449,7 +433,7 @@ class SurfaceBuilder {
   std::vector<std::vector<BorderPoint>> added_;
   std::vector<BorderPoint> nodes_;
   std::vector<int> first_node_;  // |cells| + 1
-  std::unique_ptr<Welds> welds_;
+  std::unique_ptr<core::DisjointSets> welds_;
   std::vector<int> vertex_of_node_;
   int vertex_count_ = 0;
   ShellSurface surface_;
