@@ -39,6 +39,23 @@ scene::CameraKey on_path(const std::vector<scene::CameraKey>& path, double time)
   return {time, point.head<3>(), point.segment<3>(3), point[6]};
 }
 
+/// Where a body that starts at `position` would come to lie: the foot of its fall on the nearest plane below
+/// it that is at most `kSteepest` steep; its own place if there is none, or if nothing pulls.
+Vec3 find_landing(const scene::SceneDescription& scene, const Vec3& position) {
+  constexpr double kSteepest = 0.7;  // cosine of the angle between gravity and the plane's normal
+  const Vec3& gravity = scene.world.gravity;
+  double nearest = std::numeric_limits<double>::max();
+  for (const scene::BodyEntry& entry : scene.bodies) {
+    if (!std::holds_alternative<scene::PlaneForm>(entry.form)) continue;
+    const Vec3 normal = entry.rotation * Vec3::UnitY();
+    const double sinking = -normal.dot(gravity);
+    if (sinking <= kSteepest * gravity.norm()) continue;
+    const double way = normal.dot(position - entry.position) / sinking;
+    if (way > 0.0) nearest = std::min(nearest, way);
+  }
+  return nearest < std::numeric_limits<double>::max() ? Vec3(position + nearest * gravity) : position;
+}
+
 }  // namespace
 
 Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
@@ -50,6 +67,10 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
     for (const Pose& pose : scene::copy_poses(scene.bodies[i], scene.world.seed, i)) {
       least = least.cwiseMin(pose.translation - Vec3::Constant(radius));
       most = most.cwiseMax(pose.translation + Vec3::Constant(radius));
+      if (scene.bodies[i].motion != body::Motion::dynamic) continue;
+      const Vec3 landing = find_landing(scene, pose.translation);
+      least = least.cwiseMin(landing);
+      most = most.cwiseMax(landing);
     }
   }
   if (least.x() > most.x()) return {};

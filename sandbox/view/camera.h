@@ -13,7 +13,8 @@ struct Subject {
   double radius = 1.0;         // m
 };
 
-/// A ball about all bodies that have an end and are there at the start; about everything if nothing has.
+/// A ball about all bodies that have an end and are there at the start, and the places on planes below where
+/// they will land; about everything if nothing has.
 Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan);
 
 /// The camera at `time` (s). Keyframes are passed with continuous velocity (cubic Hermite, tangents from

@@ -91,3 +91,23 @@ TEST_CASE("the camera passes its keyframes and stands still before and after") {
   const float after = (at(2.001).position.x - at(2.0).position.x) / 0.001F;
   CHECK(before == Approx(after).margin(0.01));
 }
+
+TEST_CASE("what a camera without a place must see reaches down to where bodies will land") {
+  const auto subject_of = [](const std::string& text) {
+    const auto reading = scene::read(text);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    scene::Problems problems;
+    const auto plan = scene::plan_bodies(*reading.scene, problems);
+    REQUIRE(plan.has_value());
+    return view::find_subject(*reading.scene, *plan);
+  };
+  const std::string ball = "[[body]]\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2, 0]\n";
+  const view::Subject falling = subject_of("[[body]]\nkind = \"plane\"\nposition = [0, 0.5, 0]\n" + ball);
+  CHECK(falling.centre.y() == Approx(0.5 * (2.1 + 0.5)));
+  CHECK(falling.radius >= 0.8);
+  CHECK(subject_of(ball).centre.y() == Approx(2.0));  // nothing below
+  const view::Subject held =
+      subject_of("[[body]]\nkind = \"plane\"\nposition = [0, 0.5, 0]\n" + ball + "motion = \"static\"\n");
+  CHECK(held.centre.y() == Approx(2.0));
+}
