@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/hash.h"
+#include "engine/fracture/impact_force.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/shell_surface.h"
 #include "engine/world/state.h"
@@ -35,15 +36,6 @@ fracture::ShellSubject make_subject(const ShellDescription& shell, const materia
         *subject.mesh->elements,
         fracture::scatter_grain_seeds(*subject.mesh->elements, material.grain_size, subject.seed)));
   return subject;
-}
-
-std::shared_ptr<const stress::ShellStiffness> make_stiffness(const fracture::ShellSubject& subject) {
-  stress::ShellProperties properties;
-  properties.youngs_modulus = subject.material.young;
-  properties.poisson_ratio = subject.material.poisson;
-  properties.density = subject.material.density;
-  properties.thickness = subject.thickness;
-  return stress::make_shell_stiffness(subject.mesh->elements, properties);
 }
 
 std::shared_ptr<body::Shape> make_analytic_shape(const BodyDescription& description, double density) {
@@ -106,7 +98,8 @@ SharedForm make_shell_form(const ShellDescription& shell, const material::Materi
   if (shell.is_breakable) {
     fragile->subject = make_subject(shell, material, mesh);
     fragile->subject.material.density = density;
-    fragile->subject.systems = make_systems(fragile->subject, make_stiffness(fragile->subject));
+    fragile->subject.systems = make_systems(
+        fragile->subject, stress::make_shell_stiffness(elements, fracture::properties_of(fragile->subject)));
   }
   return {key, make_shell_shape(mesh, *fragile, shell.thickness), fragile};
 }
@@ -115,17 +108,8 @@ SharedForm make_shell_form(const ShellDescription& shell, const material::Materi
 
 std::shared_ptr<stress::ShellSystemCache> make_systems(
     const fracture::ShellSubject& subject, std::shared_ptr<const stress::ShellStiffness> stiffness) {
-  stress::ShellSupport support;
-  if (!subject.clamped_vertices.empty()) {
-    const geometry::ShellElements& elements = *subject.mesh->elements;
-    std::vector<char> vertices(elements.mesh.positions.size(), 0);
-    for (const int vertex : subject.clamped_vertices) vertices[static_cast<std::size_t>(vertex)] = 1;
-    std::vector<char> edges;
-    for (const auto& [a, b] : elements.topology.edges)
-      edges.push_back(vertices[static_cast<std::size_t>(a)] && vertices[static_cast<std::size_t>(b)]);
-    support = stress::find_support(*subject.mesh, vertices, edges);
-  }
-  return std::make_shared<stress::ShellSystemCache>(std::move(stiffness), subject.mesh, std::move(support));
+  return std::make_shared<stress::ShellSystemCache>(std::move(stiffness), subject.mesh,
+                                                    fracture::support_of(subject, *subject.mesh));
 }
 
 std::shared_ptr<const body::Shape> make_shell_shape(std::shared_ptr<const geometry::ShellMesh> mesh,

@@ -30,7 +30,6 @@ struct ImpactMemory {
   std::vector<Load> contact;    // contact impulses of the last 1/60 s, one entry a step and place
   double tested_contact = 0.0;  // N: total contact force at which the body was last found to hold
   int generation = 0;           // breaks since the event began from which this piece comes
-  double birth_time = -1e9;     // s
 
   // The impact that made this piece was charged with its whole impulse when it was judged. Until it is over,
   // what comes from the same body, or from another piece of the same break, is part of it and not charged

@@ -119,7 +119,6 @@ void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMe
     born[i].id = moving.next_id++;
     ImpactMemory own;
     own.generation = memory.generation + 1;
-    own.birth_time = time;
     own.charged_until = charged_until;
     own.charged_other = charged_other;
     own.charged_event = parent.id;

@@ -122,7 +122,6 @@ void World::step() {
     MovingState snapshot;
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     before = s.moving.bodies;
-    timer.time("wake", [&] { dynamics::wake_bodies(s.moving.bodies, s.contact_settings, s.moving.contact); });
     contact = timer.time("motion", [&] {
       return dynamics::step_motion(s.moving.bodies, s.contact_settings, s.moving.contact, s.log);
     });
