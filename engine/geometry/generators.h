@@ -1,6 +1,7 @@
-// Meshes of shells by their sizes: sphere, ornament, bowl, pane, and any surface of revolution. Triangles are
-// near-equilateral, of one size, and without directions that cracks could follow; vertices lie on the exact
-// surface, so that a finer mesh is the same shape. y is up. The same numbers give the same mesh to the bit.
+// Meshes of shells by their sizes: sphere, ornament, bowl, pane, boat, and any surface of revolution.
+// Triangles are near-equilateral, of one size, and without directions that cracks could follow; vertices lie
+// on the exact surface, so that a finer mesh is the same shape. y is up. The same numbers give the same mesh
+// to the bit.
 #pragma once
 
 #include <cstdint>
@@ -67,6 +68,17 @@ core::Result<TriangleMesh> make_bowl(const BowlSizes& sizes, const Meshing& mesh
 /// Rectangle in the plane z = 0 about the origin, normal +z; width along x, height along y. Its border is
 /// straight to the bit.
 core::Result<TriangleMesh> make_pane(double width, double height, const Meshing& meshing);
+
+/// An open hull, double-ended: keel along x through the origin's height, bow at +x, gunwales up. A lattice of
+/// stations and strakes, the same on all four quarters; `Meshing::jitter` and `seed` do not apply. An edge
+/// length of 1/15 of the usual length gives 300 triangles. One sheet; thickness is a number.
+struct BoatSizes {
+  double length = 1.0;  // m, over both stems
+  double beam = 0.4;    // m, amidships
+  double depth = 0.2;   // m, from keel to gunwale amidships
+  double sheer = 0.1;   // m, by which the gunwales rise towards the ends
+};
+core::Result<TriangleMesh> make_boat(const BoatSizes& sizes, const Meshing& meshing);
 
 /// A piece of a profile in the half plane (r >= 0, y): a straight line, an arc of a circle or a parabola.
 struct ProfileSegment {

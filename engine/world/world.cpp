@@ -8,6 +8,7 @@ World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) 
   state_->settings = settings;
   state_->contact_settings.time_step = 1.0 / settings.steps_per_second;
   state_->contact_settings.gravity = settings.gravity;
+  state_->contact_settings.has_sleep = settings.has_sleep;
 }
 
 World::~World() = default;

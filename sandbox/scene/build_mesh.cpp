@@ -15,6 +15,7 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 constexpr double kUsualTriangles = 5000.0;
+constexpr double kStationsOfBoat = 15.0;  // 300 triangles
 
 geometry::PartedMesh one_part(geometry::TriangleMesh mesh) {
   geometry::PartedMesh parted{std::move(mesh), {}};
@@ -42,6 +43,9 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const PaneShape& sizes) const {
     return with_parts(geometry::make_pane(sizes.width, sizes.height, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const geometry::BoatSizes& sizes) const {
+    return with_parts(geometry::make_boat(sizes, meshing));
+  }
   core::Result<geometry::PartedMesh> operator()(const MeshFileShape&) const {
     return core::Error{"not a generated shape"};
   }
@@ -52,6 +56,7 @@ double coarse_edge(const ShellShape& shape) {
   if (const auto* ornament = std::get_if<geometry::OrnamentSizes>(&shape)) return 0.2 * ornament->radius;
   if (const auto* sphere = std::get_if<SphereShape>(&shape)) return 0.2 * sphere->radius;
   if (const auto* bowl = std::get_if<geometry::BowlSizes>(&shape)) return 0.2 * bowl->rim_radius;
+  if (const auto* boat = std::get_if<geometry::BoatSizes>(&shape)) return boat->length / kStationsOfBoat;
   const auto& pane = std::get<PaneShape>(shape);
   return 0.1 * std::min(pane.width, pane.height);
 }
@@ -64,7 +69,7 @@ core::Result<geometry::PartedMesh> generate(const ShellForm& form) {
   }
   generator.meshing.edge_length = coarse_edge(form.shape);
   auto coarse = std::visit(generator, form.shape);
-  if (!coarse) return coarse;
+  if (!coarse || std::holds_alternative<geometry::BoatSizes>(form.shape)) return coarse;
   const double area = geometry::surface_area(coarse.value().mesh);
   const double triangle_area = area / kUsualTriangles;
   generator.meshing.edge_length = core::sqrt(triangle_area * 4.0 / core::sqrt(3.0));

@@ -86,6 +86,39 @@ void add_materials(const SceneDescription& scene, world::World& world, Problems&
   }
 }
 
+/// The cells of one layer, from its middle outwards: equally far ones by their numbers, x fastest.
+std::vector<Vec3> layer_offsets(const Repeat& repeat) {
+  std::vector<Vec3> cells;
+  for (int z = 0; z < repeat.layer[1]; ++z)
+    for (int x = 0; x < repeat.layer[0]; ++x)
+      cells.emplace_back((x - 0.5 * (repeat.layer[0] - 1)) * repeat.spacing.x(), 0.0,
+                         (z - 0.5 * (repeat.layer[1] - 1)) * repeat.spacing.z());
+  std::stable_sort(cells.begin(), cells.end(),
+                   [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
+  return cells;
+}
+
+/// Where the copies stand from the body's own place, before jitter.
+std::vector<Vec3> offsets_of(const Repeat& repeat) {
+  std::vector<Vec3> offsets;
+  if (repeat.layout == Layout::row) {
+    for (int i = 0; i < repeat.count[0]; ++i) offsets.emplace_back(i * repeat.spacing);
+  } else if (repeat.layout == Layout::grid) {
+    for (int z = 0; z < repeat.count[2]; ++z)
+      for (int y = 0; y < repeat.count[1]; ++y)
+        for (int x = 0; x < repeat.count[0]; ++x)
+          offsets.push_back(Vec3(x, y, z).cwiseProduct(repeat.spacing));
+  } else {
+    const std::vector<Vec3> cells = layer_offsets(repeat);
+    const int a_layer = static_cast<int>(cells.size());
+    for (int i = 0; i < repeat.count[0]; ++i) {
+      const Vec3 up(0.0, i / a_layer * repeat.spacing.y(), 0.0);
+      offsets.push_back(cells[static_cast<std::size_t>(i % a_layer)] + up);
+    }
+  }
+  return offsets;
+}
+
 }  // namespace
 
 std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uint64_t body_number) {
@@ -93,17 +126,8 @@ std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uin
   core::Random random(seed, 0x5ca77e2ULL + body_number);
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(repeat.total()));
-  const auto for_each_copy = [&repeat](const auto& place) {
-    for (int z = 0; z < repeat.count[2]; ++z) {
-      for (int y = 0; y < repeat.count[1]; ++y) {
-        for (int x = 0; x < repeat.count[0]; ++x) place(Vec3(x, y, z));
-      }
-    }
-  };
-  for_each_copy([&](const Vec3& index) {
-    Pose pose{body.rotation, body.position};
-    pose.translation +=
-        repeat.is_row ? Vec3(index.x() * repeat.spacing) : Vec3(index.cwiseProduct(repeat.spacing));
+  for (const Vec3& offset : offsets_of(repeat)) {
+    Pose pose{body.rotation, body.position + offset};
     for (int axis = 0; axis < 3; ++axis) {
       const double share = random.uniform(-1.0, 1.0);
       pose.translation[axis] += share * repeat.jitter[axis];
@@ -115,8 +139,12 @@ std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uin
       pose.rotation = Quat(core::cos(half), v.x(), v.y(), v.z()) * pose.rotation;
     }
     poses.push_back(pose);
-  });
+  }
   return poses;
+}
+
+std::string copy_name(const BodyEntry& body, int copy) {
+  return body.repeat.total() > 1 ? fmt::format("{}[{}]", body.name, copy + 1) : body.name;
 }
 
 std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& problems) {
@@ -144,15 +172,16 @@ std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& p
     if (body.is_held_back) continue;
     const std::vector<Pose> poses = copy_poses(body, scene.world.seed, i);
     world::BodyDescription description = built.plan.bodies[i].description;
-    for (std::size_t copy = 0; copy < poses.size(); ++copy) {
+    const std::size_t now = body.repeat.every > 0.0 ? 1 : poses.size();  // the script brings in the others
+    for (std::size_t copy = 0; copy < now; ++copy) {
       description.pose = poses[copy];
-      if (poses.size() > 1) description.name = fmt::format("{}[{}]", body.name, copy + 1);
+      description.name = copy_name(body, static_cast<int>(copy));
       const auto id = built.world.add_body(description);
       if (!id) {
         book(problems, body.place, fmt::format("body \"{}\": {}", description.name, id.error()), "");
         break;
       }
-      built.entries[id.value()] = static_cast<int>(i);
+      built.origins[id.value()] = {static_cast<int>(i), static_cast<int>(copy)};
     }
   }
   if (problems.size() > before) return std::nullopt;

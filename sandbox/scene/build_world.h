@@ -25,21 +25,31 @@ struct ScenePlan {
   std::vector<std::string> notes;  // what was mended in meshes
 };
 
+/// Where an original body came from.
+struct Origin {
+  int entry = 0;  // number in SceneDescription::bodies
+  int copy = 0;   // of its repeat, from 0
+};
+
 struct BuiltScene {
   world::World world;
   ScenePlan plan;
-  std::map<body::BodyId, int> entries;  // which [[body]] an original body came from; the script adds to it
+  std::map<body::BodyId, Origin> origins;  // of original bodies; the script adds to it
 };
 
 /// Reads and mends meshes, finds supports: all that can go wrong before a world exists. Nothing if `problems`
 /// got any.
 std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& problems);
 
-/// Makes the world with all bodies that no event holds back. Nothing if `problems` got any.
+/// Makes the world with all bodies that neither an event nor `every` holds back. Nothing if `problems` got
+/// any.
 std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems);
 
-/// The places of the copies of a body: x fastest, then y, then z; jitter depends on (seed, number of the
-/// body) only.
+/// The places of the copies of a body, in the order of their numbers: grids with x fastest, then y, then z;
+/// jitter depends on (seed, number of the body, number of the copy) only.
 std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uint64_t body_number);
+
+/// What copy number `copy` of body number `entry` is called: "boats", or "boats[3]" where there are several.
+std::string copy_name(const BodyEntry& body, int copy);
 
 }  // namespace shatterbox::sandbox::scene

@@ -14,21 +14,13 @@ namespace {
 
 const std::vector<std::string> kKinds{"shell", "plane", "box", "sphere"};
 const std::vector<std::string> kLaterKinds{"solid", "capsule"};
-const std::vector<std::string> kShapes{"ornament", "sphere", "bowl", "pane"};
-const std::vector<std::string> kLaterShapes{"vase", "bottle", "egg", "boat", "slab", "bricks"};
+const std::vector<std::string> kShapes{"ornament", "sphere", "bowl", "pane", "boat"};
+const std::vector<std::string> kLaterShapes{"vase", "bottle", "egg", "slab", "bricks"};
 const std::vector<std::string> kShellKeys{"mesh",      "shape",     "scale",  "up",
                                           "thickness", "breakable", "support"};
-const std::vector<std::string> kShapeKeys{"radius", "neck_radius", "neck_height",
-                                          "cap",    "foot_radius", "foot_height",
-                                          "height", "width",       "edge_length"};
-
-std::optional<Vec3> number_or_vector(TableReader& reader, const std::string& key, const Range& range) {
-  const TomlValue* value = reader.value(key);
-  if (value == nullptr) return std::nullopt;
-  if (value->is_array()) return reader.as_vector(*value, key, range);
-  if (const auto number = reader.as_number(*value, key, range)) return Vec3::Constant(*number);
-  return std::nullopt;
-}
+const std::vector<std::string> kShapeKeys{
+    "radius", "neck_radius", "neck_height", "cap",  "foot_radius", "foot_height", "height",
+    "width",  "edge_length", "length",      "beam", "depth",       "sheer"};
 
 /// Where a mesh file named in a scene lies: as it is, or beside the scene.
 std::string find_mesh_file(const std::string& file, const std::string& scene_file) {
@@ -97,6 +89,17 @@ ShellShape read_shape(TableReader& reader, const std::string& shape) {
     set("height", sizes.height, positive("m"));
     return sizes;
   }
+  if (shape == "boat") {
+    geometry::BoatSizes sizes;
+    set("length", sizes.length, positive("m"));
+    sizes.beam = 0.4 * sizes.length;
+    sizes.depth = 0.2 * sizes.length;
+    sizes.sheer = 0.1 * sizes.length;
+    set("beam", sizes.beam, positive("m"));
+    set("depth", sizes.depth, positive("m"));
+    set("sheer", sizes.sheer, not_negative("m"));
+    return sizes;
+  }
   SphereShape sizes;
   set("radius", sizes.radius, positive("m"));
   return sizes;
@@ -129,7 +132,7 @@ ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
     }
     form.size = reader.vector("size", positive("m"));
   }
-  form.scale = number_or_vector(reader, "scale", positive()).value_or(form.scale);
+  form.scale = reader.number_or_vector("scale", positive()).value_or(form.scale);
   if (form.size && reader.has("scale")) {
     reader.add_problem_at("size", "a body has either a scale or a size, not both", "remove one of them");
   }
@@ -205,47 +208,6 @@ Quat read_rotation(TableReader& reader) {
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-Repeat read_repeat(TableReader& reader) {
-  Repeat repeat;
-  const TomlValue* value = reader.value("repeat");
-  if (value == nullptr) return repeat;
-  if (!value->is_table()) {
-    reader.add_problem(value->place, fmt::format("repeat must be a table, but is {}", kind_in_words(*value)),
-                       "write repeat = {count = 10, spacing = [0.1, 0, 0]}");
-    return repeat;
-  }
-  TableReader inner(*value, reader.what() + ".repeat", reader.problems());
-  if (const TomlValue* count = inner.value("count"); count != nullptr && count->is_array()) {
-    repeat.is_row = false;
-    if (count->items.size() != 3) inner.add_problem(count->place, "count must be one whole number or three");
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, count->items.size()); ++i) {
-      const TomlValue& item = count->items[i];
-      if (item.kind == TomlKind::whole && item.whole >= 1 && item.whole <= 100000) {
-        repeat.count[i] = static_cast<int>(item.whole);
-      } else {
-        inner.add_problem(item.place,
-                          fmt::format("count must be from 1 to 100000, but is {}", kind_in_words(item)));
-      }
-    }
-  } else if (const auto whole = inner.whole_number("count", 1, 100000)) {
-    repeat.count[0] = static_cast<int>(*whole);
-  } else if (count == nullptr) {
-    inner.add_problem(value->place, "repeat needs a count",
-                      "write repeat = {count = 10, spacing = [0.1, 0, 0]}");
-  }
-  if (static_cast<double>(repeat.count[0]) * repeat.count[1] * repeat.count[2] > 100000.0) {
-    inner.add_problem_at("count", "more than 100000 copies");
-    repeat.count = {1, 1, 1};
-  }
-  repeat.spacing = number_or_vector(inner, "spacing", any_number("m")).value_or(repeat.spacing);
-  if (inner.has("jitter"))
-    repeat.jitter = number_or_vector(inner, "jitter", not_negative("m")).value_or(repeat.jitter);
-  repeat.rotation_jitter = inner.number("rotation_jitter", between(0.0, 180.0, "degrees")).value_or(0.0);
-  inner.later({"bond", "every"}, "available: count, spacing, jitter, rotation_jitter");
-  inner.finish();
-  return repeat;
-}
-
 std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> read_form(TableReader& reader,
                                                                   const std::string& kind,
                                                                   const SceneDescription& scene) {
@@ -260,7 +222,7 @@ std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> read_form(TableReader& r
   }
   if (kind == "box") {
     BoxForm form;
-    form.size = number_or_vector(reader, "size", positive("m")).value_or(form.size);
+    form.size = reader.number_or_vector("size", positive("m")).value_or(form.size);
     if (!reader.has("size")) {
       reader.add_problem(reader.table().place, fmt::format("{} has no size", reader.what()),
                          "add size = [x, y, z] in metres");
@@ -300,23 +262,41 @@ void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body) 
   reader.later({"force", "torque"}, "give it a velocity, or throw something at it");
 }
 
-}  // namespace
-
-std::optional<Vec3> read_colour(TableReader& reader, const std::string& key) {
-  const TomlValue* value = reader.value(key);
-  if (value == nullptr) return std::nullopt;
-  if (!value->is_text()) return reader.as_vector(*value, key, between(0.0, 1.0));
-  const std::string& text = value->text;
+std::optional<Vec3> as_colour(TableReader& reader, const TomlValue& value, const std::string& key) {
+  if (!value.is_text()) return reader.as_vector(value, key, between(0.0, 1.0));
+  const std::string& text = value.text;
   const bool is_hex =
       text.size() == 7 && text[0] == '#' &&
       std::all_of(text.begin() + 1, text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
   if (!is_hex) {
-    reader.add_problem(value->place, fmt::format("\"{}\" is no colour", text),
+    reader.add_problem(value.place, fmt::format("\"{}\" is no colour", text),
                        "write \"#b3202c\" or [0.7, 0.13, 0.17]");
     return std::nullopt;
   }
   const auto channel = [&text](std::size_t i) { return std::stoi(text.substr(i, 2), nullptr, 16) / 255.0; };
   return Vec3(channel(1), channel(3), channel(5));
+}
+
+/// One colour, or a list of them for the copies of a body.
+std::vector<Vec3> read_colours(TableReader& reader) {
+  const TomlValue* value = reader.value("colour");
+  if (value == nullptr) return {};
+  const bool is_list = value->is_array() && !value->items.empty() &&
+                       (value->items.front().is_text() || value->items.front().is_array());
+  std::vector<Vec3> colours;
+  const auto add = [&](const TomlValue& item) {
+    if (const auto colour = as_colour(reader, item, "colour")) colours.push_back(*colour);
+  };
+  if (!is_list) add(*value);
+  for (std::size_t i = 0; is_list && i < value->items.size(); ++i) add(value->items[i]);
+  return colours;
+}
+
+}  // namespace
+
+std::optional<Vec3> read_colour(TableReader& reader, const std::string& key) {
+  const TomlValue* value = reader.value(key);
+  return value == nullptr ? std::nullopt : as_colour(reader, *value, key);
 }
 
 int find_body(const SceneDescription& scene, const std::string& name) {
@@ -364,7 +344,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.contact_duration = reader.number("contact_duration", positive("s"));
   body.repeat = read_repeat(reader);
   body.look.name = reader.choice("look", kLookNames).value_or("");
-  body.look.colour = read_colour(reader, "colour");
+  body.look.colours = read_colours(reader);
   reader.finish();
   scene.bodies.push_back(std::move(body));
 }

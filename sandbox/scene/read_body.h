@@ -30,4 +30,7 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
 /// A colour, "#rrggbb" or [r, g, b] from 0 to 1 (sRGB).
 std::optional<Vec3> read_colour(TableReader& reader, const std::string& key);
 
+/// The key `repeat` of a body: its copies.
+Repeat read_repeat(TableReader& reader);
+
 }  // namespace shatterbox::sandbox::scene

@@ -40,8 +40,8 @@ struct SphereShape {
 struct PaneShape {
   double width = 1.0, height = 1.0;
 };
-using ShellShape =
-    std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes, PaneShape>;
+using ShellShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
+                                PaneShape, geometry::BoatSizes>;
 
 // Kinds of bodies.
 struct PlaneForm {};
@@ -53,7 +53,7 @@ struct SphereForm {
 };
 struct ShellForm {
   ShellShape shape;
-  std::optional<double> edge_length;  // m, of generated meshes; nothing: about 5000 triangles
+  std::optional<double> edge_length;  // m, of generated meshes; nothing: kUsualTriangles, a boat 300
   std::optional<double> thickness;    // m; nothing: the material's
   Vec3 scale = Vec3::Ones();
   std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
@@ -69,18 +69,27 @@ struct BoxSupport {
 };
 using Support = std::variant<std::monostate, EdgeSupport, FootSupport, BoxSupport>;
 
+// How the copies of a body stand.
+enum class Layout : std::uint8_t {
+  row,     // each by `spacing` from the one before it
+  grid,    // count[0] along x, count[1] along y, count[2] along z
+  layers,  // count[0] in all, in layers of `layer` along x and z, filled from their middle outwards, upwards
+};
+
 struct Repeat {
-  bool is_row = true;  // one count: copies follow each other by `spacing`; else a grid along the axes
-  std::array<int, 3> count{1, 1, 1};  // along x, y, z
-  Vec3 spacing = Vec3::Zero();        // m
-  Vec3 jitter = Vec3::Zero();         // m: greatest random offset along each axis
-  double rotation_jitter = 0.0;       // degrees: greatest random turn, about a random axis
+  Layout layout = Layout::row;
+  std::array<int, 3> count{1, 1, 1};
+  std::array<int, 2> layer{1, 1};
+  Vec3 spacing = Vec3::Zero();   // m
+  Vec3 jitter = Vec3::Zero();    // m: greatest random offset along each axis
+  double rotation_jitter = 0.0;  // degrees: greatest random turn, about a random axis
+  double every = 0.0;            // s from copy to copy; 0: all are there from the start
   int total() const { return count[0] * count[1] * count[2]; }
 };
 
 struct LookEntry {
-  std::string name;            // of kLookNames; empty: by the material
-  std::optional<Vec3> colour;  // sRGB, 0..1
+  std::string name;           // of kLookNames; empty: by the material
+  std::vector<Vec3> colours;  // sRGB, 0..1; empty: the look's own; several: each copy gets one of them
 };
 
 struct BodyEntry {
@@ -169,7 +178,7 @@ struct SceneDescription {
 // Names that mean something to sandbox/view.
 inline const std::vector<std::string> kLookNames{"ornament", "glass",    "ceramic", "porcelain", "steel",
                                                  "wood",     "concrete", "brick",   "plaster",   "ice",
-                                                 "eggshell", "matt",     "glossy"};
+                                                 "eggshell", "matt",     "glossy",  "hidden"};
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
 inline const std::vector<std::string> kOverlayNames{"none", "stress", "pieces"};

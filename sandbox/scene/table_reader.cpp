@@ -135,6 +135,14 @@ std::optional<std::string> TableReader::text(const std::string& key) {
   return value->text;
 }
 
+std::optional<Vec3> TableReader::number_or_vector(const std::string& key, const Range& range) {
+  const TomlValue* given = find_known(key);
+  if (given == nullptr) return std::nullopt;
+  if (given->is_array()) return as_vector(*given, key, range);
+  if (const auto number = as_number(*given, key, range)) return Vec3::Constant(*number);
+  return std::nullopt;
+}
+
 std::optional<Vec3> TableReader::vector(const std::string& key, const Range& range) {
   const TomlValue* value = find_known(key);
   if (value == nullptr) return std::nullopt;

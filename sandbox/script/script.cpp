@@ -1,5 +1,6 @@
 #include "sandbox/script/script.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,8 +18,8 @@ std::optional<Vec3> centre_of(const scene::BuiltScene& built, int entry) {
   Vec3 moment = Vec3::Zero();
   std::optional<Vec3> massless;
   for (const body::Body& body : built.world.bodies()) {
-    const auto original = built.entries.find(built.world.ancestry(body.id).original);
-    if (original == built.entries.end() || original->second != entry) continue;
+    const auto original = built.origins.find(built.world.ancestry(body.id).original);
+    if (original == built.origins.end() || original->second.entry != entry) continue;
     mass += body.shape->mass;
     moment += body.shape->mass * body.pose.translation;
     if (!massless) massless = body.pose.translation;
@@ -59,18 +60,33 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
   return description;
 }
 
+/// The first step border at or after `seconds`. A hair's breadth of tolerance: 0.1 s is step 24 of 240,
+/// although 0.1 * 240 is not 24 to the bit.
+long step_of(double seconds, double rate) {
+  return static_cast<long>(std::ceil(seconds * rate - 1e-6));
+}
+
 }  // namespace
 
-Script::Script(const scene::SceneDescription& scene) : scene_(scene), throws_(scene.bodies.size(), 0) {}
+Script::Script(const scene::SceneDescription& scene) : scene_(scene), throws_(scene.bodies.size(), 0) {
+  for (std::size_t entry = 0; entry < scene.bodies.size(); ++entry) {
+    const scene::BodyEntry& body = scene.bodies[entry];
+    if (body.repeat.every <= 0.0 || body.is_held_back) continue;
+    const std::vector<Pose> poses = scene::copy_poses(body, scene.world.seed, entry);
+    for (std::size_t copy = 1; copy < poses.size(); ++copy) {
+      const long due = step_of(static_cast<double>(copy) * body.repeat.every, scene.world.steps_per_second);
+      copies_.push_back({due, static_cast<int>(entry), static_cast<int>(copy), poses[copy]});
+    }
+  }
+  std::stable_sort(copies_.begin(), copies_.end(),
+                   [](const LateCopy& a, const LateCopy& b) { return a.due < b.due; });
+}
 
-std::vector<std::string> Script::play(scene::BuiltScene& built) {
-  std::vector<std::string> faults;
+void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& faults) {
   const double rate = built.world.settings().steps_per_second;
   for (; next_ < scene_.events.size(); ++next_) {
     const scene::EventEntry& event = scene_.events[next_];
-    // A hair's breadth of tolerance: at = 0.1 is step 24 of 240, although 0.1 * 240 is not 24 to the bit.
-    const auto due = static_cast<long>(std::ceil(event.at * rate - 1e-6));
-    if (due > built.world.steps()) break;
+    if (step_of(event.at, rate) > built.world.steps()) break;
     auto description = describe(event, built, faults);
     if (!description) {
       faults.push_back(
@@ -85,8 +101,30 @@ std::vector<std::string> Script::play(scene::BuiltScene& built) {
           fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, id.error()));
       continue;
     }
-    built.entries[id.value()] = event.body;
+    built.origins[id.value()] = {event.body, count - 1};
   }
+}
+
+void Script::bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults) {
+  for (; next_copy_ < copies_.size() && copies_[next_copy_].due <= built.world.steps(); ++next_copy_) {
+    const LateCopy& late = copies_[next_copy_];
+    const auto entry = static_cast<std::size_t>(late.entry);
+    world::BodyDescription description = built.plan.bodies[entry].description;
+    description.name = scene::copy_name(scene_.bodies[entry], late.copy);
+    description.pose = late.pose;
+    const auto id = built.world.add_body(description);
+    if (id) {
+      built.origins[id.value()] = {late.entry, late.copy};
+    } else {
+      faults.push_back(fmt::format("{} could not come in: {}", description.name, id.error()));
+    }
+  }
+}
+
+std::vector<std::string> Script::play(scene::BuiltScene& built) {
+  std::vector<std::string> faults;
+  bring_copies(built, faults);
+  play_events(built, faults);
   return faults;
 }
 

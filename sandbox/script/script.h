@@ -17,15 +17,26 @@ class Script {
   /// `scene` must outlive the script.
   explicit Script(const scene::SceneDescription& scene);
 
-  /// Plays all events that are due before the coming step (an event lands on the first step border at or
-  /// after its time). Returns what could not be done, in sentences.
+  /// Brings in the copies and plays the events that are due before the coming step (each lands on the first
+  /// step border at or after its time). Returns what could not be done, in sentences.
   std::vector<std::string> play(scene::BuiltScene& built);
 
-  bool is_over() const { return next_ == scene_.events.size(); }
+  bool is_over() const { return next_ == scene_.events.size() && next_copy_ == copies_.size(); }
 
  private:
+  /// A copy of a body that comes in later than the first.
+  struct LateCopy {
+    long due = 0;  // step
+    int entry = 0, copy = 0;
+    Pose pose;
+  };
+
+  void bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults);
+  void play_events(scene::BuiltScene& built, std::vector<std::string>& faults);
+
   const scene::SceneDescription& scene_;
-  std::size_t next_ = 0;
+  std::vector<LateCopy> copies_;  // ascending in time
+  std::size_t next_ = 0, next_copy_ = 0;
   std::vector<int> throws_;  // per [[body]]: how often it was brought in
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/hash.h"
 #include "sandbox/view/looks.h"
 
 namespace shatterbox::sandbox::view {
@@ -80,6 +81,14 @@ std::shared_ptr<const std::vector<float>> vertex_stress(const body::Shape& shape
     values->push_back(count[v] > 0.0 ? static_cast<float>(sum[v] / count[v]) : 0.0F);
   }
   return values;
+}
+
+/// The colour of one copy: drawn from the list by the numbers of the body and the copy.
+std::optional<Vec3> colour_of(const scene::LookEntry& look, std::size_t entry, int copy) {
+  if (look.colours.empty()) return std::nullopt;
+  const std::uint64_t draw =
+      core::Hash(std::uint64_t{entry}).add(static_cast<std::uint64_t>(copy)).value() >> 16U;
+  return look.colours[static_cast<std::size_t>(draw % look.colours.size())];
 }
 
 render::Lights make_lights(const scene::LightEntry& entry) {
@@ -163,24 +172,33 @@ std::shared_ptr<const render::Mesh> View::mesh_of(const std::shared_ptr<const bo
 const std::vector<render::Look>& View::looks_of(body::BodyId original) {
   auto [place, is_new] = looks_.try_emplace(original);
   if (!is_new) return place->second;
-  const auto found = built_.entries.find(original);
-  if (found == built_.entries.end()) {
+  const auto found = built_.origins.find(original);
+  if (found == built_.origins.end()) {
     place->second = make_looks("matt", std::nullopt, 0.1, Vec3::Zero());
     return place->second;
   }
-  const auto number = static_cast<std::size_t>(found->second);
+  const auto number = static_cast<std::size_t>(found->second.entry);
   const scene::BodyEntry& entry = scene_.bodies[number];
   const scene::BodyPlan& plan = built_.plan.bodies[number];
   std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
   const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
   if (name.empty()) name = usual_look(material.preset);
-  place->second = make_looks(name, entry.look.colour, plan.bounding_radius, -plan.centre);
+  place->second =
+      make_looks(name, colour_of(entry.look, number, found->second.copy), plan.bounding_radius, -plan.centre);
   return place->second;
+}
+
+/// A look "hidden" is for walls that would stand before the camera.
+bool View::is_hidden(body::BodyId original) const {
+  const auto found = built_.origins.find(original);
+  return found != built_.origins.end() &&
+         scene_.bodies[static_cast<std::size_t>(found->second.entry)].look.name == "hidden";
 }
 
 void View::add_body(const body::Body& body, render::Frame& frame) {
   if (is_drawn_as_ground(body)) return;
   const world::Ancestry ancestry = built_.world.ancestry(body.id);
+  if (is_hidden(ancestry.original != 0 ? ancestry.original : body.id)) return;
   render::Draw draw;
   draw.mesh = mesh_of(body.shape);
   Pose pose = body.pose;

@@ -32,6 +32,7 @@ class View {
 
   std::shared_ptr<const render::Mesh> mesh_of(const std::shared_ptr<const body::Shape>& shape);
   const std::vector<render::Look>& looks_of(body::BodyId original);
+  bool is_hidden(body::BodyId original) const;
   void add_body(const body::Body& body, render::Frame& frame);
 
   const scene::SceneDescription& scene_;

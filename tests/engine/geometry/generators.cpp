@@ -4,6 +4,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <limits>
+#include <set>
 
 #include "engine/core/elementary.h"
 #include "engine/core/hash.h"
@@ -66,7 +67,8 @@ TEST_CASE("generated meshes are well-shaped, of the size asked for, and nothing 
                               {"ornament", make_ornament({}, meshing).value().mesh, 1, false},
                               {"capped", make_ornament(capped, meshing).value().mesh, 2, true},
                               {"bowl", make_bowl({}, meshing).value(), 1, false},
-                              {"pane", make_pane(0.2, 0.15, meshing).value(), 1, false}};
+                              {"pane", make_pane(0.2, 0.15, meshing).value(), 1, false},
+                              {"boat", make_boat({0.2, 0.08, 0.04, 0.02}, meshing).value(), 1, false}};
         for (const Case& c : cases) {
           INFO(c.name << " h " << h << " jitter " << jitter << " seed " << seed);
           const Edges edges = measure(c.mesh);
@@ -111,6 +113,35 @@ TEST_CASE("a finer mesh is the same surface") {
   const double fine = truth - surface_area(make_ornament(sizes, {0.002, 0.3, 1}).value().mesh);
   CHECK(coarse / truth < 6e-3);
   CHECK(coarse / fine == Approx(4.0).epsilon(0.2));
+}
+
+TEST_CASE("a boat is one sheet, the same on all four quarters, with stems in the middle plane") {
+  const BoatSizes sizes;
+  for (const double h : {0.2, 1.0 / 15.0, 0.02}) {
+    const TriangleMesh boat = make_boat(sizes, {h, 0.3, 1}).value();
+    std::set<std::array<double, 3>> places;
+    for (const Vec3& p : boat.positions) places.insert({p.x(), p.y(), p.z()});
+    CHECK(places.size() == boat.positions.size());
+    Vec3 least = Vec3::Constant(1e9), most = -least;
+    for (const Vec3& p : boat.positions) {
+      CHECK(places.count({p.x(), p.y(), -p.z()}) == 1);
+      least = least.cwiseMin(p);
+      most = most.cwiseMax(p);
+      if (std::abs(p.x()) > 0.4999 * sizes.length) CHECK(p.z() == 0.0);
+    }
+    CHECK((most - least).x() == Approx(sizes.length).epsilon(1e-12));
+    CHECK((most - least).z() < sizes.beam * (1.0 + 1e-12));
+    CHECK((most - least).y() == Approx(sizes.depth + sizes.sheer).epsilon(1e-3));  // no station amidships
+    // Outside is down, and away from the middle plane.
+    for (const Triangle& t : boat.triangles) {
+      const Vec3& a = boat.positions[static_cast<std::size_t>(t[0])];
+      const Vec3& b = boat.positions[static_cast<std::size_t>(t[1])];
+      const Vec3& c = boat.positions[static_cast<std::size_t>(t[2])];
+      const Vec3 inside(0.0, sizes.depth + sizes.sheer, 0.0);
+      CHECK((b - a).cross(c - a).dot((a + b + c) / 3.0 - inside) > 0.0);
+    }
+  }
+  CHECK(make_boat(sizes, {1.0 / 15.0, 0.3, 1}).value().triangles.size() == 300);
 }
 
 TEST_CASE("faces look outwards") {
@@ -161,6 +192,7 @@ TEST_CASE("the same numbers give the same mesh to the bit, another seed another 
   CHECK(hash(make_sphere(0.04, one).value()) == 0xc7a033d21d266e9cULL);
   CHECK(hash(make_bowl({}, one).value()) == 0x49b56e5077c15c28ULL);
   CHECK(hash(make_pane(0.3, 0.2, one).value()) == 0xc7da8482011571a2ULL);
+  CHECK(hash(make_boat({}, one).value()) == 0x89e1f2dab20bd6ffULL);
   CHECK(hash(make_ornament({}, one).value().mesh) == hash(make_ornament({}, one).value().mesh));
   CHECK(hash(make_ornament({}, one).value().mesh) != hash(make_ornament({}, two).value().mesh));
   CHECK(hash(make_sphere(0.04, one).value()) != hash(make_sphere(0.04, two).value()));
@@ -214,6 +246,10 @@ TEST_CASE("sizes that make no sense are refused in a sentence") {
   CHECK_FALSE(make_pane(10.0, 10.0, {0.001, 0.3, 1}).ok());
   CHECK_FALSE(make_bowl({0.08, 0.035, 0.06, 0.07}, {}).ok());
   CHECK_FALSE(make_torus(0.1, 0.2, {}).ok());
+  CHECK_FALSE(make_boat({1.0, 2.0, 0.2, 0.1}, {}).ok());
+  CHECK_FALSE(make_boat({1.0, 0.4, nan, 0.1}, {}).ok());
+  CHECK_FALSE(make_boat({1.0, 0.4, 0.2, -0.1}, {}).ok());
+  CHECK_FALSE(make_boat({}, {1e-4, 0.3, 1}).ok());
   CHECK_FALSE(make_surface_of_revolution({}, {}).ok());
   OrnamentSizes wide;
   wide.neck_radius = 0.05;

@@ -95,6 +95,58 @@ TEST_CASE("copies stand in rows and grids, and jitter by the seed alone") {
   CHECK(grid[5].rotation.angularDistance(Quat::Identity()) < 20.0 * 3.15 / 180.0);
 }
 
+TEST_CASE("a count with a layer fills layers from their middle, upwards") {
+  const Reading reading = read(
+      "[[body]]\nkind = \"sphere\"\nposition = [1, 2, 3]\n"
+      "repeat = {count = 20, layer = [3, 3], spacing = [1, 0.5, 2]}\n");
+  REQUIRE(reading.scene.has_value());
+  const auto poses = copy_poses(reading.scene->bodies[0], 1, 0);
+  REQUIRE(poses.size() == 20);
+  CHECK(poses[0].translation == Vec3(1, 2, 3));
+  CHECK(poses[1].translation == Vec3(0, 2, 3));  // x is the nearer neighbour
+  CHECK(poses[2].translation == Vec3(2, 2, 3));
+  CHECK(poses[9].translation == Vec3(1, 2.5, 3));
+  CHECK(poses[19].translation == Vec3(0, 3, 3));
+  std::set<std::array<double, 3>> places;
+  for (const Pose& pose : poses)
+    places.insert({pose.translation.x(), pose.translation.y(), pose.translation.z()});
+  CHECK(places.size() == 20);
+}
+
+TEST_CASE("fewer copies are the first of many, to the bit") {
+  const char* const text =
+      "[[body]]\nname = \"boats\"\nkind = \"shell\"\nshape = \"boat\"\nbreakable = false\n"
+      "repeat = {count = 30, layer = [3, 3], spacing = 2, jitter = 0.2, rotation_jitter = 50}\n";
+  const Reading many = read(text);
+  const Reading few = read(text, {"boats.repeat.count=7"});
+  REQUIRE(many.scene.has_value());
+  REQUIRE(few.scene.has_value());
+  const auto all = copy_poses(many.scene->bodies[0], 5, 0);
+  const auto some = copy_poses(few.scene->bodies[0], 5, 0);
+  REQUIRE(some.size() == 7);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    CHECK(some[i].translation == all[i].translation);
+    CHECK(some[i].rotation.coeffs() == all[i].rotation.coeffs());
+  }
+}
+
+TEST_CASE("copies share one shape, have numbered names, and know where they came from") {
+  const Reading reading = read(
+      "[[body]]\nname = \"boats\"\nkind = \"shell\"\nshape = \"boat\"\n"
+      "repeat = {count = 3, spacing = 2}\n");
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  const auto built = build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  const auto bodies = built->world.bodies();
+  REQUIRE(bodies.size() == 3);
+  CHECK(bodies[0].shape->surface.triangles.size() == 300);
+  CHECK(bodies[1].shape == bodies[0].shape);
+  CHECK(bodies[2].shape == bodies[0].shape);
+  CHECK(bodies[2].name == "boats[3]");
+  CHECK(built->origins.at(bodies[2].id).copy == 2);
+}
+
 TEST_CASE("bodies that cannot be are refused at their place") {
   const auto refused = [](const std::string& text, const char* part) {
     const Reading reading = read(text);

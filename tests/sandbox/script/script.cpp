@@ -54,3 +54,30 @@ TEST_CASE("events land on the first step border at or after their time") {
   CHECK(counts[25] == 3);
   CHECK(script.is_over());
 }
+
+TEST_CASE("copies with a time between them come in one after another, named and placed by their numbers") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"drops\"\nkind = \"sphere\"\n"
+      "repeat = {count = 3, spacing = [1, 0, 0], every = 0.1}\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  script::Script script(*reading.scene);
+  std::vector<std::size_t> counts;
+  for (int step = 0; step < 50; ++step) {
+    CHECK(script.play(*built).empty());
+    counts.push_back(built->world.bodies().size());
+    built->world.step();
+  }
+  CHECK(counts[0] == 1);
+  CHECK(counts[23] == 1);
+  CHECK(counts[24] == 2);
+  CHECK(counts[47] == 2);
+  CHECK(counts[48] == 3);
+  CHECK(script.is_over());
+  CHECK(built->world.bodies()[2].name == "drops[3]");
+  CHECK(built->world.bodies()[2].pose.translation == Vec3(2, 0, 0));
+  CHECK(built->origins.at(built->world.bodies()[2].id).copy == 2);
+}
