@@ -1,13 +1,13 @@
 # What Debian 12 must have for building and testing; sourced by sandbox/quickstart.sh and tests/run.sh.
 
-# The engine and its tests alone need these.
+# The engine alone needs these; its tests libgmp-dev too, for exact oracles.
 ENGINE_PACKAGES=(g++ cmake ninja-build libeigen3-dev libtbb-dev libmetis-dev catch2)
 
 BUILD_PACKAGES=("${ENGINE_PACKAGES[@]}" pkg-config libosmesa6-dev libglm-dev libstb-dev python3-glad
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev libassimp-dev)
 
-TEST_PACKAGES=("${BUILD_PACKAGES[@]}" ffmpeg)
+TEST_PACKAGES=("${BUILD_PACKAGES[@]}" ffmpeg libgmp-dev)
 
 # install_packages WHAT-FOR NAME...: installs those that are missing; says how where it cannot.
 install_packages() {
