@@ -9,8 +9,7 @@
 #include "engine/core/result.h"
 #include "engine/core/vec.h"
 #include "engine/geometry/shell_mesh.h"
-#include "engine/stress/shell_stiffness.h"
-#include "engine/stress/shell_support.h"
+#include "engine/stress/shell_structure.h"
 
 namespace shatterbox::stress {
 
@@ -27,8 +26,11 @@ struct ShellSolution {
 
 class ShellSystem {
  public:
-  /// Orders, analyses and factors. `screening` is s in 1/s; 0 for the balanced or supported system. Fails,
-  /// with a sentence, if no factor exists (not seen for elements with area).
+  /// Factors. `screening` is s in 1/s; 0 for the balanced or supported system. Fails, with a sentence, if no
+  /// factor exists (not seen for elements with area).
+  static core::Result<std::shared_ptr<const ShellSystem>> make(
+      std::shared_ptr<const ShellStructure> structure, double screening = 0.0);
+  /// The same, for a structure that no other system shares.
   static core::Result<std::shared_ptr<const ShellSystem>> make(
       std::shared_ptr<const ShellStiffness> stiffness, const geometry::ShellMesh& mesh,
       double screening = 0.0, const ShellSupport& support = {});

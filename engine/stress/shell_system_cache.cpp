@@ -32,7 +32,7 @@ const ShellSystemCache::System& ShellSystemCache::get(int key, double screening)
     const std::lock_guard lock(mutex_);
     if (const auto kept = systems_.find(key); kept != systems_.end()) return kept->second;
   }
-  System made = ShellSystem::make(stiffness_, *mesh_, screening, support_);
+  System made = ShellSystem::make(structure(), screening);
   const std::lock_guard lock(mutex_);
   return systems_.emplace(key, std::move(made)).first->second;
 }
@@ -43,6 +43,11 @@ const ShellSystemCache::System& ShellSystemCache::unscreened() {
 
 const ShellSystemCache::System& ShellSystemCache::screened(int exponent) {
   return get(exponent, screening_of(exponent));
+}
+
+const std::shared_ptr<const ShellStructure>& ShellSystemCache::structure() {
+  std::call_once(has_structure_, [this] { structure_ = ShellStructure::make(stiffness_, *mesh_, support_); });
+  return structure_;
 }
 
 const ShellFigures& ShellSystemCache::figures() {

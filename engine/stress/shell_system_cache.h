@@ -29,6 +29,9 @@ class ShellSystemCache {
   /// The system with s = 2^exponent. Any thread; made once.
   const System& screened(int exponent);
 
+  /// What all systems of the shape share. Any thread; made at the first call.
+  const std::shared_ptr<const ShellStructure>& structure();
+
   /// What does not depend on a load. Any thread; made at the first call.
   const ShellFigures& figures();
 
@@ -45,6 +48,8 @@ class ShellSystemCache {
   std::shared_ptr<const ShellStiffness> stiffness_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;
   ShellSupport support_;
+  std::once_flag has_structure_;
+  std::shared_ptr<const ShellStructure> structure_;
   std::once_flag has_figures_;
   ShellFigures figures_;
   // Guards systems_, and is never held while one is made: a thread that waits inside a parallel loop may pick
