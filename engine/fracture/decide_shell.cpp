@@ -73,7 +73,7 @@ class Decider {
     decision_.residual = std::max(decision_.residual, force_.residual());
     return stress::average_stresses(
         *mesh_, contacts(),
-        stress::cell_stresses(subject_.systems->stiffness(), *mesh_, force_.displacement(*mesh_)));
+        stress::cell_stresses(subject_.systems->stiffness(), *mesh_, force_.displacement()));
   }
 
   /// The first solve's verdict: held, unless a flaw bears more than it can.

@@ -35,6 +35,11 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// Share of a load's energy that the cracks have left.
+double energy_left(const Press& press, const Decision& decision) {
+  return std::max(0.0, 1.0 - decision.fracture_energy / std::max(press.energy, 1e-300));
+}
+
 }  // namespace
 
 stress::ShellProperties properties_of(const ShellSubject& subject) {
@@ -124,30 +129,64 @@ bool ImpactForce::use(const System& system, std::string& problem) {
   return static_cast<bool>(system);
 }
 
-bool ImpactForce::has_accuracy(std::string& problem) const {
-  if (residual() < kLargestResidual) return true;
+bool ImpactForce::solve(const VecX& load, stress::ShellSolution& solution, std::string& problem) {
+  solution = system_->solve(load, kVerdictResidual);
+  residual_ = std::max(residual_, solution.residual);
+  if (solution.residual < kLargestResidual) return true;
   problem = "the solve did not reach its accuracy";
   return false;
 }
 
-double ImpactForce::residual() const {
-  double worst = 0.0;
-  for (const ContactAnswer& answer : answers_) worst = std::max(worst, answer.residual);
-  return worst;
-}
-
+/// The lead alone, with its displacement.
 bool ImpactForce::answer_lead(Size lead, Decision& decision, std::string& problem) {
   const auto start = Clock::now();
-  answers_ = press(*system_, subject_.systems->figures().lumped_mass, {groups_[lead]});
+  residual_ = 0.0;
+  ContactAnswer answer;
+  answer.load = share_load(*system_, groups_[lead]);
+  const bool is_solved = solve(answer.load, lead_, problem);
+  answer.compliance = lead_.compliance;
+  answer.elastic_compliance = lead_.elastic_compliance;
+  answers_ = {std::move(answer)};
   decision.solve_ms += milliseconds_since(start);
-  return has_accuracy(problem);
+  return is_solved;
 }
 
-bool ImpactForce::answer_all(Decision& decision, std::string& problem) {
+/// The other loads too, without theirs.
+void ImpactForce::answer_all(Size lead, Decision& decision) {
   const auto start = Clock::now();
-  answers_ = press(*system_, subject_.systems->figures().lumped_mass, groups_);
+  std::vector<PressGroups> others;
+  for (Size i = 0; i < groups_.size(); ++i)
+    if (!has_lead_ || i != lead) others.push_back(groups_[i]);
+  std::vector<ContactAnswer> answers = press(*system_, others, true);
+  if (has_lead_) answers.insert(answers.begin() + static_cast<std::ptrdiff_t>(lead), answers_.front());
+  answers_ = std::move(answers);
   decision.solve_ms += milliseconds_since(start);
-  return has_accuracy(problem);
+}
+
+/// The displacement under all forces and the spin at once.
+bool ImpactForce::solve_together(const geometry::ShellMesh& mesh, Decision& decision, std::string& problem) {
+  const auto start = Clock::now();
+  const stress::ShellFigures& figures = subject_.systems->figures();
+  // Bending by a spin is at most about 3/4 rho (spin size)^2 size / thickness.
+  const double rim_speed = impact_.spin_material.norm() * figures.size;
+  const double spin_stress =
+      0.75 * subject_.material.density * rim_speed * rim_speed * figures.size / subject_.thickness;
+  const bool is_spinning = spin_stress > kSpinThatCounts * subject_.material.strength;
+  bool is_solved = true;
+  if (!is_cracked_ && has_lead_ && presses_.size() == 1 && !is_spinning) {
+    displacement_ = presses_.front().force * lead_.displacement;
+  } else {
+    VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+    for (Size i = 0; i < presses_.size(); ++i) load += presses_[i].force * answers_[i].load;
+    if (is_spinning)
+      load += stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh, impact_.spin_material,
+                                       figures.mass.centre);
+    stress::ShellSolution solution;
+    is_solved = solve(load, solution, problem);
+    displacement_ = std::move(solution.displacement);
+  }
+  decision.solve_ms += milliseconds_since(start);
+  return is_solved;
 }
 
 /// A ball on a held body feels the body's inertia in its way; for free bodies it is in the effective mass.
@@ -174,7 +213,7 @@ std::optional<Size> ImpactForce::find_lead() const {
 /// Shorter than half the first period? The lead's own static displacement is a trial motion: by Rayleigh's
 /// quotient the first period is at least as long as the one it would have, which mostly settles the matter.
 bool ImpactForce::is_short() const {
-  const VecX& u = answers_.front().displacement;
+  const VecX& u = lead_.displacement;
   const double inertia = (subject_.systems->figures().lumped_mass.array() * u.array().square()).sum();
   const double trial_period =
       2.0 * core::kPi * core::sqrt(inertia / std::max(answers_.front().elastic_compliance, 1e-300));
@@ -235,7 +274,8 @@ bool ImpactForce::settle(Decision& decision, std::string& problem) {
   decision.factor_ms += milliseconds_since(start);
   if (!use(unscreened, problem)) return false;
   duration_ = impact_.contact_average;
-  if (const auto lead = find_lead()) {
+  const std::optional<Size> lead = find_lead();
+  if (lead) {
     has_lead_ = true;
     if (!answer_lead(*lead, decision, problem)) return false;
     duration_ = duration_of(presses_[*lead], answers_.front());
@@ -243,10 +283,10 @@ bool ImpactForce::settle(Decision& decision, std::string& problem) {
     is_screened_ = is_short();
     if (is_screened_ && !find_screening(*lead, decision, problem)) return false;
   }
-  if ((!has_lead_ || presses_.size() > 1) && !answer_all(decision, problem)) return false;
+  if (!has_lead_ || presses_.size() > 1) answer_all(lead.value_or(0), decision);
   decision.factorisations += subject_.systems->count() - made_before;
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
-  return true;
+  return solve_together(*subject_.mesh, decision, problem);
 }
 
 void ImpactForce::settle_force(Press& press, const ContactAnswer& answer) {
@@ -310,40 +350,43 @@ bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
   const auto solve_start = Clock::now();
   groups_.clear();
   for (const Press& press : presses_) groups_.push_back(find_press_groups(mesh, contacts, press.contact));
-  answers_ = press(*system_, stress::lumped_mass(*stiffness, mesh), groups_);
-  decision.solve_ms += milliseconds_since(solve_start);
-  if (!has_accuracy(problem)) return false;
+  answers_ = press(*system_, groups_, false);
+  residual_ = 0.0;
   const double s = system_->screening();
   for (Size i = 0; i < presses_.size(); ++i) {
     Press& press = presses_[i];
     const double hertz = press.contact.hertz_compliance;
     const double other = press.load->other_inverse_mass / (s * s);
-    const double left = std::max(0.0, 1.0 - decision.fracture_energy / std::max(press.energy, 1e-300));
     press.force = press.first_force * (hertz + press.first_compliance + other) /
-                  (hertz + answers_[i].compliance + other) * core::sqrt(left);
+                  (hertz + answers_[i].compliance + other) * core::sqrt(energy_left(press, decision));
     press.force = std::min(press.force, press.first_force);
-    // The springs cannot hold more than the energy that is left.
-    const double most = core::sqrt(2.0 * press.energy * left / (hertz + answers_[i].elastic_compliance));
-    press.force = std::min(press.force, most);
   }
-  return true;
+  cap_forces(decision);
+  decision.solve_ms += milliseconds_since(solve_start);
+  return solve_together(mesh, decision, problem);
 }
 
-VecX ImpactForce::displacement(const geometry::ShellMesh& mesh) const {
-  VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
-  for (Size i = 0; i < presses_.size(); ++i) displacement += presses_[i].force * answers_[i].displacement;
-  const stress::ShellFigures& figures = subject_.systems->figures();
-  // Bending by a spin is at most about 3/4 rho (spin size)^2 size / thickness.
-  const double rim_speed = impact_.spin_material.norm() * figures.size;
-  const double spin_stress =
-      0.75 * subject_.material.density * rim_speed * rim_speed * figures.size / subject_.thickness;
-  if (spin_stress > kSpinThatCounts * subject_.material.strength)
-    displacement += system_
-                        ->solve(stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh,
-                                                         impact_.spin_material, figures.mass.centre),
-                                kVerdictResidual)
-                        .displacement;
-  return displacement;
+/// The springs cannot hold more than the energy that is left. An elastic compliance is at most the whole one,
+/// so few have to be known.
+void ImpactForce::cap_forces(const Decision& decision) {
+  std::vector<Size> doubtful;
+  std::vector<VecX> loads;
+  const auto spring_energy = [&](const Press& press, double compliance) {
+    return 0.5 * press.force * press.force * (press.contact.hertz_compliance + compliance);
+  };
+  for (Size i = 0; i < presses_.size(); ++i) {
+    const Press& press = presses_[i];
+    if (spring_energy(press, answers_[i].compliance) <= press.energy * energy_left(press, decision)) continue;
+    doubtful.push_back(i);
+    loads.push_back(answers_[i].load);
+  }
+  const std::vector<stress::LoadCompliance> compliances = system_->compliances(loads);
+  for (Size k = 0; k < doubtful.size(); ++k) {
+    Press& press = presses_[doubtful[k]];
+    const double most = core::sqrt(2.0 * press.energy * energy_left(press, decision) /
+                                   (press.contact.hertz_compliance + compliances[k].elastic));
+    press.force = std::min(press.force, most);
+  }
 }
 
 }  // namespace shatterbox::fracture

@@ -54,22 +54,23 @@ class ImpactForce {
   bool settle_again(const geometry::ShellMesh& mesh, const std::vector<geometry::CellContact>& contacts,
                     Decision& decision, std::string& problem);
 
-  /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads together.
-  VecX displacement(const geometry::ShellMesh& mesh) const;
+  /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads and the spin together.
+  const VecX& displacement() const { return displacement_; }
 
   const std::vector<Press>& presses() const { return presses_; }
   const Press& hardest() const { return presses_[hardest_]; }
   double duration() const { return duration_; }              // s
   double elastic_energy() const { return elastic_energy_; }  // J
-  double residual() const;
+  double residual() const { return residual_; }              // worst of the solves on the mesh last solved
 
  private:
   using System = stress::ShellSystemCache::System;
   std::optional<std::size_t> find_lead() const;
   bool use(const System& system, std::string& problem);
   bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);
-  bool answer_all(Decision& decision, std::string& problem);
-  bool has_accuracy(std::string& problem) const;
+  void answer_all(std::size_t lead, Decision& decision);
+  bool solve_together(const geometry::ShellMesh& mesh, Decision& decision, std::string& problem);
+  bool solve(const VecX& load, stress::ShellSolution& solution, std::string& problem);
   double felt_compliance(const ContactAnswer& answer) const;
   double duration_of(const Press& press, const ContactAnswer& answer) const;
   bool is_short() const;
@@ -77,6 +78,7 @@ class ImpactForce {
   bool find_screening(std::size_t lead, Decision& decision, std::string& problem);
   bool screen(int exponent, std::size_t lead, Decision& decision, std::string& problem);
   void settle_force(Press& press, const ContactAnswer& answer);
+  void cap_forces(const Decision& decision);
   void prepare_cracked();
   double rigid_mobility(const ShellLoad& load) const;
 
@@ -86,6 +88,9 @@ class ImpactForce {
   std::vector<Press> presses_;
   std::vector<PressGroups> groups_;     // of the mesh last solved
   std::vector<ContactAnswer> answers_;  // of the loads, or of the lead alone while the duration is sought
+  stress::ShellSolution lead_;          // under a unit force
+  VecX displacement_;
+  double residual_ = 0.0;
   std::shared_ptr<const stress::ShellSystem> system_;
   std::size_t hardest_ = 0;
   double duration_ = 0.0;        // s, of the lead; contact_average without one

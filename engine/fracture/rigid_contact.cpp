@@ -69,50 +69,62 @@ PressGroups find_press_groups(const geometry::ShellMesh& mesh,
 
 namespace {
 
-/// One load's answer from those of its pieces: `solutions` are |pieces| long.
-ContactAnswer combine(const PressGroups& load, const stress::ShellSolution* solutions, const VecX& mass,
-                      double screening_squared) {
-  const auto n = static_cast<Eigen::Index>(load.weights.size());
-  Eigen::MatrixXd flexibility(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      flexibility(i, j) = load.forces[static_cast<Size>(i)].dot(solutions[j].displacement);
-  flexibility = (0.5 * (flexibility + flexibility.transpose())).eval();
+/// One load's answer from the flexibility of its pieces (|pieces| x |pieces|).
+ContactAnswer combine(const PressGroups& load, const Eigen::MatrixXd& flexibility) {
   Eigen::MatrixXd pressed = flexibility;
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (Eigen::Index i = 0; i < pressed.rows(); ++i)
     pressed(i, i) += load.hertz_compliance / load.weights[static_cast<Size>(i)];
   std::vector<int> all(load.weights.size());
   std::iota(all.begin(), all.end(), 0);
   const Eigen::VectorXd shares = share_force(pressed, all);
   ContactAnswer answer;
-  answer.displacement = VecX::Zero(mass.size());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    answer.residual = std::max(answer.residual, solutions[i].residual);
-    if (shares[i] == 0.0) continue;
-    answer.displacement += shares[i] * solutions[i].displacement;
-    ++answer.groups;
-  }
-  answer.compliance = shares.dot(flexibility * shares);
-  const double inertial = screening_squared * (mass.array() * answer.displacement.array().square()).sum();
-  answer.elastic_compliance = std::max(0.0, answer.compliance - inertial);
+  answer.load = VecX::Zero(load.forces.front().size());
+  for (Eigen::Index i = 0; i < shares.size(); ++i)
+    if (shares[i] != 0.0) answer.load += shares[i] * load.forces[static_cast<Size>(i)];
+  answer.compliance = answer.elastic_compliance = shares.dot(flexibility * shares);
   return answer;
 }
 
 }  // namespace
 
-std::vector<ContactAnswer> press(const stress::ShellSystem& system, const VecX& mass,
-                                 const std::vector<PressGroups>& loads) {
+std::vector<ContactAnswer> press(const stress::ShellSystem& system, const std::vector<PressGroups>& loads,
+                                 bool wants_elastic) {
+  const bool is_whole_wanted = wants_elastic && system.screening() > 0.0;
   std::vector<VecX> forces;
-  for (const PressGroups& load : loads) forces.insert(forces.end(), load.forces.begin(), load.forces.end());
-  const std::vector<stress::ShellSolution> solutions = system.solve(forces, kVerdictResidual);
-  const double screening_squared = system.screening() * system.screening();
-  std::vector<ContactAnswer> answers;
-  const stress::ShellSolution* next = solutions.data();
-  for (const PressGroups& load : loads) {
-    answers.push_back(combine(load, next, mass, screening_squared));
-    next += load.forces.size();
+  std::vector<int> owners;
+  for (Size l = 0; l < loads.size(); ++l) {
+    if (is_whole_wanted && loads[l].forces.size() == 1) continue;
+    forces.insert(forces.end(), loads[l].forces.begin(), loads[l].forces.end());
+    owners.resize(forces.size(), static_cast<int>(l));
+  }
+  const Eigen::MatrixXd flexibility = system.compliance_matrix(forces, owners);
+  std::vector<ContactAnswer> answers(loads.size());
+  Eigen::Index next = 0;
+  for (Size l = 0; l < loads.size(); ++l) {
+    if (is_whole_wanted && loads[l].forces.size() == 1) {
+      answers[l].load = loads[l].forces.front();
+      continue;
+    }
+    const auto n = static_cast<Eigen::Index>(loads[l].forces.size());
+    answers[l] = combine(loads[l], flexibility.block(next, next, n, n));
+    next += n;
+  }
+  if (system.screening() == 0.0) return answers;
+  for (ContactAnswer& answer : answers) answer.elastic_compliance = 0.0;
+  if (!is_whole_wanted) return answers;
+  std::vector<VecX> shared;
+  for (const ContactAnswer& answer : answers) shared.push_back(answer.load);
+  const std::vector<stress::LoadCompliance> compliances = system.compliances(shared);
+  for (Size l = 0; l < loads.size(); ++l) {
+    answers[l].compliance = compliances[l].total;
+    answers[l].elastic_compliance = compliances[l].elastic;
   }
   return answers;
+}
+
+VecX share_load(const stress::ShellSystem& system, const PressGroups& load) {
+  if (load.forces.size() == 1) return load.forces.front();
+  return press(system, {load}, false).front().load;
 }
 
 }  // namespace shatterbox::fracture

@@ -21,13 +21,11 @@ struct ContactPress {
   double hertz_compliance = 0.0;  // m/N
 };
 
-/// Answer to a unit force.
+/// What a unit force meets.
 struct ContactAnswer {
-  VecX displacement;                // |dof|
+  VecX load;                        // |dof|, N: the force as the pieces share it
   double compliance = 0.0;          // m/N, force . displacement
   double elastic_compliance = 0.0;  // m/N, displacement . K displacement
-  double residual = 0.0;
-  int groups = 0;  // pieces that carry the load
 };
 
 /// A load's pieces on one mesh, each under its own unit force; any number of systems of that mesh can be
@@ -41,9 +39,12 @@ struct PressGroups {
 PressGroups find_press_groups(const geometry::ShellMesh& mesh,
                               const std::vector<geometry::CellContact>& contacts, const ContactPress& load);
 
-/// Each load by itself under a unit force, on one factor. `mass` is the lumped mass (|dof|), for the elastic
-/// part of a screened compliance.
-std::vector<ContactAnswer> press(const stress::ShellSystem& system, const VecX& mass,
-                                 const std::vector<PressGroups>& loads);
+/// Each load by itself under a unit force, on one factor; no displacement is made. The elastic compliance of
+/// a screened system costs twice as much and is left zero unless `wants_elastic`.
+std::vector<ContactAnswer> press(const stress::ShellSystem& system, const std::vector<PressGroups>& loads,
+                                 bool wants_elastic);
+
+/// The unit force of one load as its pieces share it, |dof|, N.
+VecX share_load(const stress::ShellSystem& system, const PressGroups& load);
 
 }  // namespace shatterbox::fracture

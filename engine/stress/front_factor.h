@@ -27,13 +27,13 @@ class FrontFactor {
   static std::optional<FrontFactor> make(const FrontTree& tree, const std::vector<double>& diagonal,
                                          const std::function<ElementEntries(int element)>& element);
 
-  /// Solves in place; each column of `x` (unknowns in order of elimination) is one right-hand side.
-  void solve(const FrontTree& tree, Eigen::MatrixXd& x) const;
+  /// A front's panel: strips of four rows, pivot rows then rows below (front_tiles.h); the diagonal is
+  /// inverted.
+  const double* panel(std::size_t front) const { return entries_.data() + first_[front]; }
 
  private:
   std::vector<std::size_t> first_;  // begin of each front's panel in entries_
-  std::vector<double>
-      entries_;  // panels: strips of four rows, pivot rows then rows below; the diagonal is inverted
+  std::vector<double> entries_;     // panels
 };
 
 }  // namespace shatterbox::stress

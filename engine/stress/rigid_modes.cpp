@@ -146,14 +146,24 @@ void RigidModes::remove_motion(VecX& x) const {
     if (const int part = part_[static_cast<Size>(i)]; part >= 0) x(i) -= modes_.row(i).dot(amount[at(part)]);
 }
 
+RigidModes::Amounts RigidModes::resultants(const VecX& b) const {
+  Amounts amounts(part_mass_.size(), Vec6::Zero());
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    if (const int part = part_[static_cast<Size>(i)]; part >= 0 && b(i) != 0.0)
+      amounts[at(part)] += b(i) * modes_.row(i).transpose();
+  return amounts;
+}
+
+void RigidModes::subtract(VecX& b, const Amounts& amounts) const {
+  std::vector<char> is_moved(amounts.size());
+  for (Size part = 0; part < amounts.size(); ++part) is_moved[part] = !amounts[part].isZero(0.0);
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    if (const int part = part_[static_cast<Size>(i)]; part >= 0 && is_moved[at(part)] != 0)
+      b(i) -= mass_(i) * modes_.row(i).dot(amounts[at(part)]);
+}
+
 void RigidModes::balance(VecX& b) const {
-  std::vector<Vec6> amount(part_mass_.size(), Vec6::Zero());
-  for (Eigen::Index i = 0; i < b.size(); ++i)
-    if (const int part = part_[static_cast<Size>(i)]; part >= 0)
-      amount[at(part)] += b(i) * modes_.row(i).transpose();
-  for (Eigen::Index i = 0; i < b.size(); ++i)
-    if (const int part = part_[static_cast<Size>(i)]; part >= 0)
-      b(i) -= mass_(i) * modes_.row(i).dot(amount[at(part)]);
+  subtract(b, resultants(b));
 }
 
 }  // namespace shatterbox::stress

@@ -23,6 +23,12 @@ class RigidModes {
   /// b -= M R R^T b: no resultant in the load.
   void balance(VecX& b) const;
 
+  /// R^T b, part by part.
+  using Amounts = std::vector<Eigen::Matrix<double, 6, 1>>;
+  Amounts resultants(const VecX& b) const;
+  /// b -= M R amounts.
+  void subtract(VecX& b, const Amounts& amounts) const;
+
   int part_count() const { return static_cast<int>(part_mass_.size()); }
   int mode_count() const { return mode_count_; }
   const std::vector<int>& part_of_dof() const { return part_; }

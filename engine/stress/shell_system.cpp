@@ -1,15 +1,17 @@
 #include "engine/stress/shell_system.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <mutex>
 #include <optional>
 #include <span>
 
 #include "engine/core/elementary.h"
 #include "engine/core/parallel.h"
-#include "engine/core/random.h"
+#include "engine/stress/first_frequency.h"
 #include "engine/stress/front_factor.h"
+#include "engine/stress/front_solve.h"
+#include "engine/stress/front_tiles.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -22,6 +24,7 @@ Size at(int i) {
 
 constexpr int kIterations = 40;  // of the refinement; 1 to 3 do for a body without mechanisms
 constexpr std::size_t kMostLanes = 4;
+constexpr double kSplitShift = 1e6;    // of s^2 over a part's shift: below, about, the first frequency
 constexpr double kShiftRetry = 100.0;  // a factor that fails is made again with a shift so much larger
 
 struct Refinement {
@@ -40,11 +43,25 @@ struct ShellSystem::State {
   double screening_squared = 0.0;  // in units of the shell
   std::optional<FrontFactor> factor;
   VecX shift;  // factored in place of screening_squared: never too small to be seen beside the stiffness
+  std::vector<double> diagonal;  // shift times mass, in the order of elimination
+  // By part: the load's rigid part is answered in closed form, R R^T / s^2, because the factor would answer
+  // it with few digits (s far below the first frequency) or not at all (s = 0).
+  std::vector<char> is_split;
   mutable std::once_flag has_period;
   mutable double period = 0.0;
 
   bool build_factor();
   bool is_balanced() const { return screening_squared == 0.0; }
+  /// Half a solve of four loads: load i . answer j = y_i . y_j + what the rigid motions split off add.
+  struct Half {
+    SolveLanes y;
+    std::vector<RigidModes::Amounts> rigid;
+  };
+  Half solve_half(const std::vector<VecX>& loads, std::size_t first) const;
+  /// What the rigid motions split off add to load i . answer j.
+  double rigid_compliance(const RigidModes::Amounts& a, const RigidModes::Amounts& b) const;
+  VecX scaled(const VecX& load) const;
+  void put_lane(const VecX& load, std::size_t lane, SolveLanes& lanes) const;
   std::vector<VecX> precondition(const std::vector<const VecX*>& loads) const;
   void refine(std::span<Refinement> all, double tolerance) const;
   double compute_period() const;
@@ -63,6 +80,9 @@ bool ShellSystem::State::build_factor() {
     const double plate = 1.5e-5 * thickness * thickness / (size_squared * size_squared);
     part_shift[part] = std::max(plate, 1e-9 / rigid.part_mass()[part]);
   }
+  is_split.resize(part_shift.size());
+  for (Size part = 0; part < part_shift.size(); ++part)
+    is_split[part] = screening_squared < kSplitShift * part_shift[part];
   const auto element = [this](int e) {
     const SystemCell& cell = structure->cells[at(e)];
     return ElementEntries{structure->stiffness->matrices[at(cell.element)].stiffness.data(), cell.fraction};
@@ -70,7 +90,7 @@ bool ShellSystem::State::build_factor() {
   double factor_of_shift = 1.0;
   for (int attempt = 0; attempt < 4; ++attempt, factor_of_shift *= kShiftRetry) {
     shift = VecX::Zero(mass.size());
-    std::vector<double> diagonal(at(structure->tree.unknowns), 0.0);
+    diagonal.assign(at(structure->tree.unknowns), 0.0);
     for (Size dof = 0; dof < place.size(); ++dof) {
       if (place[dof] < 0) continue;
       const Eigen::Index i = static_cast<Eigen::Index>(dof);
@@ -83,24 +103,62 @@ bool ShellSystem::State::build_factor() {
   return false;
 }
 
+/// The factor's answer to up to kMost loads.
 std::vector<VecX> ShellSystem::State::precondition(const std::vector<const VecX*>& loads) const {
-  const std::vector<int>& place = structure->place;
-  Eigen::MatrixXd columns =
-      Eigen::MatrixXd::Zero(structure->tree.unknowns, static_cast<Eigen::Index>(loads.size()));
-  for (Size l = 0; l < loads.size(); ++l)
-    for (Size dof = 0; dof < place.size(); ++dof)
-      if (place[dof] >= 0)
-        columns(place[dof], static_cast<Eigen::Index>(l)) = (*loads[l])(static_cast<Eigen::Index>(dof));
-  factor->solve(structure->tree, columns);
+  SolveLanes lanes(structure->tree, loads.size());
+  for (Size l = 0; l < loads.size(); ++l) put_lane(*loads[l], l, lanes);
+  solve_forward(structure->tree, *factor, lanes);
+  solve_backward(structure->tree, *factor, lanes);
   std::vector<VecX> result(loads.size());
+  const std::vector<int>& place = structure->place;
   for (Size l = 0; l < loads.size(); ++l) {
     result[l] = VecX::Zero(structure->mass.size());
     for (Size dof = 0; dof < place.size(); ++dof)
       if (place[dof] >= 0)
-        result[l](static_cast<Eigen::Index>(dof)) = columns(place[dof], static_cast<Eigen::Index>(l));
+        result[l](static_cast<Eigen::Index>(dof)) = lanes.values[at(lanes.lanes * place[dof]) + l];
     if (is_balanced()) structure->rigid.remove_motion(result[l]);
   }
   return result;
+}
+
+void ShellSystem::State::put_lane(const VecX& load, Size lane, SolveLanes& lanes) const {
+  const std::vector<int>& place = structure->place;
+  for (Size dof = 0; dof < place.size(); ++dof)
+    if (place[dof] >= 0)
+      lanes.values[at(lanes.lanes * place[dof]) + lane] = load(static_cast<Eigen::Index>(dof));
+}
+
+double ShellSystem::State::rigid_compliance(const RigidModes::Amounts& a,
+                                            const RigidModes::Amounts& b) const {
+  if (is_balanced()) return 0.0;
+  double sum = 0.0;
+  for (Size part = 0; part < a.size(); ++part) sum += a[part].dot(b[part]);
+  return sum / screening_squared;
+}
+
+/// A load in units of the shell, on active unknowns only.
+VecX ShellSystem::State::scaled(const VecX& load) const {
+  VecX b = load / structure->stiffness->force_unit();
+  b.tail(b.size() - structure->vertex_dofs) /= structure->stiffness->length;
+  structure->restrict_to_active(b);
+  return b;
+}
+
+/// L^-1 of the loads [first, first + 4), each relieved of the rigid motions that are split off.
+ShellSystem::State::Half ShellSystem::State::solve_half(const std::vector<VecX>& loads, Size first) const {
+  Half half{SolveLanes(structure->tree, kMostLanes), {}};
+  const Size count = std::min(kMostLanes, loads.size() - first);
+  for (Size l = 0; l < count; ++l) {
+    VecX b = scaled(loads[first + l]);
+    RigidModes::Amounts amounts = structure->rigid.resultants(b);
+    for (Size part = 0; part < amounts.size(); ++part)
+      if (is_split[part] == 0) amounts[part].setZero();
+    structure->rigid.subtract(b, amounts);
+    put_lane(b, l, half.y);
+    half.rigid.push_back(std::move(amounts));
+  }
+  solve_forward(structure->tree, *factor, half.y);
+  return half;
 }
 
 /// Conjugate gradients with the factor as preconditioner: iterative refinement that also copes with the few
@@ -148,54 +206,12 @@ void ShellSystem::State::refine(std::span<Refinement> all, double tolerance) con
 }
 
 double ShellSystem::State::compute_period() const {
-  constexpr int kVectors = 4;
-  const VecX& mass = structure->mass;
-  const std::vector<int>& place = structure->place;
-  core::Random random(1, 0);
-  std::vector<VecX> basis(kVectors, VecX::Zero(mass.size()));
-  for (VecX& x : basis) {
-    for (Eigen::Index i = 0; i < structure->vertex_dofs; ++i) x(i) = random.uniform(-1.0, 1.0);
-    structure->restrict_to_active(x);
-  }
-  double frequency_squared = 0.0;
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    std::vector<VecX> loads;
-    std::vector<const VecX*> pointers;
-    for (const VecX& x : basis) loads.push_back(mass.cwiseProduct(x));
-    for (const VecX& load : loads) pointers.push_back(&load);
-    basis = precondition(pointers);
-    for (VecX& x : basis) {
-      const double norm = core::sqrt(x.dot(mass.cwiseProduct(x)));
-      if (!(norm > 0.0)) return 0.0;
-      x /= norm;
-    }
-    Eigen::Matrix4d stiff, heavy;
-    for (Size j = 0; j < kVectors; ++j) pointers[j] = &basis[j];
-    const std::vector<VecX> products = structure->multiply_stiffness(pointers);
-    for (Size j = 0; j < kVectors; ++j) {
-      const VecX& product = products[j];
-      const VecX momentum = mass.cwiseProduct(basis[j]);
-      for (Size i = 0; i < kVectors; ++i) {
-        stiff(static_cast<int>(i), static_cast<int>(j)) = basis[i].dot(product);
-        heavy(static_cast<int>(i), static_cast<int>(j)) = basis[i].dot(momentum);
-      }
-    }
-    // The first step of a small body may leave fewer than four independent vectors.
-    heavy.diagonal() *= 1.0 + 1e-12;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d> ritz(stiff, heavy);
-    const double previous = frequency_squared;
-    frequency_squared = ritz.eigenvalues()(0);
-    std::vector<VecX> turned(kVectors, VecX::Zero(mass.size()));
-    for (Size j = 0; j < kVectors; ++j)
-      for (Size i = 0; i < kVectors; ++i)
-        turned[j] += ritz.eigenvectors()(static_cast<int>(i), static_cast<int>(j)) * basis[i];
-    basis = std::move(turned);
-    if (iteration > 2 && std::abs(frequency_squared - previous) < 5e-3 * std::abs(frequency_squared)) break;
-  }
+  const double frequency_squared = first_frequency_squared(
+      *structure, [this](const std::vector<const VecX*>& loads) { return precondition(loads); });
   // A mechanism has no period; the shift's own frequency stands for "very long".
   double least = shift.maxCoeff();
-  for (Size dof = 0; dof < place.size(); ++dof)
-    if (place[dof] >= 0) least = std::min(least, shift(static_cast<Eigen::Index>(dof)));
+  for (Size dof = 0; dof < structure->place.size(); ++dof)
+    if (structure->place[dof] >= 0) least = std::min(least, shift(static_cast<Eigen::Index>(dof)));
   return 2.0 * core::kPi / core::sqrt(std::max(frequency_squared, 1e-3 * least)) * structure->seconds();
 }
 
@@ -232,9 +248,7 @@ std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads, do
     std::vector<Refinement> work(end - begin);
     for (Size l = 0; l < work.size(); ++l) {
       Refinement& one = work[l];
-      one.residual = loads[begin + l] / force;
-      one.residual.tail(one.residual.size() - structure.vertex_dofs) /= length;
-      structure.restrict_to_active(one.residual);
+      one.residual = state.scaled(loads[begin + l]);
       one.load_norm = one.residual.norm();
       if (state.is_balanced()) structure.rigid.balance(one.residual);
       one.x = one.image = VecX::Zero(one.residual.size());
@@ -257,6 +271,59 @@ std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads, do
 
 ShellSolution ShellSystem::solve(const VecX& load, double tolerance) const {
   return solve(std::vector<VecX>{load}, tolerance).front();
+}
+
+Eigen::MatrixXd ShellSystem::compliance_matrix(const std::vector<VecX>& loads,
+                                               const std::vector<int>& groups) const {
+  const State& state = *state_;
+  const Size blocks = (loads.size() + kMostLanes - 1) / kMostLanes;
+  std::vector<std::optional<State::Half>> halves(blocks);
+  core::parallel_for(blocks, 1, [&](Size b) { halves[b] = state.solve_half(loads, kMostLanes * b); });
+  const auto n = static_cast<Eigen::Index>(loads.size());
+  Eigen::MatrixXd compliance = Eigen::MatrixXd::Zero(n, n);
+  core::parallel_for(blocks, 1, [&](Size b) {
+    for (Size a = 0; a <= b; ++a) {
+      const auto is_wanted = [&](Size i, Size j) {
+        return i < loads.size() && j < loads.size() && groups[i] == groups[j];
+      };
+      bool is_any = false;
+      for (Size k = 0; k < kMostLanes * kMostLanes; ++k)
+        is_any = is_any || is_wanted(kMostLanes * b + k / kMostLanes, kMostLanes * a + k % kMostLanes);
+      if (!is_any) continue;
+      const tiles::Tile products = tiles::multiply(halves[b]->y.values.data(), halves[a]->y.values.data(),
+                                                   state.structure->tree.unknowns);
+      for (Size k = 0; k < kMostLanes * kMostLanes; ++k) {
+        const Size row = k / kMostLanes, column = k % kMostLanes;
+        const Size i = kMostLanes * b + row, j = kMostLanes * a + column;
+        if (!is_wanted(i, j) || j > i) continue;
+        double sum = row < 2 ? products.low[column][row] : products.high[column][row - 2];
+        sum += state.rigid_compliance(halves[b]->rigid[row], halves[a]->rigid[column]);
+        compliance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = sum;
+      }
+    }
+  });
+  compliance.triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
+  return compliance * (state.structure->stiffness->force_unit() * state.structure->stiffness->length);
+}
+
+std::vector<LoadCompliance> ShellSystem::compliances(const std::vector<VecX>& loads) const {
+  const State& state = *state_;
+  const double unit = state.structure->stiffness->force_unit() * state.structure->stiffness->length;
+  std::vector<LoadCompliance> result(loads.size());
+  core::parallel_chunks(loads.size(), kMostLanes, [&](Size begin, Size end) {
+    State::Half half = state.solve_half(loads, begin);
+    SolveLanes& x = half.y;
+    std::array<double, kMostLanes> total{}, inertial{};
+    for (Size i = 0; i < x.values.size(); ++i) total[i % kMostLanes] += x.values[i] * x.values[i];
+    solve_backward(state.structure->tree, *state.factor, x);
+    for (Size i = 0; i < x.values.size(); ++i)
+      inertial[i % kMostLanes] += state.diagonal[i / kMostLanes] * x.values[i] * x.values[i];
+    for (Size l = 0; begin + l < end; ++l) {
+      result[begin + l].elastic = unit * std::max(0.0, total[l] - inertial[l]);
+      result[begin + l].total = unit * (total[l] + state.rigid_compliance(half.rigid[l], half.rigid[l]));
+    }
+  });
+  return result;
 }
 
 double ShellSystem::first_period() const {

@@ -24,6 +24,12 @@ struct ShellSolution {
   bool is_evaluated() const { return residual < 1e-4; }
 };
 
+/// Compliances of one load, J (for a unit force: m/N).
+struct LoadCompliance {
+  double total = 0.0;    // load . displacement
+  double elastic = 0.0;  // displacement . K displacement
+};
+
 class ShellSystem {
  public:
   /// Factors. `screening` is s in 1/s; 0 for the balanced or supported system. Fails, with a sentence, if no
@@ -45,6 +51,14 @@ class ShellSystem {
   std::vector<ShellSolution> solve(const std::vector<VecX>& loads, double tolerance = kFineResidual) const;
   ShellSolution solve(const VecX& load, double tolerance = kFineResidual) const;
   static constexpr double kFineResidual = 1e-10;
+
+  /// Load i . displacement j in J (for unit forces: m/N), |loads| x |loads|, at half the cost of a solve: the
+  /// displacements are not made. Entries of loads of different `groups` are left zero. Relieved with s = 0,
+  /// as in solve(). Not refined: right to about 1e-6, less where a motion is as soft as the shift that s = 0
+  /// needs (a mechanism; there solve() tells).
+  Eigen::MatrixXd compliance_matrix(const std::vector<VecX>& loads, const std::vector<int>& groups) const;
+  /// Of each load by itself; the same accuracy.
+  std::vector<LoadCompliance> compliances(const std::vector<VecX>& loads) const;
 
   /// Longest period of free (or supported) vibration, s, to about 1 %; computed at the first call, then kept.
   /// Only of use with s = 0.
