@@ -107,8 +107,7 @@ struct Renderer::Rooms {
         shadow(level.shadow_map),
         surface(size.width, size.height, level.samples_across),
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
-        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale,
-              quality_ == Quality::preview),
+        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale),
         glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
@@ -126,27 +125,26 @@ struct Renderer::Rooms {
     block.assign(std::span<const pass::FrameBlock>(&values, 1));
     block.bind_uniform(0);
     meshes.bind_vertices();  // core GL draws nothing without an array, even where none is read
-    floor.run(values, drawn);
+    floor.run(values, tiles, drawn);
   }
 
   void draw(PassClock& clock) {
     if (has_shadow) shadow.run(meshes, values);
     clock.mark("shadow");
     surface.run(meshes);
-    if (tiles.has_glass()) surface.run_glass(meshes);
+    if (tiles.glass().count > 0) surface.run_glass(meshes);
     clock.mark("surface");
     occlusion.run(surface.opaque().depth);
     clock.mark("occlusion");
     shadow.bind();
     occlusion.bind();
-    light.dim(surface.opaque(), tiles);
+    light.dim(tiles);
     clock.mark("dimming");
-    drawn.bind();
-    floor.bind();
+    surface.opaque().bind(4, 5);
     meshes.bind_paints();
-    light.run(surface.opaque(), tiles, meshes.pattern_kinds());
+    light.run(surface.opaque(), drawn, tiles, meshes.pattern_kinds(), values.ground_colour.w > 0.0F);
     clock.mark("light");
-    if (tiles.has_glass()) glass.run(surface, tiles, meshes.pattern_kinds());
+    if (tiles.glass().count > 0) glass.run(surface, tiles, meshes.pattern_kinds());
     clock.mark("glass");
   }
 

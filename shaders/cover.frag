@@ -1,4 +1,5 @@
-// Which share of each pixel's samples sees a body, written as depth: the light passes skip blocks of pixels by it.
+// Whether none (0), all (0.5) or some (1) of each pixel's samples see a body, written as depth: the light passes skip blocks
+// of pixels by it.
 #include "common/paint.glsl"
 #include "common/samples.glsl"
 void main() {
@@ -12,5 +13,5 @@ void main() {
     float depth = depths[i];
     sum += depth < 1.0 && view_depth_of(depth) < behind ? 1.0 / float(SIDE * SIDE) : 0.0;
   }
-  gl_FragDepth = sum;
+  gl_FragDepth = sum == 0.0 ? 0.0 : sum == 1.0 ? 0.5 : 1.0;
 }

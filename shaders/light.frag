@@ -1,5 +1,6 @@
 // Bodies. A pixel has SIDE x SIDE samples; it is shaded once, or twice where its samples see two surfaces: those like
-// the first that sees one, and the rest. Blended over the floor by the share of samples that see a body.
+// the first that sees one, and the rest. Blended over the floor by the share of samples that see a body, if cover.frag says
+// that some do not.
 #include "common/samples.glsl"
 #include "common/shade.glsl"
 #include "common/tone.glsl"
@@ -32,6 +33,7 @@ void main() {
     own += is_own ? 1.0 : 0.0;
     others += is_body && !alike ? 1.0 : 0.0;
   }
+  if (own == 0.0) discard;
   vec3 sum = vec3(0.0);
   int turns = others > 0.0 ? 2 : 1;
   for (int turn = 0; turn < turns; ++turn) {
@@ -42,6 +44,5 @@ void main() {
     Surface s = surface_at(texelFetch(seen_map, first + shift, 0), min(depth, 0.9999999), place);
     sum += (turn == 0 ? own : others) * tone_map(shade(s, pixel));
   }
-  float all = max(own + others, 1.0);
-  colour = vec4(sum / all, (own + others) / float(SIDE * SIDE));
+  colour = vec4(sum / (own + others), (own + others) / float(SIDE * SIDE));
 }

@@ -1,17 +1,34 @@
-// Rectangles of the picture, in pixels from below, at a depth chosen for the test against cover.frag. IF_DIMMED: only
-// those whose first square of 16 x 16 pixels has occlusion; the others vanish.
+// Rectangles of the picture, in pixels from below, at a depth chosen for the test against cover.frag. Those whose first
+// square of 16 x 16 pixels does not need what the program draws vanish.
 #include "common/frame.glsl"
 layout(std430, binding = 2) readonly buffer Tiles { uvec4 tiles[]; };  // left, bottom, right, top
 layout(location = 0) uniform int first_tile;
 layout(location = 1) uniform float tile_depth;
-#ifdef IF_DIMMED
+#ifdef IF_OCCLUDED
 layout(binding = 9) uniform sampler2D sky_tiles;
+#endif
+#ifdef IF_NEEDED
+layout(location = 2) uniform int least_need;
+layout(location = 3) uniform int most_need;
+layout(binding = 12) uniform usampler2D need_map;  // as dimming_tiles.frag writes it
+#endif
+#ifdef FLOOR
+#include "common/floor.glsl"
+#include "common/paint.glsl"
+out vec4 corner;
 #endif
 void main() {
   uvec4 t = tiles[first_tile + gl_InstanceID];
-#ifdef IF_DIMMED
+#ifdef IF_OCCLUDED
   if (texelFetch(sky_tiles, ivec2(t.xy) / 16, 0).x > 0.994) t = uvec4(0u);
 #endif
+#ifdef IF_NEEDED
+  int need = int(texelFetch(need_map, ivec2(t.xy) / 16, 0).x);
+  if (need < least_need || need > most_need) t = uvec4(0u);
+#endif
   vec2 p = vec2((gl_VertexID & 1) == 0 ? t.x : t.z, (gl_VertexID & 2) == 0 ? t.y : t.w);
+#ifdef FLOOR
+  corner = floor_corner(p, ray_at(p));
+#endif
   gl_Position = vec4(p * viewport.zw * 2.0 - 1.0, 2.0 * tile_depth - 1.0, 1.0);
 }

@@ -7,21 +7,21 @@
 #include "render/gpu/program.h"
 #include "render/gpu/texture.h"
 #include "render/pass/frame_block.h"
+#include "render/pass/tiles.h"
 
 namespace shatterbox::render::pass {
 
 class FloorPass {
  public:
   FloorPass(int width, int height);
-  // Draws the empty floor if it is not the one kept, and copies it over the target's colours. The block must
-  // be bound.
-  void run(const FrameBlock& block, const gpu::Framebuffer& target);
-  void bind() const;  // texture unit 8: the parts that floor.frag puts together
+  // Draws the empty floor if it is not the one kept, and copies it over the target's colours. Block and tiles
+  // must be bound.
+  void run(const FrameBlock& block, const Tiles& tiles, const gpu::Framebuffer& target);
 
  private:
-  gpu::Texture picture_, parts_;
+  gpu::Texture picture_;
   gpu::Framebuffer kept_;
-  gpu::Program program_;
+  gpu::Program smooth_, fading_, checkered_;
   std::optional<FrameBlock> kept_of_;
 };
 

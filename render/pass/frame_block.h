@@ -19,11 +19,11 @@ struct FrameBlock {
   glm::vec4 viewport, glow_centre;
   glm::vec4 occlusion_scale, view_ray;
   glm::vec4 view_forward, view_right, view_up;
-  glm::vec4 shadow_texel;
+  glm::vec4 shadow_texel, shadow_on_floor;
   glm::vec4 scalar_range;
 };
 
-// All but the shadow's two members, which ShadowPass fills.
+// All but the shadow's members, which ShadowPass fills.
 FrameBlock make_frame_block(const Frame& frame, int width, int height);
 
 }  // namespace shatterbox::render::pass

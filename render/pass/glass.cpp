@@ -20,7 +20,7 @@ void GlassPass::run(const SurfacePass& surface, const Tiles& tiles, unsigned pat
     program = gpu::Program("tile.vert", "glass.frag", {side_, "PATTERNS " + std::to_string(pattern_kinds)});
   }
   program.use();
-  tiles.draw_glass();
+  Tiles::draw(tiles.glass());
   glDisable(GL_BLEND);
   glBlendFunc(GL_ONE,
               GL_ZERO);  // Mesa refuses passes with two targets while a second source is named, even disabled

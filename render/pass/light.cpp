@@ -10,36 +10,37 @@
 namespace shatterbox::render::pass {
 namespace {
 
-std::vector<std::string> defines_of(int shadow_taps, int samples_across, int occlusion_scale,
-                                    bool is_preview) {
-  std::vector<std::string> defines = {"SHADOW_TAPS " + std::to_string(shadow_taps),
-                                      "SIDE " + std::to_string(samples_across),
-                                      "OCCLUSION_SCALE " + std::to_string(occlusion_scale)};
-  if (is_preview) defines.emplace_back("PREVIEW");
-  return defines;
-}
-
 std::vector<std::string> with(std::vector<std::string> defines, std::initializer_list<const char*> more) {
   defines.insert(defines.end(), more.begin(), more.end());
   return defines;
 }
 
-constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
+// The uniforms' places in tile.vert.
+constexpr int kTileDepth = 1, kLeastNeed = 2, kMostNeed = 3;
+// As dimming_tiles.frag tells tiles apart.
+constexpr int kChangesSlowly = 1, kHasEdge = 2;
 
 }  // namespace
 
-LightPass::LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale,
-                     bool is_preview)
-    : defines_(defines_of(shadow_taps, samples_across, occlusion_scale, is_preview)),
-      cover_("tile.vert", "cover.frag", {"SIDE " + std::to_string(samples_across)}),
-      floor_("tile.vert", "floor.frag", defines_),
-      dimmed_("tile.vert", "floor.frag", with(defines_, {"NO_SHADOW", "IF_DIMMED"})) {
-  if (!is_preview) return;
-  dimming_ = gpu::Texture((width + 1) / 2, (height + 1) / 2, GL_R32UI, gpu::Filter::nearest);
-  dimming_target_ = gpu::Framebuffer({&dimming_}, nullptr);
-  const auto defines = defines_of(shadow_taps, samples_across, occlusion_scale, false);
-  dim_ = gpu::Program("tile.vert", "dimming.frag", defines);
-  dim_if_dimmed_ = gpu::Program("tile.vert", "dimming.frag", with(defines, {"IF_DIMMED"}));
+LightPass::LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale)
+    : samples_across_(samples_across),
+      defines_({"SHADOW_TAPS " + std::to_string(shadow_taps), "SIDE " + std::to_string(samples_across),
+                "OCCLUSION_SCALE " + std::to_string(occlusion_scale)}),
+      dimming_((width + 1) / 2, (height + 1) / 2, GL_R16UI, gpu::Filter::nearest),
+      need_((width + 15) / 16, (height + 15) / 16, GL_R8UI, gpu::Filter::nearest),
+      dimming_target_({&dimming_}, nullptr),
+      need_target_({&need_}, nullptr),
+      dim_("tile.vert", "dimming.frag", defines_),
+      dim_occluded_("tile.vert", "dimming.frag", with(defines_, {"NO_SHADOW", "IF_OCCLUDED"})),
+      reduce_("full_screen.vert", "dimming_tiles.frag") {
+  const auto floor = [&](std::initializer_list<const char*> more) {
+    return gpu::Program("tile.vert", "floor.frag", with(with(defines_, {"IF_NEEDED"}), more));
+  };
+  between_ = {floor({"FLOOR SMOOTH"}), floor({"FLOOR FADING"}), floor({"FLOOR CHECKERED"})};
+  if (samples_across_ == 1) return;
+  at_pixels_ = {floor({"EXACT", "FLOOR SMOOTH"}), floor({"EXACT", "FLOOR FADING"}),
+                floor({"EXACT", "FLOOR CHECKERED"})};
+  cover_ = gpu::Program("tile.vert", "cover.frag", defines_);
 }
 
 const gpu::Program& LightPass::bodies(unsigned pattern_kinds) {
@@ -51,51 +52,86 @@ const gpu::Program& LightPass::bodies(unsigned pattern_kinds) {
   return program;
 }
 
-void LightPass::dim(const Layer& opaque, const Tiles& tiles) const {
-  if (dimming_.name() == 0) return;
-  dimming_target_.bind();
-  const std::array<unsigned, 4> undimmed = {0x3c007fffU, 0U, 0U, 0U};  // as dimming.glsl packs it
-  glClearBufferuiv(GL_COLOR, 0, undimmed.data());
-  opaque.bind(4, 5);
+void LightPass::dim(const Tiles& tiles) const {
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
+  dimming_target_.bind();
+  const std::array<unsigned, 4> undimmed = {0xffffU, 0U, 0U, 0U};  // as dimming.glsl packs it
+  glClearBufferuiv(GL_COLOR, 0, undimmed.data());
   dim_.use();
-  tiles.draw_bodies();
-  tiles.draw_shaded_floor();
-  dim_if_dimmed_.use();
-  tiles.draw_dimmed_floor();
+  Tiles::draw(tiles.shaded());
+  dim_occluded_.use();
+  Tiles::draw(tiles.occluded());
   dimming_.bind(10);
+  need_target_.bind();
+  reduce_.use();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  need_.bind(12);
 }
 
-void LightPass::run(const Layer& opaque, const Tiles& tiles, unsigned pattern_kinds) {
-  opaque.bind(4, 5);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_ALWAYS);
-  glDepthMask(GL_TRUE);
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  cover_.use();
-  tiles.draw_bodies();
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glDepthMask(GL_FALSE);
+void LightPass::draw_floor(const FloorPrograms& programs, const Tiles::Floor& floor, int least_need,
+                           int most_need) const {
+  const auto draw = [=](const gpu::Program& program, Tiles::Range range) {
+    program.use();
+    gpu::Program::set(kTileDepth, 0.5F);
+    gpu::Program::set(kLeastNeed, least_need);
+    gpu::Program::set(kMostNeed, most_need);
+    Tiles::draw(range);
+  };
+  draw(programs.smooth, floor.smooth);
+  draw(is_checkered_ ? programs.checkered : programs.fading, floor.uneven);
+}
 
-  glDepthFunc(GL_GREATER);  // where a body leaves something to see
-  floor_.use();
-  gpu::Program::set(kTileDepth, 0.99F);
-  tiles.draw_bodies();
-  glDepthFunc(GL_LESS);  // where there is one
+// One sample a pixel: the depth that the geometry left says where bodies are.
+// More: pixels of which bodies fill a part are blended over the floor.
+void LightPass::draw_samples(const Tiles& tiles, const gpu::Program& light) const {
+  glDepthMask(GL_FALSE);
+  light.use();
+  if (samples_across_ == 1) {
+    glDepthFunc(GL_GREATER);
+    gpu::Program::set(kTileDepth, 1.0F);
+    return Tiles::draw(tiles.bodies());
+  }
+  glDepthFunc(GL_EQUAL);
+  gpu::Program::set(kTileDepth, 0.5F);
+  Tiles::draw(tiles.bodies());
+  glDepthFunc(GL_LESS);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  bodies(pattern_kinds).use();
-  gpu::Program::set(kTileDepth, 0.01F);
-  tiles.draw_bodies();
+  gpu::Program::set(kTileDepth, 0.75F);
+  Tiles::draw(tiles.bodies());
   glDisable(GL_BLEND);
+}
+
+void LightPass::run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles,
+                    unsigned pattern_kinds, bool is_checkered) {
+  is_checkered_ = is_checkered;
+  if (samples_across_ == 1) {
+    glBlitNamedFramebuffer(opaque.target.name(), drawn.name(), 0, 0, drawn.width(), drawn.height(), 0, 0,
+                           drawn.width(), drawn.height(), GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  }
+  drawn.bind();
+  if (samples_across_ == 1) {
+    draw_floor(between_, tiles.open_floor(), kChangesSlowly, kHasEdge);
+    draw_floor(between_, tiles.floor_behind_bodies(), kChangesSlowly, kHasEdge);
+    glEnable(GL_DEPTH_TEST);
+  } else {
+    draw_floor(between_, tiles.open_floor(), kChangesSlowly, kChangesSlowly);
+    draw_floor(at_pixels_, tiles.open_floor(), kHasEdge, kHasEdge);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    cover_.use();
+    Tiles::draw(tiles.bodies());
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_NOTEQUAL);  // bodies that fill a pixel wrote a half
+    draw_floor(at_pixels_, tiles.floor_behind_bodies(), kChangesSlowly, kHasEdge);
+  }
+  draw_samples(tiles, bodies(pattern_kinds));
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
-
-  floor_.use();
-  tiles.draw_shaded_floor();
-  dimmed_.use();
-  tiles.draw_dimmed_floor();
 }
 
 }  // namespace shatterbox::render::pass

@@ -16,21 +16,30 @@ namespace shatterbox::render::pass {
 
 class LightPass {
  public:
-  // is_preview: shadow and occlusion are looked up at each second pixel only.
-  LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale, bool is_preview);
-  void dim(const Layer& opaque, const Tiles& tiles) const;  // before run; nothing unless in preview
-  // Into the framebuffer that is bound, which shows the empty floor; its depth is used for the cover.
-  void run(const Layer& opaque, const Tiles& tiles, unsigned pattern_kinds);
+  LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale);
+  // What the floor sees of sun and sky, at each second pixel; shadow and occlusion must be bound.
+  void dim(const Tiles& tiles) const;
+  // Into `drawn`, which shows the empty floor; its depth is used for the cover. `opaque` must be bound.
+  void run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles, unsigned pattern_kinds,
+           bool is_checkered);
 
  private:
-  gpu::Texture dimming_;  // preview only
-  gpu::Framebuffer dimming_target_;
-  gpu::Program dim_, dim_if_dimmed_;
+  struct FloorPrograms {
+    gpu::Program smooth, fading, checkered;  // by the ground: common/floor.glsl
+  };
   const gpu::Program& bodies(unsigned pattern_kinds);  // built when first wanted
+  void draw_floor(const FloorPrograms& programs, const Tiles::Floor& floor, int least_need,
+                  int most_need) const;
+  void draw_samples(const Tiles& tiles, const gpu::Program& light) const;
 
+  int samples_across_;
+  bool is_checkered_ = false;  // the ground
   std::vector<std::string> defines_;
+  gpu::Texture dimming_, need_;  // of each second pixel; of each tile
+  gpu::Framebuffer dimming_target_, need_target_;
+  gpu::Program dim_, dim_occluded_, reduce_, cover_;
+  FloorPrograms between_, at_pixels_;        // the second in full quality only
   std::map<unsigned, gpu::Program> bodies_;  // by pattern kinds
-  gpu::Program cover_, floor_, dimmed_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -53,15 +53,16 @@ float step_up(float size) {
 
 ShadowPass::ShadowPass(int map_size)
     : depth_compared_(map_size, map_size, GL_DEPTH_COMPONENT32F, gpu::Filter::compare),
+      glass_compared_(map_size / 2, map_size / 2, GL_DEPTH_COMPONENT32F, gpu::Filter::compare),
       tile_bounds_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::nearest),
       tile_casters_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::nearest),
       near_bounds_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::nearest),
       near_casters_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::linear),
       map_({}, &depth_compared_),
+      glass_map_({}, &glass_compared_),
       tiles_({&tile_bounds_, &tile_casters_}, nullptr),
       near_({&near_bounds_, &near_casters_}, nullptr),
-      opaque_("shadow.vert", ""),
-      glass_("shadow.vert", "shadow.frag"),
+      depth_("shadow.vert", ""),
       reduce_("full_screen.vert", "shadow_tiles.frag", {"SHADOW_TILE " + std::to_string(kTile)}),
       spread_("full_screen.vert", "shadow_spread.frag"),
       map_size_(map_size) {}
@@ -100,6 +101,31 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   block.shadow_from_world = texture_from_sun * glm::mat4(sun_frame);
   block.shadow_texel = glm::vec4(extent.x / texels, extent.y / texels, extent.z, static_cast<float>(kTile));
   block.sun_radiance.w = 1.0F;
+  const bool has_glass = std::any_of(meshes.items().begin(), meshes.items().end(),
+                                     [](const Item& item) { return item.casts_shadow && item.is_glass; });
+  // As common/shadow.glsl does for any normal.
+  const glm::vec3 m = sun_frame[1];
+  const float depth_part = (m.z < 0.0F ? -1.0F : 1.0F) * std::max(std::abs(m.z), 0.12F);
+  const glm::vec2 slope = -glm::vec2(m) / depth_part * glm::vec2(extent) / extent.z;
+  const float bias = (std::abs(slope.x) + std::abs(slope.y)) / texels +
+                     0.5F * std::max(extent.x, extent.y) / texels / extent.z;
+  block.shadow_on_floor = glm::vec4(slope, bias, has_glass ? 1.0F : 0.0F);
+}
+
+void ShadowPass::draw_casters(const MeshStore& meshes, const gpu::Framebuffer& map, bool is_glass) const {
+  map.bind();
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glClearDepth(1.0);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  meshes.bind_vertices();
+  depth_.use();
+  for (const Item& item : meshes.items()) {
+    if (item.casts_shadow && item.is_glass == is_glass) meshes.draw(item, meshes.shadow_part(item));
+  }
 }
 
 void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
@@ -110,21 +136,8 @@ void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
   if (block.shadow_from_world == drawn_place_ && casters == drawn_casters_) return;
   drawn_place_ = block.shadow_from_world;
   drawn_casters_ = std::move(casters);
-  map_.bind();
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  glClearDepth(1.0);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  meshes.bind_vertices();
-  for (const bool is_glass : {false, true}) {
-    (is_glass ? glass_ : opaque_).use();
-    for (const Item& item : meshes.items()) {
-      if (item.casts_shadow && item.is_glass == is_glass) meshes.draw(item, meshes.shadow_part(item));
-    }
-  }
+  draw_casters(meshes, map_, false);
+  if (block.shadow_on_floor.w > 0.0F) draw_casters(meshes, glass_map_, true);
   glDisable(GL_DEPTH_TEST);
   tiles_.bind();
   reduce_.use();
@@ -144,6 +157,7 @@ void ShadowPass::bind() const {
   depth_compared_.bind(0);
   near_bounds_.bind(1);
   near_casters_.bind(2);
+  glass_compared_.bind(11);
 }
 
 }  // namespace shatterbox::render::pass

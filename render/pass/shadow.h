@@ -22,12 +22,14 @@ class ShadowPass {
 
   // The block must be bound. Draws nothing when every caster, and the map's place, is as it was.
   void run(const MeshStore& meshes, const FrameBlock& block);
-  void bind() const;  // texture units 0, 1, 2
+  void bind() const;  // texture units 0, 1, 2, 11
 
  private:
-  gpu::Texture depth_compared_, tile_bounds_, tile_casters_, near_bounds_, near_casters_;
-  gpu::Framebuffer map_, tiles_, near_;
-  gpu::Program opaque_, glass_, reduce_, spread_;
+  void draw_casters(const MeshStore& meshes, const gpu::Framebuffer& map, bool is_glass) const;
+
+  gpu::Texture depth_compared_, glass_compared_, tile_bounds_, tile_casters_, near_bounds_, near_casters_;
+  gpu::Framebuffer map_, glass_map_, tiles_, near_;
+  gpu::Program depth_, reduce_, spread_;
   int map_size_;
 
   struct Caster {

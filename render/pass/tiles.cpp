@@ -11,8 +11,12 @@
 namespace shatterbox::render::pass {
 namespace {
 
-constexpr int kSide = 16;                                        // pixels
-constexpr char kPlain = 0, kDimmed = 1, kShaded = 2, kBody = 3;  // each needs what the ones before do
+constexpr int kSide = 16;                                          // pixels
+constexpr char kPlain = 0, kOccluded = 1, kShaded = 2, kBody = 3;  // each needs what the ones before do
+constexpr char kFlat = 0, kFading = 1, kBackdrop = 2;              // ground: whole, partly faded, gone
+
+// Beyond so many radii a body hides too little of the sky to see.
+constexpr float kOcclusionRadii = 6.0F;
 
 // Along the sun onto the floor; what lies below it stays.
 glm::vec3 shadow_of(glm::vec3 p, const FrameBlock& block) {
@@ -59,17 +63,18 @@ void Tiles::mark(const Corners& corners, const FrameBlock& block, float margin_p
   }
 }
 
-Tiles::Range Tiles::append_runs(const Marks& marks, char wanted, int longest) {
+template <typename IsWanted>
+Tiles::Range Tiles::append_runs(IsWanted is_wanted, int longest) {
   Range range{static_cast<int>(rectangles_.size()), 0};
   for (int y = 0; y < down_; ++y) {
+    const auto wanted = [&](int x) { return is_wanted(static_cast<std::size_t>(y * across_ + x)); };
     for (int x = 0; x < across_;) {
-      if (marks[static_cast<std::size_t>(y * across_ + x)] != wanted) {
+      if (!wanted(x)) {
         ++x;
         continue;
       }
       const int first = x;
-      while (x < across_ && x - first < longest && marks[static_cast<std::size_t>(y * across_ + x)] == wanted)
-        ++x;
+      while (x < across_ && x - first < longest && wanted(x)) ++x;
       rectangles_.emplace_back(first * kSide, y * kSide, std::min(x * kSide, width_),
                                std::min((y + 1) * kSide, height_));
       ++range.count;
@@ -78,7 +83,7 @@ Tiles::Range Tiles::append_runs(const Marks& marks, char wanted, int longest) {
   return range;
 }
 
-void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
+void Tiles::mark_bodies(const MeshStore& meshes, const FrameBlock& block) {
   marks_.assign(static_cast<std::size_t>(across_ * down_), kPlain);
   glass_marks_.assign(marks_.size(), kPlain);
   const float pixels_a_slope = 0.5F * static_cast<float>(height_) / block.view_ray.y;
@@ -98,15 +103,65 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
       mark(body, block, 1.0F, kBody, glass_marks_);
     } else {
       const float nearest = std::max(item.eye_distance - item.radius, block.occlusion_scale.x);
-      mark(body, block, 4.0F + block.occlusion_scale.w / nearest * pixels_a_slope, kDimmed, marks_);
+      const float reach = std::min(block.occlusion_scale.w, kOcclusionRadii * item.radius);
+      mark(body, block, 4.0F + reach / nearest * pixels_a_slope, kOccluded, marks_);
       mark(body, block, 1.0F, kBody, marks_);
     }
   }
+}
+
+// By the corners: the ground within a tile lies no farther from the target than the farthest of them, and
+// hardly nearer than the nearest.
+void Tiles::mark_ground(const FrameBlock& block) {
+  const auto stride = static_cast<std::size_t>(across_) + 1;
+  corner_marks_.assign(stride * (static_cast<std::size_t>(down_) + 1), kBackdrop);
+  ground_marks_.assign(marks_.size(), kBackdrop);
+  if (block.ground_place.w == 0.0F) return;
+  const glm::vec3 eye(block.eye_exposure), target(block.target_distance);
+  const float drop = block.ground_place.x - eye.y;
+  for (std::size_t i = 0; i < corner_marks_.size(); ++i) {
+    const float x = static_cast<float>(i % stride * kSide) * block.viewport.z * 2.0F - 1.0F;
+    const float y = static_cast<float>(i / stride * kSide) * block.viewport.w * 2.0F - 1.0F;
+    const glm::vec3 ray =
+        glm::vec3(block.view_forward) + x * glm::vec3(block.view_right) + y * glm::vec3(block.view_up);
+    if (ray.y * drop <= 0.0F) continue;
+    const glm::vec3 p = eye + ray * (drop / ray.y);
+    const float away = glm::length(glm::vec2(p.x - target.x, p.z - target.z));
+    corner_marks_[i] = away <= block.ground_place.y           ? kFlat
+                       : away <= 1.02F * block.ground_place.z ? kFading
+                                                              : kBackdrop;
+  }
+  for (std::size_t i = 0; i < ground_marks_.size(); ++i) {
+    const auto across = static_cast<std::size_t>(across_);
+    const char* corner = &corner_marks_[i / across * stride + i % across];
+    const auto [least, most] = std::minmax({corner[0], corner[1], corner[stride], corner[stride + 1]});
+    ground_marks_[i] = least == most ? least : kFading;
+    if (ground_marks_[i] == kFlat && block.ground_colour.w > 0.0F) ground_marks_[i] = kFading;  // checkered
+  }
+}
+
+void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
+  mark_bodies(meshes, block);
+  mark_ground(block);
   rectangles_.clear();
-  bodies_ = append_runs(marks_, kBody, across_);
-  shaded_ = append_runs(marks_, kShaded, across_);
-  dimmed_ = append_runs(marks_, kDimmed, 1);
-  glass_ = append_runs(glass_marks_, kBody, across_);
+  bodies_ = append_runs([&](std::size_t i) { return marks_[i] == kBody; }, across_);
+  glass_ = append_runs([&](std::size_t i) { return glass_marks_[i] == kBody; }, across_);
+  empty_smooth_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kBackdrop; }, 1);
+  empty_smooth_.count += append_runs([&](std::size_t i) { return ground_marks_[i] == kFlat; }, across_).count;
+  empty_uneven_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kFading; }, 1);
+  const auto is_floor = [&](std::size_t i) { return ground_marks_[i] != kBackdrop; };
+  shaded_ = append_runs([&](std::size_t i) { return marks_[i] >= kShaded && is_floor(i); }, across_);
+  occluded_ = append_runs([&](std::size_t i) { return marks_[i] == kOccluded && is_floor(i); }, 1);
+  const auto append_squares = [&](bool is_behind, char ground) {
+    return append_runs(
+        [&](std::size_t i) {
+          return ground_marks_[i] == ground &&
+                 (is_behind ? marks_[i] == kBody : marks_[i] == kShaded || marks_[i] == kOccluded);
+        },
+        1);
+  };
+  behind_bodies_ = {append_squares(true, kFlat), append_squares(true, kFading)};
+  open_floor_ = {append_squares(false, kFlat), append_squares(false, kFading)};
   buffer_.assign(std::span<const glm::uvec4>(rectangles_));
   buffer_.bind_storage(2);
 }

@@ -1,5 +1,6 @@
 // Which parts of the picture show bodies or darkened floor: squares that a body's box, its shadow
-// or its occlusion may touch, found on the CPU so that the costly shaders run only there.
+// or its occlusion may touch, found on the CPU so that the costly shaders run only there; and where the empty
+// floor is even.
 #pragma once
 #include <vector>
 
@@ -14,31 +15,46 @@ class Tiles {
   Tiles(int width, int height);
   void find(const MeshStore& meshes, const FrameBlock& block);  // uploads and binds them
 
-  // Draws each rectangle once with the program in use (tile.vert).
-  void draw_bodies() const { draw(bodies_); }
-  void draw_shaded_floor() const { draw(shaded_); }
-  void draw_dimmed_floor() const { draw(dimmed_); }  // occlusion, no shadow; squares one by one
-  void draw_glass() const { draw(glass_); }
-  bool has_glass() const { return glass_.count > 0; }
-
- private:
   struct Range {
     int first = 0, count = 0;
   };
+  // Draws each rectangle once with the program in use (tile.vert).
+  static void draw(Range range);
+
+  Range bodies() const { return bodies_; }
+  Range glass() const { return glass_; }
+  // The empty floor and backdrop: where its parts run straight between the corners of a rectangle, and the
+  // rest.
+  Range empty_smooth() const { return empty_smooth_; }
+  Range empty_uneven() const { return empty_uneven_; }
+  // Floor, where it is not faded away, by what may darken it: shadows and occlusion, or occlusion alone.
+  Range shaded() const { return shaded_; }
+  Range occluded() const { return occluded_; }  // squares
+  // The same two together in squares, behind bodies or not, even or not.
+  struct Floor {
+    Range smooth, uneven;
+  };
+  const Floor& floor_behind_bodies() const { return behind_bodies_; }
+  const Floor& open_floor() const { return open_floor_; }
+
+ private:
   using Marks = std::vector<char>;  // one a tile
   struct Corners {
     glm::vec3 at[8];  // world
   };
   void mark(const Corners& corners, const FrameBlock& block, float margin_pixels, char kind,
             Marks& marks) const;
-  Range append_runs(const Marks& marks, char wanted, int longest);
-  static void draw(Range range);
+  void mark_bodies(const MeshStore& meshes, const FrameBlock& block);
+  void mark_ground(const FrameBlock& block);
+  template <typename IsWanted>
+  Range append_runs(IsWanted is_wanted, int longest);
 
   int width_, height_, across_, down_;
-  Marks marks_, glass_marks_;
+  Marks marks_, glass_marks_, ground_marks_, corner_marks_;  // the last: one a corner of tiles
   std::vector<glm::uvec4> rectangles_;
   gpu::Buffer buffer_;
-  Range bodies_, shaded_, dimmed_, glass_;
+  Range bodies_, glass_, empty_smooth_, empty_uneven_, shaded_, occluded_;
+  Floor behind_bodies_, open_floor_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -8,20 +8,44 @@ float floor_depth(vec3 ray) {
   return ground_place.w * ray.y * drop > 0.0 ? drop / ray.y : 1e9;
 }
 
-// At a pixel where the floor, or nothing, is seen: the backdrop's part of the light, and the floor's share.
-vec4 floor_parts(vec2 pixel, vec3 ray) {
+// At a pixel where the floor, or nothing, is seen: the backdrop's part of the light (rgb), and the floor's share (a).
+// FLOOR: how much of it a rectangle's corners tell (floor_corner) and how much each pixel works out (floor_at).
+#define SMOOTH 1    // all: the whole floor, or none of it
+#define FADING 2    // the backdrop
+#define CHECKERED 3 // the backdrop
+
+float floor_faded(vec3 ray) {
+  float drop = ground_place.x - eye_exposure.y;
+  vec2 p = eye_exposure.xz - target_distance.xz + ray.xz * (drop / ray.y);
+  bool is_hit = ground_place.w * ray.y * drop > 0.0;
+  float t = is_hit ? clamp((length(p) - ground_place.y) / (ground_place.z - ground_place.y), 0.0, 1.0) : 1.0;
+  return t * t * (3.0 - 2.0 * t);
+}
+
+vec4 floor_corner(vec2 pixel, vec3 ray) {
   vec3 backdrop = backdrop_at(pixel);
-  float z = floor_depth(ray);
-  vec3 p = eye_exposure.xyz + ray * min(z, 1e6);
-  float away = length(p.xz - target_distance.xz);
-  float fade = ground_place.w > 0.0 && z < 1e8 ? smoothstep(ground_place.y, ground_place.z, away) : 1.0;
+#if FLOOR == SMOOTH
+  float fade = floor_faded(ray);
+  return vec4(backdrop * fade, 1.0 - fade);
+#else
+  return vec4(backdrop, 1.0);
+#endif
+}
+
+vec4 floor_at(vec4 corner, vec3 ray) {
+#if FLOOR == SMOOTH
+  return corner;
+#else
+  float fade = floor_faded(ray);
   float square = 1.0;
-  if (ground_colour.w > 0.0) {
-    vec2 q = p.xz / ground_colour.w;
-    float width = z * view_ray.y * 2.0 * viewport.w / ground_colour.w * z * length(ray) / max(abs(eye_exposure.y - ground_place.x), 1e-6);
-    vec2 s = (abs(fract(q * 0.5) - 0.5) - 0.25) * 2.0;
-    vec2 side = clamp(s / max(width, 1e-5) + 0.5, 0.0, 1.0) * 2.0 - 1.0;
-    square = 0.86 + 0.14 * side.x * side.y * clamp(1.5 - width, 0.0, 1.0);
-  }
-  return vec4(backdrop * fade, square * (1.0 - fade));
+#if FLOOR == CHECKERED
+  float z = min(floor_depth(ray), 1e6);
+  vec2 q = (eye_exposure.xz + ray.xz * z) / ground_colour.w;
+  float width = z * view_ray.y * 2.0 * viewport.w / ground_colour.w * z * length(ray) / max(abs(eye_exposure.y - ground_place.x), 1e-6);
+  vec2 s = (abs(fract(q * 0.5) - 0.5) - 0.25) * 2.0;
+  vec2 side = clamp(s / max(width, 1e-5) + 0.5, 0.0, 1.0) * 2.0 - 1.0;
+  square = 0.86 + 0.14 * side.x * side.y * clamp(1.5 - width, 0.0, 1.0);
+#endif
+  return vec4(corner.rgb * fade, square * (1.0 - fade));
+#endif
 }

@@ -1,11 +1,7 @@
 // Light from a painted surface towards the eye: sun, sky, soft boxes; linear.
 #include "common/light.glsl"
-#ifdef PREVIEW
-#include "common/dimming.glsl"
-#else
 #include "common/shadow.glsl"
 #include "common/occlusion.glsl"
-#endif
 #include "common/paint.glsl"
 
 // pixel: gl_FragCoord.xy.
@@ -20,13 +16,8 @@ vec3 shade(Surface s, vec2 pixel) {
   float v_dot_h = max(dot(v, h), 0.0);
   vec3 r = 2.0 * dot(n, v) * n - v;
 
-#ifdef PREVIEW
-  vec2 dimming = dimming_at(pixel, s.view_depth, true);
-#else
-  vec2 dimming = vec2(sky_seen(pixel, s.view_depth), sun_seen(s.position, n));
-#endif
-  vec3 sunlight = sun_radiance.rgb * dimming.y;
-  float sky = dimming.x;
+  vec3 sunlight = sun_radiance.rgb * sun_seen(s.position, n);
+  float sky = sky_seen(pixel, s.view_depth);
   float sky_mirrored = clamp(sky * 1.5 - 0.3, 0.06, 1.0);
 
   vec3 f0 = mix(vec3(0.04), s.colour, s.metalness);
