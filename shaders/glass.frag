@@ -1,13 +1,15 @@
 // Thin glass over what is drawn (dual-source blending): its faces mirror the surroundings and tint what is behind; its
 // broken rims gather light and show through the faces, bright and a little green. Samples that see none, or glass behind a
-// body, keep what is there.
+// body, keep what is there. RIMS: for pixels with rims, and faces or not; otherwise with faces alone.
 #include "common/light.glsl"
 #include "common/paint.glsl"
 #include "common/samples.glsl"
 #include "common/tone.glsl"
 layout(binding = 7) uniform sampler2D opaque_depth;  // 0..1
+#ifdef RIMS
 layout(binding = 8) uniform usampler2D rim_map;      // as seen_map, of rims and crack lines only
 layout(binding = 9) uniform sampler2D rim_depth;
+#endif
 layout(location = 0, index = 0) out vec4 added;
 layout(location = 0, index = 1) out vec4 kept;
 
@@ -50,26 +52,37 @@ void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   keep *= 1.0 - weight * (1.0 - through);
 }
 
+// Of each pixel's samples: the share that `depths` has before the walls, and the last of them (-1: none).
+float cover(vec4 depths, vec4 walls, out int last) {
+  last = -1;
+  float share = 0.0;
+  for (int i = 0; i < SIDE * SIDE; ++i) {
+    bool is_seen = depths[i] < walls[i];
+    last = is_seen ? i : last;
+    share += is_seen ? 1.0 / float(SIDE * SIDE) : 0.0;
+  }
+  return share;
+}
+
+// The surface of the pixel's sample i in a layer.
+Surface layer_surface(usampler2D map, vec4 depths, ivec2 first, int i) {
+  ivec2 at = sample_shift(max(i, 0));
+  vec2 place = floor(gl_FragCoord.xy) + (vec2(at) + 0.5) / float(SIDE);
+  return surface_at(texelFetch(map, first + at, 0), min(depths[max(i, 0)], 0.9999), place);
+}
+
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SIDE;
-  vec4 walls = depths_at(opaque_depth, first), ds = depths_at(seen_depth, first), es = depths_at(rim_depth, first);
-  int face = -1, rim = -1;
-  float faces = 0.0, rims = 0.0;
-  for (int i = 0; i < SIDE * SIDE; ++i) {
-    bool is_face = ds[i] < walls[i], is_rim = es[i] < walls[i];
-    face = is_face ? i : face;
-    rim = is_rim ? i : rim;
-    faces += is_face ? 1.0 / float(SIDE * SIDE) : 0.0;
-    rims += is_rim ? 1.0 / float(SIDE * SIDE) : 0.0;
-  }
-  ivec2 at = sample_shift(max(face, 0)), at_rim = sample_shift(max(rim, 0));
-  float depth = min(texelFetch(seen_depth, first + at, 0).x, 0.9999);
-  float depth_of_rim = min(texelFetch(rim_depth, first + at_rim, 0).x, 0.9999);
-  vec2 place = floor(gl_FragCoord.xy) + (vec2(at) + 0.5) / float(SIDE);
-  vec2 place_of_rim = floor(gl_FragCoord.xy) + (vec2(at_rim) + 0.5) / float(SIDE);
+  vec4 walls = depths_at(opaque_depth, first), depths = depths_at(seen_depth, first);
+  int face, rim;
+  float faces = cover(depths, walls, face);
   vec3 add = vec3(0.0), keep = vec3(1.0);
-  add_face(surface_at(texelFetch(seen_map, first + at, 0), depth, place), faces, add, keep);
-  add_rim(surface_at(texelFetch(rim_map, first + at_rim, 0), depth_of_rim, place_of_rim), rims, add, keep);
+  add_face(layer_surface(seen_map, depths, first, face), faces, add, keep);
+#ifdef RIMS
+  vec4 rim_depths = depths_at(rim_depth, first);
+  float rims = cover(rim_depths, walls, rim);
+  add_rim(layer_surface(rim_map, rim_depths, first, rim), rims, add, keep);
+#endif
   added = vec4(tone_map(add), 1.0);
   kept = vec4(keep, 1.0);
 }

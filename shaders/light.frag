@@ -6,6 +6,18 @@
 #include "common/tone.glsl"
 layout(location = 0) out vec4 colour;
 
+#if SIDE == 1
+void main() {
+  vec3 ray = ray_at(gl_FragCoord.xy);
+  float drop = ground_place.x - eye_exposure.y;
+  float behind = ground_place.w * ray.y * drop > 0.0 ? drop / ray.y * 1.001 : 1e9;
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  float depth = texelFetch(seen_depth, at, 0).x;
+  Surface s = surface_at(texelFetch(seen_map, at, 0), min(depth, 0.9999999), gl_FragCoord.xy);
+  if (s.view_depth >= behind) discard;
+  colour = vec4(tone_map(shade(s, gl_FragCoord.xy)), 1.0);
+}
+#else
 void main() {
   vec2 pixel = gl_FragCoord.xy;
   ivec2 first = ivec2(pixel) * SIDE;
@@ -46,3 +58,4 @@ void main() {
   }
   colour = vec4(sum / (own + others), (own + others) / float(SIDE * SIDE));
 }
+#endif

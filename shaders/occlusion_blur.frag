@@ -1,7 +1,7 @@
 // Mean over 4 x 4 pixels of about the same depth: exactly the period of the turning pattern.
 #include "common/frame.glsl"
 layout(binding = 0) uniform sampler2D raw;  // share seen, view depth
-layout(location = 0) out vec2 seen_depth;
+layout(location = 0) out uint seen_depth;  // as common/occlusion.glsl reads it
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   ivec2 last = textureSize(raw, 0) - 1;
@@ -14,5 +14,5 @@ void main() {
       sum += weight * vec2(s.x, 1.0);
     }
   }
-  seen_depth = vec2(sum.x / sum.y, z);
+  seen_depth = packHalf2x16(vec2(sum.x / sum.y, target_distance.w / z));
 }

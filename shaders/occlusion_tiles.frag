@@ -1,7 +1,7 @@
 // The least share of sky seen in each 16 x 16 pixels of the picture and a little around them: where it is nearly whole
 // the floor needs no occlusion.
 #include "common/frame.glsl"
-layout(binding = 0) uniform sampler2D occlusion_map;
+layout(binding = 0) uniform usampler2D occlusion_map;
 layout(location = 0) out float least;
 void main() {
   const int kAcross = 16 / OCCLUSION_SCALE + 3;
@@ -10,7 +10,8 @@ void main() {
   least = 1.0;
   for (int y = 0; y < kAcross; ++y) {
     for (int x = 0; x < kAcross; ++x) {
-      least = min(least, texelFetch(occlusion_map, clamp(first + ivec2(x, y), ivec2(0), last), 0).x);
+      uint word = texelFetch(occlusion_map, clamp(first + ivec2(x, y), ivec2(0), last), 0).x;
+      least = min(least, unpackHalf2x16(word).x);
     }
   }
 }

@@ -1,20 +1,16 @@
 // Ambient occlusion at a full-size pixel from the smaller one: the four nearest, less where the depth differs.
 #include "common/frame.glsl"
-layout(binding = 3) uniform sampler2D occlusion_map;  // x: share of sky seen, y: view depth, m
+layout(binding = 3) uniform usampler2D occlusion_map;  // half floats: share of sky seen; 1 / view depth times the target's
 
 float sky_seen(vec2 pixel, float view_depth) {
-  if (ground_radiance.w == 0.0) return 1.0;
-  ivec2 last = textureSize(occlusion_map, 0) - 1;
   vec2 h = pixel * (1.0 / float(OCCLUSION_SCALE)) - 0.5;
-  ivec2 base = ivec2(floor(h));
-  vec2 f = h - vec2(base);
-  vec2 sum = vec2(1e-4, 1e-4);
-  for (int i = 0; i < 4; ++i) {
-    ivec2 corner = ivec2(i & 1, i >> 1);
-    vec2 near_by = texelFetch(occlusion_map, clamp(base + corner, ivec2(0), last), 0).xy;
-    vec2 w = mix(1.0 - f, f, vec2(corner));
-    float weight = w.x * w.y / (0.02 + abs(near_by.y - view_depth) / view_depth * 20.0);
-    sum += weight * vec2(near_by.x, 1.0);
-  }
-  return sum.x / sum.y;
+  vec2 base = floor(h);
+  vec2 f = h - base;
+  uvec4 words = textureGather(occlusion_map, (base + 1.0) / vec2(textureSize(occlusion_map, 0)));
+  vec4 w = vec4((1.0 - f.x) * f.y, f.x * f.y, f.x * (1.0 - f.y), (1.0 - f.x) * (1.0 - f.y));  // the gather's order
+  vec2 a = unpackHalf2x16(words.x), b = unpackHalf2x16(words.y), c = unpackHalf2x16(words.z), d = unpackHalf2x16(words.w);
+  // How much nearer or farther each is, as a share.
+  vec4 off = abs(vec4(a.y, b.y, c.y, d.y) * (view_depth / target_distance.w) - 1.0);
+  w /= 0.02 + 20.0 * off;
+  return (dot(w, vec4(a.x, b.x, c.x, d.x)) + 1e-4) / (dot(w, vec4(1.0)) + 1e-4);
 }

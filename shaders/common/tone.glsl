@@ -5,12 +5,14 @@ const float kShoulder = 0.72;
 vec3 tone_map(vec3 radiance) {
   vec3 c = radiance * eye_exposure.w;
   float peak = max(c.r, max(c.g, c.b));
-  float room = 1.0 - kShoulder;
-  float over = max(peak - kShoulder, 0.0);
-  float pressed = min(peak, kShoulder) + room * over / (over + room);
-  c *= pressed / max(peak, 1e-6);
-  float bleach = over / (over + 2.5);
-  return mix(c, vec3(pressed), bleach);
+  int turns = peak > kShoulder ? 1 : 0;
+  for (int i = 0; i < turns; ++i) {  // a loop, since llvmpipe skips those where no pixel of eight wants them
+    float room = 1.0 - kShoulder;
+    float over = peak - kShoulder;
+    float pressed = kShoulder + room * over / (over + room);
+    c = mix(c * (pressed / peak), vec3(pressed), over / (over + 2.5));
+  }
+  return c;
 }
 
 // The backdrop at a pixel (gl_FragCoord.xy, from below).
