@@ -1,6 +1,7 @@
 // Pictures whose content geometry and arithmetic foretell.
 #include "render/renderer.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -133,6 +134,85 @@ TEST_CASE("the shadow lies where the sun puts it, and only there") {
     for (const glm::vec3 lit : {glm::vec3(1.5F, 0, 0), glm::vec3(-1.5F, 0, 0.9F), glm::vec3(-2.6F, 0, 0)}) {
       CHECK(green(with, pixel_of(frame, lit)) == green(without, pixel_of(frame, lit)));
     }
+  }
+}
+
+TEST_CASE("a frame drawn alone equals the same frame in a sequence") {
+  std::vector<Frame> frames;
+  for (int i = 0; i < 5; ++i) {
+    const auto t = static_cast<float>(i);
+    frames.push_back(busy_frame());
+    if (i > 0) frames.back().draws[0].world_from_body[3].y += 0.2F * t;
+    if (i > 2) frames.back().camera.position.x += 0.1F * t;  // stays for two frames, then moves
+    if (i == 4) frames.back().draws.pop_back();              // the pane is gone
+  }
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer one(kSize, quality);
+    for (const Frame& frame : frames) {
+      Renderer other(kSize, quality);
+      CHECK(one.render(frame) == other.render(frame));
+    }
+  }
+}
+
+TEST_CASE("the floor fades into the backdrop with the distance from the target") {
+  for (const float height : {0.15F, 1.0F, 6.0F}) {
+    Frame frame;
+    frame.camera.position = {0.5F, height, 5.0F};
+    frame.camera.target = {0.0F, 0.3F, 0.0F};
+    frame.camera.vertical_fov = 40.0F;
+    frame.backdrop = {glm::vec3(0.5F), glm::vec3(0.5F), 0.0F, 0.0F};
+    frame.ground->colour = glm::vec3(0.0F);
+    frame.ground->fade_from = 2.0F;
+    frame.ground->fade_to = 7.0F;
+    const glm::mat4 world_from_clip =
+        glm::inverse(glm::perspective(glm::radians(40.0F), 320.0F / 180.0F, 0.1F, 100.0F) *
+                     glm::lookAt(frame.camera.position, frame.camera.target, frame.camera.up));
+    Renderer renderer(kSize, Quality::preview);
+    const Image image = renderer.render(frame);
+    int most = 0;
+    for (int y = 0; y < 180; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const glm::vec4 far =
+            world_from_clip * glm::vec4((static_cast<float>(x) + 0.5F) / 160.0F - 1.0F,
+                                        1.0F - (static_cast<float>(y) + 0.5F) / 90.0F, 1.0F, 1.0F);
+        const glm::vec3 ray = glm::vec3(far) / far.w - frame.camera.position;
+        const glm::vec3 p = frame.camera.position - ray * (height / ray.y);
+        const double away = glm::length(glm::vec2(p.x, p.z));
+        const double share = ray.y < 0.0F ? std::clamp((away - 2.0) / 5.0, 0.0, 1.0) : 1.0;
+        most =
+            std::max(most, std::abs(green(image, {x, y}) - srgb(0.5 * share * share * (3.0 - 2.0 * share))));
+      }
+    }
+    CHECK(most <= 2);
+  }
+}
+
+TEST_CASE("the shadow of a pane of glass is even and light") {
+  Frame frame;
+  frame.camera = {glm::vec3(0, 6, 0.01F), glm::vec3(0), glm::vec3(0, 0, -1), 40.0F};
+  frame.lights.sun_direction = {1.0F, 1.0F, 0.3F};
+  auto pane = std::make_shared<Mesh>();
+  pane->id = 1;
+  pane->thickness = 0.01F;
+  pane->positions = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+  pane->triangles = {{0, 1, 2}, {0, 2, 3}};
+  frame.draws = {at(pane, {2.0F, 2.5F, 0.6F}, glass())};
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image image = renderer.render(frame);
+    const glm::ivec2 middle = pixel_of(frame, {-0.5F, 0, -0.15F}), lit = pixel_of(frame, {-2.4F, 0, -1.2F});
+    int least = 255, most = 0;
+    for (int y = -12; y <= 12; ++y) {
+      for (int x = -12; x <= 12; ++x) {
+        const int here = green(image, middle + glm::ivec2(x, y));
+        least = std::min(least, here);
+        most = std::max(most, here);
+      }
+    }
+    CHECK(most - least <= 2);
+    CHECK(most < green(image, lit) - 8);
+    CHECK(least > green(image, lit) - 40);
   }
 }
 
