@@ -1,4 +1,4 @@
-// The only file that names FFmpeg.
+// The only file, beside video_plain.cpp, that names FFmpeg.
 #include "render/output/video_file.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "render/output/palette.h"
+#include "render/output/video_plain.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -347,6 +348,10 @@ Status VideoFile::close() {
   const std::lock_guard lock(e.mutex);
   if (!e.status) return e.status;
   std::error_code problem;
+  if (std::string(find_format(e.path)->muxer) == "mp4") {  // fragments play too: keep them if this fails
+    const std::filesystem::path plain = e.path.string() + ".plain";
+    if (write_plain_mp4(e.part, plain)) std::filesystem::rename(plain, e.part, problem);
+  }
   std::filesystem::rename(e.part, e.path, problem);
   if (problem) e.status = {e.path.string() + ": " + problem.message()};
   return e.status;

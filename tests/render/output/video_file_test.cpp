@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdio>
@@ -131,6 +132,42 @@ TEST_CASE("a run that is killed leaves a part that plays") {
     CHECK(compare(frame_at(0), back[0]).psnr > 30.0);
     fs::remove(part);
   }
+}
+
+TEST_CASE("a finished mp4 has its index first and no fragments, and every frame at its time") {
+  const fs::path path = fs::temp_directory_path() / "shatterbox_plain.mp4";
+  VideoFile video(path, settings());
+  for (int i = 0; i < 70; ++i) REQUIRE(video.add(frame_at(i)).ok());
+  REQUIRE(video.close().ok());
+  CHECK_FALSE(fs::exists(path.string() + ".plain"));
+  std::vector<std::string> boxes;  // a box: four bytes of length, most significant first, and four letters
+  FILE* file = std::fopen(path.c_str(), "rb");
+  unsigned char head[8];
+  while (std::fread(head, 1, 8, file) == 8) {
+    boxes.emplace_back(reinterpret_cast<const char*>(head) + 4, 4);
+    const long length = head[0] * 16777216L + head[1] * 65536L + head[2] * 256L + head[3];
+    REQUIRE(length >= 8);
+    REQUIRE(std::fseek(file, length - 8, SEEK_CUR) == 0);
+  }
+  std::fclose(file);
+  REQUIRE(boxes.size() >= 3);
+  CHECK(boxes[0] == "ftyp");
+  CHECK(boxes[1] == "moov");
+  CHECK(std::find(boxes.begin(), boxes.end(), "moof") == boxes.end());
+  const std::string command =
+      "ffprobe -v error -show_entries stream=nb_frames,start_time,duration,r_frame_rate -of csv=p=0 '" +
+      path.string() + "'";
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  char line[200] = {};
+  CHECK(std::fgets(line, sizeof line, pipe) != nullptr);
+  pclose(pipe);
+  CHECK(std::string(line) == "60/1,0.000000,1.166667,70\n");
+  const std::vector<Image> back = decode(path);
+  REQUIRE(back.size() == 70);
+  for (const std::size_t i : {0U, 35U, 69U})
+    CHECK(compare(frame_at(static_cast<int>(i)), back[i]).psnr > 30.0);
+  fs::remove(path);
 }
 
 TEST_CASE("what cannot be written is refused in words and never crashes") {
