@@ -68,6 +68,7 @@ struct ContactFigures {
   long failsafe_steps = 0;
   double frozen_share = 0.0;  // of body-steps
   double residual = 0.0;      // m/s, worst normal velocity left by the solver, last step
+  int hits = 0;               // pairs in which the continuous pass had to act, last step
 };
 
 struct ConservationFigures {

@@ -86,6 +86,7 @@ void book_contact(const dynamics::ContactReport& contact, long steps, ContactFig
   const double n = static_cast<double>(steps);
   figures.frozen_share = (figures.frozen_share * n + contact.frozen_share) / (n + 1.0);
   figures.residual = contact.residual;
+  figures.hits = contact.hits;
 }
 
 std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t previous) {

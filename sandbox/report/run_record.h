@@ -19,6 +19,7 @@ struct FrameRecord {
   double encode = 0.0;  // by the encoder's own clock, and pictures written
   int contacts = 0;     // most in any of its steps
   int awake = 0;        // dynamic bodies not asleep, at its end
+  int hits = 0;         // of the continuous pass, summed over its steps
   int impacts = 0;      // evaluated in it
   int breaks = 0;
 };

@@ -15,16 +15,24 @@ Spread spread_of(std::vector<double> values) {
 }
 
 std::vector<Phase> phases_of(const std::vector<FrameRecord>& frames) {
-  std::vector<Phase> phases(5);
-  const char* const names[] = {"before", "impact", "breaking", "busy", "rest"};
+  constexpr double kMoreHits = 10.0;  // than usual: many things met at once
+  const std::vector<const char*> names{"before", "impact", "breaking", "after", "busy", "rest"};
+  std::vector<Phase> phases(names.size());
   for (std::size_t i = 0; i < phases.size(); ++i) phases[i].name = names[i];
   int most = 0;
-  for (const FrameRecord& frame : frames) most = std::max(most, frame.contacts);
-  bool has_begun = false;
+  std::vector<double> hits;
+  for (const FrameRecord& frame : frames) {
+    most = std::max(most, frame.contacts);
+    hits.push_back(frame.hits);
+  }
+  const double usual_hits = spread_of(hits).median;
+  bool has_begun = false, has_broken = false;
   for (const FrameRecord& frame : frames) {
     has_begun = has_begun || frame.contacts > 0 || frame.impacts > 0 || frame.breaks > 0;
-    const bool is_in[] = {!has_begun, frame.impacts > 0 && frame.breaks == 0, frame.breaks > 0,
-                          most > 0 && frame.contacts >= 0.8 * most, has_begun && frame.awake == 0};
+    has_broken = has_broken || frame.breaks > 0;
+    const bool is_in[] = {
+        !has_begun, frame.hits > usual_hits + kMoreHits,      frame.breaks > 0,
+        has_broken, most > 0 && frame.contacts >= 0.8 * most, has_begun && frame.awake == 0};
     for (std::size_t i = 0; i < phases.size(); ++i) {
       if (!is_in[i]) continue;
       phases[i].frame_times.push_back(frame.frame);

@@ -22,9 +22,10 @@ struct Phase {
   double contacts = 0.0, awake = 0.0;  // means
 };
 
-/// before: until something first touches or breaks. impact: stress was evaluated, nothing broke. breaking:
-/// something broke. busy: at least 80 % of the greatest number of contacts. rest: nothing that can move is
-/// awake, after the first contact. A frame can be in several phases, or in none.
+/// before: until something first touches or breaks. impact: more hits of the continuous pass than the median
+/// of all frames by ten. breaking: something broke. after: all frames from the first break on. busy: at least
+/// 80 % of the greatest number of contacts. rest: nothing that can move is awake, after the first contact. A
+/// frame can be in several phases, or in none.
 std::vector<Phase> phases_of(const std::vector<FrameRecord>& frames);
 
 }  // namespace shatterbox::sandbox::report

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sandbox/run/bench.h"
 #include "sandbox/run/run.h"
 #include "sandbox/scene/nearest_name.h"
 
@@ -41,10 +42,22 @@ void add_run_options(CLI::App& command, Options& options) {
   command.add_flag("!--no-render", options.has_pictures, "simulate only");
 }
 
+void add_bench_options(CLI::App& command, BenchOptions& options) {
+  command.add_option("NAME", options.names, "benchmarks, or how their names begin; none: all");
+  command
+      .add_option("--threads", options.threads, "threads of the simulation; give several for one run each")
+      ->capture_default_str()
+      ->delimiter(',')
+      ->check(CLI::Range(0, 256));
+  command.add_option("--report", options.report, "the table in JSON")->type_name("FILE");
+  command.add_flag("--audit", options.has_audit, "count crossings and passages, in time of their own");
+  command.add_flag("--brief", options.is_brief, "a tenth of a second each: does everything run?");
+}
+
 /// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.
 bool is_known_verb(const std::string& verb) {
-  const std::vector<std::string> verbs{"run", "check", "list"};
-  const std::vector<std::string> later{"plan", "diff", "study", "bench"};
+  const std::vector<std::string> verbs{"run", "check", "bench", "list"};
+  const std::vector<std::string> later{"plan", "diff", "study"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
   if (std::find(later.begin(), later.end(), verb) != later.end()) {
@@ -68,6 +81,9 @@ int run_command_line(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "simulate, draw and encode a scene");
   CLI::App* check_command =
       app.add_subcommand("check", "say what is wrong with a scene, where, and how to mend it");
+  BenchOptions bench;
+  CLI::App* bench_command = app.add_subcommand("bench", "time the benchmark scenes, one after the other");
+  add_bench_options(*bench_command, bench);
   app.add_subcommand("list", "scenes, materials, looks and events");
   run_command->add_option("SCENE", options.scene, "a .toml file, or the name of a scene that came along");
   check_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
@@ -79,6 +95,7 @@ int run_command_line(int argc, char** argv) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
   if (app.got_subcommand("run")) return run_scene(options);
+  if (app.got_subcommand("bench")) return run_bench(bench);
   return app.got_subcommand("check") ? check_scene(options) : list_all();
 }
 

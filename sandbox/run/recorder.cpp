@@ -8,6 +8,7 @@ namespace shatterbox::sandbox::run {
 
 void Recorder::note_step(const world::World& world) {
   most_contacts_ = std::max(most_contacts_, world.report().contact.contacts);
+  hits_ += world.report().contact.hits;
 }
 
 void Recorder::note_frame(const world::World& world, double simulate) {
@@ -15,6 +16,7 @@ void Recorder::note_frame(const world::World& world, double simulate) {
   report::FrameRecord frame;
   frame.simulate = frame.frame = simulate;
   frame.contacts = most_contacts_;
+  frame.hits = hits_;
   for (const body::Body& body : world.bodies()) frame.awake += body.is_dynamic() && body.is_awake ? 1 : 0;
   frame.impacts = static_cast<int>(report.impacts.size() - impacts_);
   frame.breaks = static_cast<int>(report.breaks.size() - breaks_);
@@ -29,6 +31,7 @@ void Recorder::note_frame(const world::World& world, double simulate) {
   }
   record.frames.push_back(frame);
   most_contacts_ = 0;
+  hits_ = 0;
   impacts_ = report.impacts.size();
   breaks_ = report.breaks.size();
 }

@@ -38,7 +38,8 @@ double worst_ratio(const nlohmann::json& report) {
 
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
-  for (const char* scene : {"ornament", "window", "bowl"}) {
+  for (const char* scene : {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments",
+                            "card_house", "plate_stack", "bowls", "rain"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);

@@ -76,7 +76,7 @@ TEST_CASE("the report has the fields of its description, by name") {
   for (const char* name : {"frame", "simulate", "render", "encode", "stages", "phases"}) {
     CHECK(json["time_ms"].contains(name));
   }
-  for (const char* name : {"before", "impact", "breaking", "busy", "rest"}) {
+  for (const char* name : {"before", "impact", "breaking", "after", "busy", "rest"}) {
     for (const char* field : {"frames", "median", "p95", "max", "contacts", "awake"}) {
       CHECK(json["time_ms"]["phases"][name].contains(field));
     }
@@ -104,10 +104,22 @@ TEST_CASE("median, 95th percentile and worst") {
 
 TEST_CASE("frames are sorted into phases") {
   const auto phases = phases_of(some_record().frames);
-  CHECK(phases[0].frame_times == std::vector<double>{1.0});  // before
-  CHECK(phases[2].frame_times == std::vector<double>{3.0});  // breaking
-  CHECK(phases[3].frame_times == std::vector<double>{4.0});  // busy: 30 contacts of 30
-  CHECK(phases[4].frame_times == std::vector<double>{4.0});  // rest
+  CHECK(phases[0].frame_times == std::vector<double>{1.0});       // before
+  CHECK(phases[2].frame_times == std::vector<double>{3.0});       // breaking
+  CHECK(phases[3].frame_times == std::vector<double>{3.0, 4.0});  // after
+  CHECK(phases[4].frame_times == std::vector<double>{4.0});       // busy: 30 contacts of 30
+  CHECK(phases[5].frame_times == std::vector<double>{4.0});       // rest
+}
+
+TEST_CASE("the impact phase is the frames with more hits than the median by ten") {
+  std::vector<FrameRecord> frames(5);
+  const int hits[] = {3, 4, 14, 15, 2};  // the median is 4
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].frame = static_cast<double>(i);
+    frames[i].hits = hits[i];
+    frames[i].impacts = 1;  // evaluated stress does not count
+  }
+  CHECK(phases_of(frames)[1].frame_times == std::vector<double>{3.0});
 }
 
 TEST_CASE("the closing words tell verdicts, breaks and speed") {

@@ -17,7 +17,9 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   };
   refused("", "");
   refused("runn good.toml", "did you mean \"run\"?");
-  refused("bench", "not available in this version");
+  refused("study", "not available in this version");
+  refused("bench bots", "did you mean \"bowls\"?");
+  refused("bench boats_10 --threads 1000", "--threads");
   refused("run", "ornament");
   refused("run ornamnt", "did you mean \"ornament\"?");
   refused("run bad.toml", "bad.toml:2:1");
@@ -67,6 +69,30 @@ TEST_CASE("the option --no-render simulates and reports, with no picture and no 
   CHECK(fs::exists(folder / "m/frame_000004.obj"));
   CHECK_FALSE(fs::exists(folder / "good.mp4"));
   CHECK(outcome.out.find("than real time") != std::string::npos);
+}
+
+TEST_CASE(
+    "bench runs what is named, tells times in a table and in JSON, one row for each number of threads") {
+  const Folder folder;
+  const Outcome outcome = program(folder, "bench boats_10 card --brief --threads 1,2 --report b.json");
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.out.find("boats_10 ") != std::string::npos);
+  CHECK(outcome.out.find("boats_100 ") == std::string::npos);  // boats_10 is a name in full
+  const auto rows = read_json(folder / "b.json");
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[0]["name"] == "boats_10");
+  CHECK(rows[3]["name"] == "card_house");
+  CHECK(rows[2]["threads"] == 1);
+  CHECK(rows[3]["threads"] == 2);
+  CHECK(rows[2]["state_hash"] == rows[3]["state_hash"]);
+  for (const auto& row : rows) {
+    CHECK(row["frame"]["median"].get<double>() > 0.0);
+    CHECK(row["memory_mb"].get<double>() > 1.0);
+    CHECK(row["crossings"].is_null());  // not asked for
+    for (const char* phase : {"busy", "after", "impact", "rest"}) CHECK(row["phases"].contains(phase));
+  }
+  CHECK(program(folder, "bench boats_10 --brief --report no/such/b.json").status == 3);
 }
 
 TEST_CASE("the same scene gives the same bits with one thread and two") {
