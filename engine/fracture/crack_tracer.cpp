@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
-#include "engine/core/random.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -15,8 +14,7 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr double kSnap =
-    0.05;  // of an edge or of sqrt(2 area): nearer cuts become one, vertices are passed by
+constexpr double kRestLength = 4.0;  // thicknesses: length that drives a crack on after a rest
 constexpr double kLeastEntry =
     0.156;                         // sine of the least angle at which a crack leaves an edge, about 9 degrees
 constexpr double kMostTurn = 1.2;  // rad, in one element
@@ -41,30 +39,11 @@ double stress_across(const stress::PlaneStress& s, const Vec2& along) {
 
 }  // namespace
 
-PathNoise::PathNoise(double wavelength, double amplitude, std::uint64_t seed) {
-  core::Random random(seed, 0x77617665);
-  for (int i = 0; i < kWaves; ++i) {
-    const double z = random.uniform(-1.0, 1.0);
-    const double turn = random.uniform(0.0, 2.0 * core::kPi);
-    const double length = wavelength * random.uniform(0.7, 1.5);
-    const double r = core::sqrt(std::max(0.0, 1.0 - z * z));
-    waves_[fracture::at(i)] = 2.0 * core::kPi / length * Vec3(r * core::cos(turn), r * core::sin(turn), z);
-    phases_[fracture::at(i)] = random.uniform(0.0, 2.0 * core::kPi);
-  }
-  scale_ = amplitude * core::sqrt(2.0 / kWaves);
-}
-
-double PathNoise::at(const Vec3& point) const {
-  if (scale_ == 0.0) return 0.0;
-  double sum = 0.0;
-  for (Size i = 0; i < kWaves; ++i) sum += core::cos(waves_[i].dot(point) + phases_[i]);
-  return scale_ * sum;
-}
-
 CrackTracer::CrackTracer(ShellCutter& cutter, TracerSetup setup)
     : cutter_(cutter),
       setup_(std::move(setup)),
       elements_(cutter.elements()),
+      exits_(cutter, *setup_.planes, setup_.thickness),
       next_crack_(setup_.first_crack) {
   toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
 }
@@ -74,12 +53,6 @@ double CrackTracer::distance_to_load(const Vec3& p) const {
   for (const LoadCentre& centre : setup_.centres)
     nearest = std::min(nearest, std::max((p - centre.point).norm(), centre.radius));
   return nearest;
-}
-
-double CrackTracer::greatest_patch() const {
-  double greatest = 0.0;
-  for (const LoadCentre& centre : setup_.centres) greatest = std::max(greatest, centre.radius);
-  return greatest;
 }
 
 double CrackTracer::stress_intensity(const stress::PlaneStress& tensor, const Vec2& along,
@@ -105,85 +78,6 @@ void CrackTracer::record(const LiveTip& tip, const ElementPlane& plane, const Ve
   segments_.push_back({tip.tip.crack, side_id, setup_.generation, is_on_grain, {begin, end}});
   const double length = (end - begin).norm();
   present_.add({begin, end, tip.tip.crack, tip.branch, tip.branch_length + 0.5 * length});
-}
-
-CrackTracer::Exit CrackTracer::settle_on_edge(int cell_number, int side, double parameter) const {
-  const CutCell& cell = cutter_.cell(cell_number);
-  const int local_edge = cell.polygon[at(side)].side_id;
-  Exit exit;
-  exit.is_on_edge = true;
-  exit.edge = elements_.topology.triangle_edges[at(cell.element)][at(local_edge)];
-  const EdgeStretch stretch = cutter_.stretch(cell_number, side);
-  // Cuts that reach an edge nearer than this to each other become one, and none passes a vertex.
-  double q = std::min(std::max(parameter, kSnap), 1.0 - kSnap);
-  double best = kSnap;
-  double joined = -1.0;
-  for (const double b : cutter_.breaks_of_edge(exit.edge))
-    if (b >= stretch.begin && b <= stretch.end && std::abs(b - q) < best) {
-      best = std::abs(b - q);
-      joined = b;
-    }
-  if (joined >= 0.0) {
-    q = joined;
-    exit.has_met_cut = true;
-  } else if (q <= stretch.begin || q >= stretch.end) {
-    q = 0.5 * (stretch.begin + stretch.end);
-  }
-  exit.parameter = geometry::round_edge_parameter(q);
-  exit.place.side = side;
-  exit.place.barycentric = barycentric_on_edge(elements_, cell.element, local_edge, exit.parameter);
-  for (int end = 0; end < 2; ++end) {
-    const Size i = (at(side) + at(end)) % cell.polygon.size();
-    if (cell.polygon[i].barycentric != exit.place.barycentric) continue;
-    exit.place.is_corner = true;
-    exit.place.side = static_cast<int>(i);
-  }
-  return exit;
-}
-
-CrackTracer::Exit CrackTracer::settle_on_cut(int cell_number, int side, double share) const {
-  const CutCell& cell = cutter_.cell(cell_number);
-  const ElementPlane& plane = (*setup_.planes)[at(cell.element)];
-  const Size next = (at(side) + 1) % cell.polygon.size();
-  const Vec2& from = cell.polygon[at(side)].barycentric;
-  const Vec2& to = cell.polygon[next].barycentric;
-  const double length = plane.flat(to - from).norm();
-  const double snap = length > 0.0 ? kSnap * plane.scale / length : 1.0;
-  Exit exit;
-  exit.has_met_cut = true;
-  exit.place.side = side;
-  if (share < snap && share <= 0.5) {
-    exit.place = {side, true, from};
-  } else if (share > 1.0 - snap) {
-    exit.place = {static_cast<int>(next), true, to};
-  } else {
-    exit.place.barycentric = from + share * (to - from);
-  }
-  return exit;
-}
-
-std::optional<CrackTracer::Exit> CrackTracer::find_exit(int cell_number, int entry_side, const Vec2& start,
-                                                        const Vec2& heading) const {
-  const CutCell& cell = cutter_.cell(cell_number);
-  const ElementPlane& plane = (*setup_.planes)[at(cell.element)];
-  const Size n = cell.polygon.size();
-  for (Size s = 0; s < n; ++s) {
-    if (static_cast<int>(s) == entry_side) continue;
-    const Vec2 to_begin = plane.flat(cell.polygon[s].barycentric) - start;
-    const Vec2 to_end = plane.flat(cell.polygon[(s + 1) % n].barycentric) - start;
-    const double before = cross(to_begin, heading);
-    const double after = cross(heading, to_end);
-    if (before < 0.0 || after < 0.0 || !(before + after > 0.0)) continue;
-    if (to_begin.dot(heading) * after + to_end.dot(heading) * before <= 0.0) continue;  // behind
-    const double share = before / (before + after);
-    if (cell.polygon[s].side != SideKind::element_edge)
-      return settle_on_cut(cell_number, static_cast<int>(s), share);
-    const Vec2 place = cell.polygon[s].barycentric +
-                       share * (cell.polygon[(s + 1) % n].barycentric - cell.polygon[s].barycentric);
-    return settle_on_edge(cell_number, static_cast<int>(s),
-                          edge_parameter(elements_, cell.element, cell.polygon[s].side_id, place));
-  }
-  return std::nullopt;
 }
 
 Vec2 CrackTracer::steer_to_neighbour(const LiveTip& tip, const ElementPlane& plane, const Vec2& start,
@@ -227,7 +121,7 @@ void CrackTracer::follow_grains(const LiveTip& tip, const EdgeStretch& entry, co
     if (crossing.edge == tip.tip.edge) continue;
     const auto stretch = cutter_.find_stretch(cell.element, crossing.edge, crossing.parameter);
     if (!stretch || stretch->cell != entry.cell) continue;
-    const Exit exit = settle_on_edge(stretch->cell, stretch->side, crossing.parameter);
+    const CrackExit exit = exits_.settle_on_edge(stretch->cell, stretch->side, crossing.parameter);
     const Vec2 along = plane.flat(exit.place.barycentric) - start;
     if (!(along.squaredNorm() > 0.0)) continue;
     const Vec2 direction = along.normalized();
@@ -319,8 +213,9 @@ void CrackTracer::advance(LiveTip& tip, stress::ShellFace face, double& crack_le
   for (int attempt = 0; attempt < 5; ++attempt) {
     const double bend = 0.25 * attempt;
     const Vec2 direction = ((1.0 - bend) * course.heading + bend * to_middle).normalized();
-    const auto exit =
-        course.exit && attempt == 0 ? course.exit : find_exit(entry->cell, entry->side, from, direction);
+    const auto exit = course.exit && attempt == 0
+                          ? course.exit
+                          : exits_.find_exit(entry->cell, entry->side, from, direction);
     if (!exit) continue;
     const Vec2 to = plane.flat(exit->place.barycentric);
     const double length = (to - from).norm();
@@ -383,8 +278,7 @@ void CrackTracer::resume(const std::vector<CrackTip>& tips) {
     if (!entry) continue;  // another crack has met it, or it belongs to another piece
     std::array<LiveTip, 2> live;
     live[0].tip = old;
-    const ElementPlane& plane = (*setup_.planes)[at(old.element)];
-    live[0].driven_length = plane.scale;  // since it rested
+    live[0].driven_length = kRestLength * setup_.thickness;
     const auto& stress_here = (*setup_.stresses)[at(cutter_.cell(entry->cell).origin)];
     const Size before = segments_.size();
     run(live, 1, stress::worst_stress(stress_here).face);
@@ -415,8 +309,8 @@ bool CrackTracer::try_start(const Candidate& candidate) {
   const stress::WorstStress worst = stress::worst_stress(stress_here);
   const Vec2 along = left_of(worst.principal.direction);
   const Vec2 start = plane.flat(candidate.barycentric);
-  const auto forth = find_exit(number, -1, start, along);
-  const auto back = find_exit(number, -1, start, -along);
+  const auto forth = exits_.find_exit(number, -1, start, along);
+  const auto back = exits_.find_exit(number, -1, start, -along);
   if (!forth || !back) return false;
   const Vec2 to = plane.flat(forth->place.barycentric);
   const Vec2 from = plane.flat(back->place.barycentric);
@@ -433,7 +327,7 @@ bool CrackTracer::try_start(const Candidate& candidate) {
   crack_lengths_.push_back(length);
   std::array<LiveTip, 2> tips;
   int count = 0;
-  for (const Exit* exit : {&*forth, &*back}) {
+  for (const CrackExit* exit : {&*forth, &*back}) {
     LiveTip tip;
     tip.tip.crack = crack;
     tip.branch = exit == &*forth ? 0 : 1;

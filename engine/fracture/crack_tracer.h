@@ -6,27 +6,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/fracture/crack_exit.h"
 #include "engine/fracture/crack_set.h"
 #include "engine/fracture/decide_shell.h"
 #include "engine/fracture/element_plane.h"
+#include "engine/fracture/path_noise.h"
 #include "engine/fracture/shell_cutter.h"
 #include "engine/stress/shell_stress.h"
 
 namespace shatterbox::fracture {
-
-/// A smooth random bend of crack paths, fixed in material space: a sum of plane waves.
-class PathNoise {
- public:
-  PathNoise(double wavelength, double amplitude, std::uint64_t seed);
-  /// rad; zero on average, `amplitude` by root mean square.
-  double at(const Vec3& point) const;
-
- private:
-  static constexpr int kWaves = 24;
-  std::array<Vec3, kWaves> waves_;
-  std::array<double, kWaves> phases_{};
-  double scale_ = 0.0;
-};
 
 /// Where a load presses and on how large a patch.
 struct LoadCentre {
@@ -84,16 +72,9 @@ class CrackTracer {
     bool is_running = true;
     int grain_a = -1, grain_b = -1;  // the boundary it is on
   };
-  struct Exit {
-    BorderPlace place;
-    bool is_on_edge = false;  // of the element; its crack may go on behind it
-    bool has_met_cut = false;
-    int edge = -1;
-    double parameter = 0.0;
-  };
   struct Course {
     Vec2 heading;
-    std::optional<Exit> exit;  // a grain crossing to go to
+    std::optional<CrackExit> exit;  // a grain crossing to go to
     bool is_on_grain = false;
     int grain_a = -1, grain_b = -1;
     double toughness_share = 1.0;
@@ -108,13 +89,9 @@ class CrackTracer {
   Vec2 steer_to_neighbour(const LiveTip& tip, const ElementPlane& plane, const Vec2& start,
                           const Vec2& heading, double crack_length) const;
   void follow_grains(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start, Course& course) const;
-  std::optional<Exit> find_exit(int cell, int entry_side, const Vec2& start, const Vec2& heading) const;
-  Exit settle_on_edge(int cell, int side, double parameter) const;
-  Exit settle_on_cut(int cell, int side, double share) const;
   bool try_start(const Candidate& candidate);
   bool is_shielded(const Candidate& candidate) const;
   double distance_to_load(const Vec3& p) const;
-  double greatest_patch() const;
   double stress_intensity(const stress::PlaneStress& tensor, const Vec2& along, double length) const;
   bool pay(double length, double toughness_share);
   void record(const LiveTip& tip, const ElementPlane& plane, const Vec2& from, const Vec2& to, int side_id,
@@ -123,6 +100,7 @@ class CrackTracer {
   ShellCutter& cutter_;
   TracerSetup setup_;
   const geometry::ShellElements& elements_;
+  ExitFinder exits_;
   CrackSet present_;                   // cracks of this generation
   std::vector<double> crack_lengths_;  // of this generation's new cracks, by number - first_crack
   std::vector<CrackSegment> segments_;

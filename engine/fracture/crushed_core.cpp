@@ -19,23 +19,71 @@ Size at(int i) {
 
 constexpr double kLeastDistance = 0.75;  // of seeds, share of the local cell size
 constexpr double kDartsPerCell = 8.0;    // for the smallest cells
-constexpr double kSmallest = 0.5;        // cell size inside the patch, share of that at its edge
+constexpr double kSmallest = 1.0;        // cell size inside the patch, share of that at its edge
 constexpr double kVertexMargin = 0.05;   // no facet crosses an edge nearer to a vertex, share of the edge
 constexpr double kLostArea = 1e-14;      // of an element: parts below are nothing but rounding
+constexpr double kMargin = 2.0;     // seeds beyond the core that bound its cells, in cell sizes at its rim
+constexpr double kSoftness = 0.25;  // of an element's overload about one, over which it counts in part
 
 struct Seed {
   Vec3 position;
   double size;  // m, of its cell
 };
 
-double size_at(const CoreSetup& setup, const Vec3& x) {
-  return setup.cell_size * std::max(kSmallest, (x - setup.centre).norm() / setup.patch_radius);
+double size_at(const CoreSetup& setup, double distance) {
+  return setup.cell_size * std::max(kSmallest, distance / setup.patch_radius);
 }
 
-std::vector<Seed> throw_darts(const ShellCutter& cutter, const CoreSetup& setup) {
+/// How far from the centre seeds are needed, m.
+double reach_of(const CoreSetup& setup) {
+  return setup.radius + kMargin * size_at(setup, setup.radius);
+}
+
+/// Elements with material that hang together with the centre inside a ball about it, ascending.
+std::vector<int> elements_in_reach(const ShellCutter& cutter, const CoreSetup& setup) {
+  const geometry::ShellElements& elements = cutter.elements();
+  const auto& triangles = elements.mesh.triangles;
+  const double reach = reach_of(setup);
+  const auto is_near = [&](int element) {
+    const geometry::Triangle& t = triangles[at(element)];
+    const auto& x = elements.mesh.positions;
+    const Vec3 middle = (x[at(t[0])] + x[at(t[1])] + x[at(t[2])]) / 3.0;
+    double radius = 0.0;
+    for (const int v : t) radius = std::max(radius, (x[at(v)] - middle).norm());
+    return (middle - setup.centre).norm() < reach + radius;
+  };
+  int first = -1;
+  double nearest = 1e300;
+  for (Size t = 0; t < triangles.size(); ++t) {
+    const Vec3 middle = position_in_element(elements, static_cast<int>(t), Vec2(1.0 / 3.0, 1.0 / 3.0));
+    const double distance = (middle - setup.centre).squaredNorm();
+    if (distance < nearest) {
+      nearest = distance;
+      first = static_cast<int>(t);
+    }
+  }
+  if (first < 0 || !is_near(first)) return {};
+  std::vector<char> is_seen(triangles.size(), 0);
+  is_seen[at(first)] = 1;
+  std::vector<int> found{first};
+  for (Size next = 0; next < found.size(); ++next)
+    for (const int edge : elements.topology.triangle_edges[at(found[next])])
+      for (int k = elements.topology.first_triangle[at(edge)];
+           k < elements.topology.first_triangle[at(edge) + 1]; ++k) {
+        const int neighbour = elements.topology.edge_triangles[at(k)];
+        if (is_seen[at(neighbour)] != 0 || !is_near(neighbour)) continue;
+        is_seen[at(neighbour)] = 1;
+        found.push_back(neighbour);
+      }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>& elements,
+                              const CoreSetup& setup) {
   geometry::ShellElements part;
   part.mesh.positions = cutter.elements().mesh.positions;
-  for (const int element : setup.elements)
+  for (const int element : elements)
     part.mesh.triangles.push_back(cutter.elements().mesh.triangles[at(element)]);
   const double smallest = kSmallest * setup.cell_size;
   std::vector<SurfacePoint> darts =
@@ -43,10 +91,13 @@ std::vector<Seed> throw_darts(const ShellCutter& cutter, const CoreSetup& setup)
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });
+  const double reach = reach_of(setup);
   std::vector<Seed> seeds;
   for (const SurfacePoint& dart : darts) {
     const Vec3 x = position_in_element(part, dart.element, dart.barycentric);
-    const double size = size_at(setup, x);
+    const double distance = (x - setup.centre).norm();
+    if (distance > reach) continue;
+    const double size = size_at(setup, distance);
     const double least = kLeastDistance * size;
     const bool is_free = std::none_of(seeds.begin(), seeds.end(), [&](const Seed& other) {
       return (other.position - x).squaredNorm() < least * least;
@@ -69,16 +120,25 @@ double value_at(const std::array<double, 3>& corners, const Vec2& b) {
 class Crusher {
  public:
   Crusher(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup)
-      : cutter_(cutter), planes_(planes), setup_(setup), seeds_(throw_darts(cutter, setup)) {}
+      : cutter_(cutter),
+        planes_(planes),
+        setup_(setup),
+        elements_(elements_in_reach(cutter, setup)),
+        seeds_(throw_darts(cutter, elements_, setup)) {
+    for (const Seed& seed : seeds_)
+      is_crushed_.push_back((seed.position - setup.centre).norm() < setup.radius);
+  }
 
   Core crush() {
     Core core;
     if (seeds_.size() < 2) return core;
     std::vector<std::pair<int, std::vector<std::vector<ShellCorner>>>> cuts;
     std::vector<char> is_used(seeds_.size(), 0);
-    for (const int element : setup_.elements) {
-      if (!(planes_[at(element)].scale > 0.0)) continue;
+    for (const int element : elements_) {
+      if (!(planes_[at(element)].scale > 0.0) || cutter_.cells_of(element).empty()) continue;
       const std::vector<Energy> energies = energies_of(element);
+      const auto is_inside = [this](const Energy& e) { return is_crushed_[at(e.seed)] != 0; };
+      if (std::none_of(energies.begin(), energies.end(), is_inside)) continue;
       for (const int cell : cutter_.cells_of(element)) {
         auto parts = divide(cell, energies, core, is_used);
         if (parts.size() > 1) cuts.emplace_back(cell, std::move(parts));
@@ -106,7 +166,7 @@ class Crusher {
       energies.push_back((x - seeds_[i].position).squaredNorm());
       if (energies[i] < energies[at(best)]) best = static_cast<int>(i);
     }
-    const double edge = planes_[at(setup_.elements.front())].scale;
+    const double edge = planes_[at(elements_.front())].scale;
     double lead = 0.0;
     for (Size i = 0; i < seeds_.size(); ++i) {
       if (static_cast<int>(i) == best) continue;
@@ -143,7 +203,7 @@ class Crusher {
 
   /// The part of a polygon where `difference` is at most zero; the new side gets the number `id`.
   std::vector<ShellCorner> clip(int element, const std::vector<ShellCorner>& polygon,
-                                const std::array<double, 3>& difference, int id) const {
+                                const std::array<double, 3>& difference, SideKind kind, int id) const {
     std::vector<ShellCorner> kept;
     const Size n = polygon.size();
     for (Size i = 0; i < n; ++i) {
@@ -156,7 +216,7 @@ class Crusher {
       Vec2 place = from.barycentric + v / (v - w) * (to.barycentric - from.barycentric);
       if (from.side == SideKind::element_edge) place = place_on_edge(element, from, to, difference);
       if (v <= 0.0)
-        kept.push_back({place, SideKind::crack, id});
+        kept.push_back({place, kind, id});
       else
         kept.push_back({place, from.side, from.side_id});
     }
@@ -201,14 +261,19 @@ class Crusher {
         const auto pair = std::minmax(own.seed, other.seed);
         auto id = ids.find(pair);
         if (id == ids.end()) id = ids.emplace(pair, cutter_.new_side_id()).first;
-        part = clip(cell.element, part, difference, id->second);
+        // Between two cells that are not crushed the material stays whole.
+        const bool is_open = is_crushed_[at(own.seed)] || is_crushed_[at(other.seed)];
+        part = clip(cell.element, part, difference, is_open ? SideKind::crack : SideKind::grain, id->second);
         if (part.size() < 3) break;
       }
       if (part.size() < 3 || polygon_fraction(part) <= kLostArea) continue;
       parts.push_back(std::move(part));
       owners.push_back(own.seed);
     }
-    for (const int owner : owners) is_used[at(owner)] = 1;
+    const auto is_crushed = [this](int owner) { return is_crushed_[at(owner)] != 0; };
+    if (std::none_of(owners.begin(), owners.end(), is_crushed)) return {};
+    for (const int owner : owners)
+      if (is_crushed(owner)) is_used[at(owner)] = 1;
     if (parts.size() > 1) add_segments(cell.element, ids, parts, core);
     return parts;
   }
@@ -235,15 +300,29 @@ class Crusher {
   ShellCutter& cutter_;
   const std::vector<ElementPlane>& planes_;
   const CoreSetup& setup_;
-  std::vector<Seed> seeds_;
+  const std::vector<int> elements_;  // ascending
+  const std::vector<Seed> seeds_;
+  std::vector<char> is_crushed_;  // per seed
   std::map<int, std::vector<double>> at_vertex_;
 };
 
 }  // namespace
 
 Core crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup) {
-  if (setup.elements.empty() || !(setup.cell_size > 0.0) || !(setup.patch_radius > 0.0)) return {};
+  if (!(setup.radius > 0.0) || !(setup.cell_size > 0.0) || !(setup.patch_radius > 0.0)) return {};
   return Crusher(cutter, planes, setup).crush();
+}
+
+double crushed_radius(const geometry::ShellElements& elements, const std::vector<double>& overloads,
+                      const Vec3& centre, double reach) {
+  double area = 0.0;
+  for (Size t = 0; t < overloads.size(); ++t) {
+    const double share = std::min(1.0, 0.5 + (overloads[t] - 1.0) / (2.0 * kSoftness));
+    if (!(share > 0.0)) continue;
+    const Vec3 middle = position_in_element(elements, static_cast<int>(t), Vec2(1.0 / 3.0, 1.0 / 3.0));
+    if ((middle - centre).norm() < reach) area += share * element_area(elements, static_cast<int>(t));
+  }
+  return core::sqrt(area / core::kPi);
 }
 
 }  // namespace shatterbox::fracture

@@ -1,6 +1,6 @@
 // The crushed core about a hard hit: graded Voronoi cells cut into whatever is there. The squared distances
 // to two seeds differ by a linear function of space, so the cells are exact in every element and agree across
-// its edges.
+// its edges. Seeds and the core's radius do not depend on the elements: a finer mesh has the same core.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct CoreSetup {
   Vec3 centre = Vec3::Zero();
   double patch_radius = 0.0;  // m
   double cell_size =
-      0.0;  // m, at the edge of the patch; half of it inside, growing with the distance outside
-  std::vector<int> elements;  // that are crushed, ascending
+      0.0;              // m, at the edge of the patch; half of it inside, growing with the distance outside
+  double radius = 0.0;  // m: cells whose seed is nearer to the centre than this are broken out whole
   double most_length = -1.0;  // m of crack that the energy allows; below zero: no guard
   int crack = 0;              // number of the core as one crack
   int generation = 0;
@@ -31,6 +31,12 @@ struct Core {
   bool is_out_of_energy = false;  // nothing was cut then
 };
 
+/// Cells are cut out of what is within reach of the centre along the surface.
 Core crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup);
+
+/// How far the material is crushed about a point: the radius of the disc with as much area as the elements
+/// (|T|: their stress over what crushes) that are above one there, within `reach` m. 0 if nothing is.
+double crushed_radius(const geometry::ShellElements& elements, const std::vector<double>& overloads,
+                      const Vec3& centre, double reach);
 
 }  // namespace shatterbox::fracture

@@ -91,9 +91,12 @@ class Decider {
   std::vector<Candidate> find_candidates(const std::vector<stress::CellStress>& stresses, bool is_first) {
     const geometry::ShellMesh& mesh = *mesh_;
     const FlawField& flaws = *subject_.flaws;
-    std::vector<Candidate> candidates;
+    // Cracks start where flaws are, which are the same on every mesh. Sound material breaks too, but of
+    // places in it there are as many as cells: they count only for a piece that has no flaw of its own.
+    std::vector<Candidate> candidates, sound;
     Verdict& verdict = decision_.verdict;
-    const auto consider = [&](int element, const Vec2& place, double tension, double strength, int number) {
+    const auto consider = [&](std::vector<Candidate>& found, int element, const Vec2& place, double tension,
+                              double strength, int number) {
       const double overload = tension / strength;
       if (is_first && overload > verdict.ratio) {
         verdict.ratio = overload;
@@ -101,7 +104,7 @@ class Decider {
         verdict.strength = strength;
         verdict.place = position_in_element(elements(), element, place);
       }
-      if (overload > 1.0) candidates.push_back({element, place, overload, number});
+      if (overload > 1.0) found.push_back({element, place, overload, number});
     };
     for (Size c = 0; c < mesh.cells.size(); ++c) {
       const int element = mesh.cells[c].element;
@@ -111,7 +114,7 @@ class Decider {
       for (const Flaw& flaw : flaws.of_element(element)) {
         if (!cell_holds(mesh, mesh.cells[c], flaw.barycentric)) continue;
         has_flaw = true;
-        consider(element, flaw.barycentric, tension, flaw.strength,
+        consider(candidates, element, flaw.barycentric, tension, flaw.strength,
                  static_cast<int>(&flaw - flaws.flaws.data()));
       }
       if (has_flaw) continue;
@@ -119,10 +122,10 @@ class Decider {
       const int corners = mesh.cells[c].corner_count;
       for (int i = 0; i < corners; ++i)
         middle += mesh.corners[at(mesh.cells[c].first_corner + i)].barycentric;
-      consider(element, middle / corners, tension, flaws.greatest_strength,
+      consider(sound, element, middle / corners, tension, flaws.greatest_strength,
                static_cast<int>(flaws.flaws.size()) + static_cast<int>(c));
     }
-    return candidates;
+    return candidates.empty() ? sound : candidates;
   }
 
   TracerSetup tracer_setup(const std::vector<stress::CellStress>& stresses, int generation) const {
@@ -191,6 +194,8 @@ class Decider {
   }
 
   void crush(ShellCutter& cutter) {
+    std::vector<double> overloads = decision_.element_stress;
+    for (double& overload : overloads) overload /= kCoreOverload * subject_.material.strength;
     for (const Press& press : force_.presses()) {
       if (!is_collision(*press.load)) continue;
       CoreSetup core;
@@ -203,13 +208,7 @@ class Decider {
       if (settings_.has_energy_guard)
         core.most_length = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy) /
                            (subject_.material.fracture_energy * subject_.thickness);
-      for (Size t = 0; t < decision_.element_stress.size(); ++t) {
-        if (cutter.cells_of(static_cast<int>(t)).empty()) continue;
-        const Vec3 middle = position_in_element(elements(), static_cast<int>(t), Vec2(1.0 / 3.0, 1.0 / 3.0));
-        if ((middle - core.centre).norm() < kCoreReach * core.patch_radius &&
-            decision_.element_stress[t] > kCoreOverload * subject_.material.strength)
-          core.elements.push_back(static_cast<int>(t));
-      }
+      core.radius = crushed_radius(elements(), overloads, core.centre, kCoreReach * core.patch_radius);
       const Core crushed = crush_core(cutter, planes_, core);
       decision_.energy_guard_active = decision_.energy_guard_active || crushed.is_out_of_energy;
       if (crushed.cells == 0) continue;

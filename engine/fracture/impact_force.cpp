@@ -22,7 +22,7 @@ Size at(int i) {
 constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
 // The same, as a share of the unbroken body's size: a mesh finer than that gives the same answer, crumbs
 // included.
-constexpr double kPatchShare = 0.05;
+constexpr double kPatchShare = 0.075;
 constexpr int kMostScreenings = 6;         // steps of the search for the duration
 constexpr double kLargestResidual = 1e-4;  // of a solve that is an answer
 constexpr double kSpinThatCounts = 1e-3;   // least stress of a spin worth a solve, in strengths
