@@ -1,6 +1,7 @@
 // The empty floor and its backdrop: drawn once, kept while camera, lights and ground stay
 // (shaders/floor_base.frag).
 #pragma once
+#include <array>
 #include <optional>
 
 #include "render/gpu/framebuffer.h"
@@ -19,10 +20,14 @@ class FloorPass {
   void run(const FrameBlock& block, const Tiles& tiles, const gpu::Framebuffer& target);
 
  private:
-  gpu::Texture picture_;
-  gpu::Framebuffer kept_;
-  gpu::Program smooth_, fading_, checkered_;
+  void find_whole_colour(const FrameBlock& block);
+
+  gpu::Texture picture_, whole_;  // whole: one pixel
+  gpu::Framebuffer kept_, whole_target_;
+  gpu::Program smooth_, fading_, checkered_, whole_program_;
   std::optional<FrameBlock> kept_of_;
+  std::array<glm::vec4, 3> whole_of_{};  // what the colour below was found for
+  std::array<float, 3> whole_colour_{};  // linear, of exactly the bytes that the shader makes
 };
 
 }  // namespace shatterbox::render::pass

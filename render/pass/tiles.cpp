@@ -146,9 +146,8 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
   rectangles_.clear();
   bodies_ = append_runs([&](std::size_t i) { return marks_[i] == kBody; }, across_);
   glass_ = append_runs([&](std::size_t i) { return glass_marks_[i] == kBody; }, across_);
-  empty_smooth_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kBackdrop; }, 1);
-  empty_smooth_.count += append_runs([&](std::size_t i) { return ground_marks_[i] == kFlat; }, across_).count;
-  empty_uneven_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kFading; }, 1);
+  backdrop_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kBackdrop; }, 1);
+  uneven_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kFading; }, 1);
   const auto is_floor = [&](std::size_t i) { return ground_marks_[i] != kBackdrop; };
   shaded_ = append_runs([&](std::size_t i) { return marks_[i] >= kShaded && is_floor(i); }, across_);
   occluded_ = append_runs([&](std::size_t i) { return marks_[i] == kOccluded && is_floor(i); }, 1);

@@ -25,8 +25,8 @@ class Tiles {
   Range glass() const { return glass_; }
   // The empty floor and backdrop: where its parts run straight between the corners of a rectangle, and the
   // rest.
-  Range empty_smooth() const { return empty_smooth_; }
-  Range empty_uneven() const { return empty_uneven_; }
+  Range backdrop() const { return backdrop_; }
+  Range uneven() const { return uneven_; }
   // Floor, where it is not faded away, by what may darken it: shadows and occlusion, or occlusion alone.
   Range shaded() const { return shaded_; }
   Range occluded() const { return occluded_; }  // squares
@@ -53,7 +53,7 @@ class Tiles {
   Marks marks_, glass_marks_, ground_marks_, corner_marks_;  // the last: one a corner of tiles
   std::vector<glm::uvec4> rectangles_;
   gpu::Buffer buffer_;
-  Range bodies_, glass_, empty_smooth_, empty_uneven_, shaded_, occluded_;
+  Range bodies_, glass_, backdrop_, uneven_, shaded_, occluded_;
   Floor behind_bodies_, open_floor_;
 };
 
