@@ -164,11 +164,10 @@ class Decider {
       tracer.nucleate(std::move(candidates_));
       decision_.generation_bound_active = false;
       if (!take_over(tracer, tips)) break;
-      mesh_ = std::make_shared<const geometry::ShellMesh>(cutter.mesh());
+      mesh_ = std::make_shared<const geometry::ShellMesh>(cutter.mesh(&contacts_));
       decision_.trace_ms += milliseconds_since(start);
       if (tracer.is_out_of_energy() || tracer.energy() < kGrowthThatCounts * decision_.fracture_energy) break;
       decision_.generation_bound_active = generation + 1 == settings_.most_generations;
-      if (!decision_.generation_bound_active) contacts_ = find_cell_contacts(*mesh_);
     }
     conclude(std::move(tips));
   }
@@ -193,30 +192,39 @@ class Decider {
     }
   }
 
-  void crush(ShellCutter& cutter) {
+  /// Breaks the crushed cores out of a copy of the cracked mesh, if there are any.
+  void crush() {
     std::vector<double> overloads = decision_.element_stress;
     for (double& overload : overloads) overload /= kCoreOverload * subject_.material.strength;
-    for (const Press& press : force_.presses()) {
+    std::optional<ShellCutter> cutter;
+    for (Size i = 0; i < force_.presses().size(); ++i) {
+      const Press& press = force_.presses()[i];
       if (!is_collision(*press.load)) continue;
       CoreSetup core;
       core.centre = press.contact.point;
       core.patch_radius = press.contact.radius;
+      core.radius = crushed_radius(elements(), overloads, core.centre, kCoreReach * core.patch_radius);
+      if (!(core.radius > 0.0)) continue;
       core.cell_size = settings_.core_spacing * subject_.thickness;
       core.crack = next_crack_;
       core.generation = decision_.generations;
-      core.seed = core::mix(subject_.seed + static_cast<std::uint64_t>(next_crack_) + 0x636f7265);
+      core.seed = core::mix(subject_.seed + i + 0x636f7265);
       if (settings_.has_energy_guard)
         core.most_length = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy) /
                            (subject_.material.fracture_energy * subject_.thickness);
-      core.radius = crushed_radius(elements(), overloads, core.centre, kCoreReach * core.patch_radius);
-      const Core crushed = crush_core(cutter, planes_, core);
-      decision_.energy_guard_active = decision_.energy_guard_active || crushed.is_out_of_energy;
-      if (crushed.cells == 0) continue;
-      ++next_crack_;
-      decision_.core_cells += crushed.cells;
-      decision_.fracture_energy += crushed.length * subject_.material.fracture_energy * subject_.thickness;
-      decision_.segments.insert(decision_.segments.end(), crushed.segments.begin(), crushed.segments.end());
+      if (!cutter) cutter.emplace(*mesh_);
+      take_over(crush_core(*cutter, planes_, core));
     }
+    if (cutter) mesh_ = std::make_shared<const geometry::ShellMesh>(cutter->mesh(&contacts_));
+  }
+
+  void take_over(const Core& crushed) {
+    decision_.energy_guard_active = decision_.energy_guard_active || crushed.is_out_of_energy;
+    if (crushed.cells == 0) return;
+    ++next_crack_;
+    decision_.core_cells += crushed.cells;
+    decision_.fracture_energy += crushed.length * subject_.material.fracture_energy * subject_.thickness;
+    decision_.segments.insert(decision_.segments.end(), crushed.segments.begin(), crushed.segments.end());
   }
 
   void conclude(std::vector<CrackTip> tips) {
@@ -229,11 +237,10 @@ class Decider {
       return;
     }
     const auto start = Clock::now();
-    ShellCutter cutter(*mesh_);
-    if (settings_.core_spacing > 0.0) crush(cutter);
-    geometry::ShellMesh mesh = cutter.mesh();
-    if (subject_.grains && !subject_.grains->is_empty()) assign_grains(mesh);
-    decision_.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
+    if (settings_.core_spacing > 0.0) crush();
+    if (subject_.grains && !subject_.grains->is_empty()) assign_grains();
+    decision_.mesh = mesh_;
+    decision_.contacts = std::move(contacts_);
     decision_.verdict.outcome = Outcome::broke;
     decision_.tips = std::move(tips);
     for (const CrackSegment& segment : decision_.segments) {
@@ -244,13 +251,15 @@ class Decider {
     decision_.trace_ms += milliseconds_since(start);
   }
 
-  void assign_grains(geometry::ShellMesh& mesh) const {
+  void assign_grains() {
+    geometry::ShellMesh mesh = *mesh_;
     for (geometry::ShellCell& cell : mesh.cells) {
       Vec2 middle = Vec2::Zero();
       for (int i = 0; i < cell.corner_count; ++i)
         middle += mesh.corners[at(cell.first_corner + i)].barycentric;
       cell.grain = grain_at(*subject_.grains, cell.element, middle / cell.corner_count);
     }
+    mesh_ = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
   }
 
   const ShellSubject subject_;

@@ -101,6 +101,7 @@ struct CrackSegment {
 struct Decision {
   Verdict verdict;
   std::shared_ptr<const geometry::ShellMesh> mesh;  // cracked; null unless it broke
+  std::vector<geometry::CellContact> contacts;      // of its cells
   std::vector<CrackTip> tips;                       // that stopped inside the material
   std::vector<CrackSegment> segments;
   std::vector<double>

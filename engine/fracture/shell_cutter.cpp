@@ -138,7 +138,7 @@ int ShellCutter::find_cell(int element, const Vec2& barycentric) const {
   return -1;
 }
 
-geometry::ShellMesh ShellCutter::mesh() const {
+geometry::ShellMesh ShellCutter::mesh(std::vector<geometry::CellContact>* contacts) const {
   geometry::ShellMesh mesh;
   mesh.elements = elements_;
   mesh.cells.reserve(cells_.size());
@@ -157,7 +157,9 @@ geometry::ShellMesh ShellCutter::mesh() const {
       mesh.cells.push_back(cell);
     }
   }
-  assign_degrees_of_freedom(mesh, find_cell_contacts(mesh));
+  std::vector<geometry::CellContact> found = find_cell_contacts(mesh);
+  assign_degrees_of_freedom(mesh, found);
+  if (contacts) *contacts = std::move(found);
   return mesh;
 }
 

@@ -66,8 +66,9 @@ class ShellCutter {
   /// A number that no side has yet.
   int new_side_id() { return next_side_id_++; }
 
-  /// The cut mesh, its cells by element, with its degrees of freedom.
-  geometry::ShellMesh mesh() const;
+  /// The cut mesh, its cells by element, with its degrees of freedom; and which of its cells touch, if asked
+  /// for.
+  geometry::ShellMesh mesh(std::vector<geometry::CellContact>* contacts = nullptr) const;
 
  private:
   std::shared_ptr<const geometry::ShellElements> elements_;

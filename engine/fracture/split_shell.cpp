@@ -148,9 +148,9 @@ class Merger {
  public:
   Merger(ShellMesh& mesh, double least_width) : mesh_(mesh), least_width_(least_width) {}
 
-  bool merge_once(ShellSplit& split) {
+  bool merge_once(const std::vector<CellContact>& contacts, ShellSplit& split) {
     int count = 0;
-    const std::vector<int> label = label_pieces(mesh_.cells.size(), find_cell_contacts(mesh_), count);
+    const std::vector<int> label = label_pieces(mesh_.cells.size(), contacts, count);
     const std::vector<Face> faces = collect_faces(mesh_);
     std::vector<double> area(at(count), 0.0), border(at(count), 0.0);
     for (Size c = 0; c < mesh_.cells.size(); ++c) area[at(label[c])] += mesh_.cells[c].area;
@@ -227,12 +227,17 @@ class Merger {
 }  // namespace
 
 ShellSplit split_shell(const ShellMesh& mesh, const SplitSettings& settings) {
+  return split_shell(mesh, find_cell_contacts(mesh), settings);
+}
+
+ShellSplit split_shell(const ShellMesh& mesh, std::vector<CellContact> contacts,
+                       const SplitSettings& settings) {
   ShellSplit split;
   ShellMesh whole = mesh;
-  for (int pass = 0; settings.least_width > 0.0 && pass < kMergePasses; ++pass)
-    if (!Merger(whole, settings.least_width).merge_once(split)) break;
-
-  const std::vector<CellContact> contacts = find_cell_contacts(whole);
+  for (int pass = 0; settings.least_width > 0.0 && pass < kMergePasses; ++pass) {
+    if (!Merger(whole, settings.least_width).merge_once(contacts, split)) break;
+    contacts = find_cell_contacts(whole);
+  }
   int count = 0;
   const std::vector<int> label = label_pieces(whole.cells.size(), contacts, count);
   split.pieces.resize(at(count));

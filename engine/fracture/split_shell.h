@@ -22,5 +22,8 @@ struct ShellSplit {
 /// split, to the neighbour with the longest common crack: that crack becomes closed material again. Pieces
 /// without any neighbour stay as they are.
 ShellSplit split_shell(const geometry::ShellMesh& mesh, const SplitSettings& settings = {});
+/// The same, of a mesh whose contacts (find_cell_contacts) are known.
+ShellSplit split_shell(const geometry::ShellMesh& mesh, std::vector<geometry::CellContact> contacts,
+                       const SplitSettings& settings);
 
 }  // namespace shatterbox::fracture

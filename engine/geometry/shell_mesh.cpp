@@ -22,6 +22,26 @@ struct Stretch {
   int cell, side;
 };
 
+/// Sorts by an integer below `count` first, then by `less`; in linear time where there are many items.
+template <class Item, class Key, class Less>
+void sort_by_key(std::vector<Item>& items, Size count, const Key& key, const Less& less) {
+  if (4 * items.size() < count) {
+    std::sort(items.begin(), items.end(),
+              [&](const Item& a, const Item& b) { return key(a) != key(b) ? key(a) < key(b) : less(a, b); });
+    return;
+  }
+  std::vector<int> first(count + 1, 0);
+  for (const Item& item : items) ++first[at(key(item)) + 1];
+  for (Size k = 0; k < count; ++k) first[k + 1] += first[k];
+  std::vector<Item> sorted(items.size());
+  std::vector<int> next = first;
+  for (const Item& item : items) sorted[at(next[at(key(item))]++)] = item;
+  for (Size k = 0; k < count; ++k)
+    if (first[k + 1] - first[k] > 1)
+      std::sort(sorted.begin() + first[k], sorted.begin() + first[k + 1], less);
+  items = std::move(sorted);
+}
+
 std::vector<Stretch> collect_stretches(const ShellMesh& mesh) {
   std::vector<Stretch> stretches;
   const ShellElements& elements = *mesh.elements;
@@ -37,9 +57,11 @@ std::vector<Stretch> collect_stretches(const ShellMesh& mesh) {
       stretches.push_back({edge, std::min(p, q), std::max(p, q), static_cast<int>(c), s});
     }
   }
-  std::sort(stretches.begin(), stretches.end(), [](const Stretch& a, const Stretch& b) {
-    return std::array{a.edge, a.cell, a.side} < std::array{b.edge, b.cell, b.side};
-  });
+  sort_by_key(
+      stretches, elements.topology.edges.size(), [](const Stretch& s) { return s.edge; },
+      [](const Stretch& a, const Stretch& b) {
+        return a.cell != b.cell ? a.cell < b.cell : a.side < b.side;
+      });
   return stretches;
 }
 
@@ -198,10 +220,11 @@ std::vector<CellContact> find_cell_contacts(const ShellMesh& mesh, double tolera
   std::vector<CellContact> contacts;
   add_edge_contacts(mesh, tolerance, contacts);
   add_facet_contacts(mesh, tolerance, contacts);
-  std::sort(contacts.begin(), contacts.end(), [](const CellContact& a, const CellContact& b) {
-    return std::array{a.cell_a, a.cell_b, a.side_a, a.side_b} <
-           std::array{b.cell_a, b.cell_b, b.side_a, b.side_b};
-  });
+  sort_by_key(
+      contacts, mesh.cells.size(), [](const CellContact& c) { return c.cell_a; },
+      [](const CellContact& a, const CellContact& b) {
+        return std::array{a.cell_b, a.side_a, a.side_b} < std::array{b.cell_b, b.side_a, b.side_b};
+      });
   return contacts;
 }
 
@@ -210,28 +233,23 @@ void assign_degrees_of_freedom(ShellMesh& mesh, const std::vector<CellContact>& 
   core::DisjointSets edges(3 * mesh.cells.size());
   const ShellElements& elements = *mesh.elements;
   for (const CellContact& contact : contacts) {
-    const int element_a = mesh.cells[at(contact.cell_a)].element;
-    const int element_b = mesh.cells[at(contact.cell_b)].element;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        // On a shared edge its two ends and its rotation are common; inside one element everything is.
-        const auto& topology = elements.topology;
-        const bool is_inside = element_a == element_b;
-        const int shared_edge =
-            is_inside ? -1
-                      : topology.triangle_edges[at(element_a)][at(
-                            mesh.corners[at(mesh.cells[at(contact.cell_a)].first_corner + contact.side_a)]
-                                .side_id)];
-        const int va = elements.mesh.triangles[at(element_a)][at(i)];
-        const int vb = elements.mesh.triangles[at(element_b)][at(j)];
-        const bool is_end =
-            is_inside || topology.edges[at(shared_edge)][0] == va || topology.edges[at(shared_edge)][1] == va;
-        if (va == vb && is_end) vertices.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
-        const int ea = topology.triangle_edges[at(element_a)][at(i)];
-        const int eb = topology.triangle_edges[at(element_b)][at(j)];
-        if (ea == eb && (is_inside || ea == shared_edge))
-          edges.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
+    const ShellCell& a = mesh.cells[at(contact.cell_a)];
+    const ShellCell& b = mesh.cells[at(contact.cell_b)];
+    if (a.element == b.element) {  // inside one element everything is common
+      for (int i = 0; i < 3; ++i) {
+        vertices.unite(3 * contact.cell_a + i, 3 * contact.cell_b + i);
+        edges.unite(3 * contact.cell_a + i, 3 * contact.cell_b + i);
       }
+      continue;
+    }
+    // On a shared edge its two ends and its rotation are.
+    const int i = mesh.corners[at(a.first_corner + contact.side_a)].side_id;
+    const int j = mesh.corners[at(b.first_corner + contact.side_b)].side_id;
+    edges.unite(3 * contact.cell_a + i, 3 * contact.cell_b + j);
+    for (const int v : {i, (i + 1) % 3})
+      for (const int w : {j, (j + 1) % 3})
+        if (elements.mesh.triangles[at(a.element)][at(v)] == elements.mesh.triangles[at(b.element)][at(w)])
+          vertices.unite(3 * contact.cell_a + v, 3 * contact.cell_b + w);
   }
   mesh.vertex_source.clear();
   mesh.edge_source.clear();

@@ -181,7 +181,8 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   row.generation = memory.generation;
   row.place = impact.hardest.point_world;
 
-  fracture::ShellSplit split = fracture::split_shell(*impact.decision.mesh, {kLeastWidth * fragile->size});
+  fracture::ShellSplit split =
+      fracture::split_shell(*impact.decision.mesh, impact.decision.contacts, {kLeastWidth * fragile->size});
   row.merged = split.merged_count;
   double area = 0.0;
   for (const geometry::ShellCell& cell : impact.decision.mesh->cells) area += cell.area;
