@@ -28,6 +28,7 @@ struct ContactReport {
   double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
   double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
+  double drift = 0.0;  // m, of surfaces from their bodies; of the paper's scheme alone
 };
 
 /// Scratch of one step, handed from stage to stage. Holds no state: a new one gives the same results.

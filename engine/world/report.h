@@ -67,6 +67,7 @@ struct ContactFigures {
   double least_gap = 0.0;  // m, over the run
   long failsafe_steps = 0;
   double frozen_share = 0.0;  // of body-steps
+  double drift = 0.0;         // m, ContactScheme::paper: greatest distance of a surface from its rigid body
   double residual = 0.0;      // m/s, worst normal velocity left by the solver, last step
   int hits = 0;               // pairs in which the continuous pass had to act, last step
 };

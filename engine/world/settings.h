@@ -20,12 +20,19 @@ enum class AfterBreak : std::uint8_t {
   inherit,  // [BHTF07] sec. VII: pieces inherit the parent's velocity after the collision
 };
 
+/// How bodies are kept apart.
+enum class ContactScheme : std::uint8_t {
+  standard,  // engine/dynamics/step_motion.h
+  paper,     // [BHTF07] sec. III: cloth collision on a surface that drifts from its rigid body; for comparison
+};
+
 struct WorldSettings {
   int steps_per_second = 240;            // usually 120 to 960
   Vec3 gravity = Vec3(0.0, -9.81, 0.0);  // m/s2
   std::uint64_t seed = 1;                // flaws and grains
   Criterion criterion = Criterion::event;
   AfterBreak after_break = AfterBreak::go_back;
+  ContactScheme contact = ContactScheme::standard;
   std::optional<double> stress_window;  // s; the duration of every impact, where it is not to be computed
   double paper_duration = 1e-3;  // s; Criterion::paper compares the stress integral with strength times this
   int crack_generations = 3;     // solves of one cracking body: radial cracks, rings, and what they leave

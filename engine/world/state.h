@@ -8,6 +8,7 @@
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/dynamics/paper_motion.h"
 #include "engine/dynamics/step_motion.h"
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
@@ -19,6 +20,7 @@ namespace shatterbox::world {
 struct MovingState {
   std::vector<body::Body> bodies;  // ascending ids
   dynamics::ContactState contact;
+  dynamics::PaperContactState paper_contact;      // of ContactScheme::paper
   std::map<body::BodyId, ImpactMemory> memories;  // of fragile bodies
   Fragiles fragiles;
   body::BodyId next_id = 1;

@@ -87,6 +87,7 @@ void book_contact(const dynamics::ContactReport& contact, long steps, ContactFig
   figures.frozen_share = (figures.frozen_share * n + contact.frozen_share) / (n + 1.0);
   figures.residual = contact.residual;
   figures.hits = contact.hits;
+  figures.drift = std::max(figures.drift, contact.drift);
 }
 
 std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t previous) {
@@ -103,6 +104,7 @@ std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t pr
     for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);
   }
   dynamics::add_to_hash(moving.contact, hash);
+  dynamics::add_to_hash(moving.paper_contact, hash);
   return hash.value();
 }
 
@@ -124,7 +126,10 @@ void World::step() {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     before = s.moving.bodies;
     contact = timer.time("motion", [&] {
-      return dynamics::step_motion(s.moving.bodies, s.contact_settings, s.moving.contact, s.log);
+      return s.settings.contact == ContactScheme::paper
+                 ? dynamics::step_paper_motion(s.moving.bodies, s.contact_settings, s.moving.paper_contact,
+                                               s.log)
+                 : dynamics::step_motion(s.moving.bodies, s.contact_settings, s.moving.contact, s.log);
     });
     if (!may_break) break;
 
@@ -140,7 +145,8 @@ void World::step() {
     if (!timer.time("fracture", [&] { return break_bodies(impacts, snapshot, end_time, pass); })) break;
   }
   book_conservation(before);
-  timer.time("sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+  if (s.settings.contact == ContactScheme::standard)
+    timer.time("sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   book_contact(contact, s.steps, s.report.contact);
   ++s.steps;
   s.report.steps = s.steps;

@@ -139,6 +139,7 @@ Json make_json(const RunRecord& record) {
                      {"failsafe_steps", w.contact.failsafe_steps},
                      {"frozen_share", number(w.contact.frozen_share)},
                      {"least_gap", number(w.contact.least_gap)}};
+  if (w.contact.drift > 0.0) json["contact"]["drift"] = number(w.contact.drift);
   json["conservation"] = {{"momentum", vector(w.conservation.momentum)},
                           {"kinetic_energy_j", number(w.conservation.kinetic_energy)},
                           {"potential_energy_j", number(w.conservation.potential_energy)},

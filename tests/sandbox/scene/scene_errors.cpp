@@ -145,7 +145,7 @@ const Broken kCorpus[] = {
     {"[[event]]\nwhen = \"rest\"\ndo = \"drop\"\nbody = {kind=\"sphere\"}\n", "t.toml:2:1", "not available",
      "at = 0.5"},
     {"[[joint]]\nbetween = [\"a\", \"b\"]\n", "t.toml:1:3", "not available in this version", ""},
-    {"[scene]\ncontact = \"paper\"\n", "t.toml:2:11", "not available in this version", "\"default\""},
+    {"[scene]\ncontact = \"papre\"\n", "t.toml:2:11", "\"papre\"", "\"paper\""},
     {"[[material]]\nname = \"m\"\nlike = \"steel\"\nplasticity = 1\n", "t.toml:4:1", "not available", ""},
     {"", "t.toml", "the scene has no body", "[[body]]"},
 };
