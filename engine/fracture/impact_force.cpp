@@ -217,7 +217,7 @@ bool ImpactForce::is_short() const {
   const double inertia = (subject_.systems->figures().lumped_mass.array() * u.array().square()).sum();
   const double trial_period =
       2.0 * core::kPi * core::sqrt(inertia / std::max(answers_.front().elastic_compliance, 1e-300));
-  return duration_ < 0.5 * trial_period || duration_ < 0.5 * system_->first_period();
+  return duration_ < 0.5 * trial_period || system_->is_first_period_above(2.0 * duration_);
 }
 
 /// A screening that is most likely at or below the one of the duration: from an infinite plate, whose

@@ -12,9 +12,9 @@ using Size = std::size_t;
 
 }  // namespace
 
-double first_frequency_squared(
+FrequencyEstimate first_frequency(
     const ShellStructure& structure,
-    const std::function<std::vector<VecX>(const std::vector<const VecX*>&)>& precondition) {
+    const std::function<std::vector<VecX>(const std::vector<const VecX*>&)>& precondition, int steps) {
   constexpr int kVectors = 4;
   const VecX& mass = structure.mass;
   core::Random random(1, 0);
@@ -23,8 +23,8 @@ double first_frequency_squared(
     for (Eigen::Index i = 0; i < structure.vertex_dofs; ++i) x(i) = random.uniform(-1.0, 1.0);
     structure.restrict_to_active(x);
   }
-  double frequency_squared = 0.0;
-  for (int iteration = 0; iteration < 30; ++iteration) {
+  FrequencyEstimate frequency;
+  for (int iteration = 0; iteration < steps; ++iteration) {
     std::vector<VecX> loads;
     std::vector<const VecX*> pointers;
     for (const VecX& x : basis) loads.push_back(mass.cwiseProduct(x));
@@ -32,7 +32,7 @@ double first_frequency_squared(
     basis = precondition(pointers);
     for (VecX& x : basis) {
       const double norm = core::sqrt(x.dot(mass.cwiseProduct(x)));
-      if (!(norm > 0.0)) return 0.0;
+      if (!(norm > 0.0)) return {};
       x /= norm;
     }
     Eigen::Matrix4d stiff, heavy;
@@ -49,16 +49,18 @@ double first_frequency_squared(
     // The first step of a small body may leave fewer than four independent vectors.
     heavy.diagonal() *= 1.0 + 1e-12;
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d> ritz(stiff, heavy);
-    const double previous = frequency_squared;
-    frequency_squared = ritz.eigenvalues()(0);
+    frequency = {ritz.eigenvalues()(0), frequency.squared};
+    if (iteration + 1 == steps) break;
     std::vector<VecX> turned(kVectors, VecX::Zero(mass.size()));
     for (Size j = 0; j < kVectors; ++j)
       for (Size i = 0; i < kVectors; ++i)
         turned[j] += ritz.eigenvectors()(static_cast<int>(i), static_cast<int>(j)) * basis[i];
     basis = std::move(turned);
-    if (iteration > 2 && std::abs(frequency_squared - previous) < 5e-3 * std::abs(frequency_squared)) break;
+    if (iteration > 2 &&
+        std::abs(frequency.squared - frequency.previous) < 5e-3 * std::abs(frequency.squared))
+      break;
   }
-  return frequency_squared;
+  return frequency;
 }
 
 }  // namespace shatterbox::stress

@@ -10,10 +10,15 @@
 
 namespace shatterbox::stress {
 
-/// Square of the lowest frequency in units of the shell, from above, to about 1 %. `precondition` solves with
-/// the factor and takes rigid motions out.
-double first_frequency_squared(
+struct FrequencyEstimate {
+  double squared = 0.0;   // units of the shell; from above
+  double previous = 0.0;  // the same one step earlier
+};
+
+/// Square of the lowest frequency after at most `steps` steps, or when a step changes it by less than 0.5 %.
+/// `precondition` solves with the factor and takes rigid motions out.
+FrequencyEstimate first_frequency(
     const ShellStructure& structure,
-    const std::function<std::vector<VecX>(const std::vector<const VecX*>&)>& precondition);
+    const std::function<std::vector<VecX>(const std::vector<const VecX*>&)>& precondition, int steps);
 
 }  // namespace shatterbox::stress

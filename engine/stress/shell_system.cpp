@@ -25,6 +25,10 @@ Size at(int i) {
 constexpr int kIterations = 40;  // of the refinement; 1 to 3 do for a body without mechanisms
 constexpr std::size_t kMostLanes = 4;
 constexpr double kSplitShift = 1e6;    // of s^2 over a part's shift: below, about, the first frequency
+constexpr int kMostPeriodSteps = 30;   // of the subspace iteration
+constexpr int kRoughPeriodSteps = 2;   // of one that may decide that the period is below a limit:
+constexpr double kRoughChange = 2.0;   // if the last step changed the frequency's square by no more than this
+constexpr double kRoughMargin = 1.5;   // and the period found is so much shorter
 constexpr double kShiftRetry = 100.0;  // a factor that fails is made again with a shift so much larger
 
 struct Refinement {
@@ -47,8 +51,9 @@ struct ShellSystem::State {
   // By part: the load's rigid part is answered in closed form, R R^T / s^2, because the factor would answer
   // it with few digits (s far below the first frequency) or not at all (s = 0).
   std::vector<char> is_split;
-  mutable std::once_flag has_period;
+  mutable std::once_flag has_period, has_rough_frequency;
   mutable double period = 0.0;
+  mutable FrequencyEstimate rough_frequency;
 
   bool build_factor();
   bool is_balanced() const { return screening_squared == 0.0; }
@@ -64,7 +69,8 @@ struct ShellSystem::State {
   void put_lane(const VecX& load, std::size_t lane, SolveLanes& lanes) const;
   std::vector<VecX> precondition(const std::vector<const VecX*>& loads) const;
   void refine(std::span<Refinement> all, double tolerance) const;
-  double compute_period() const;
+  FrequencyEstimate estimate_frequency(int steps) const;
+  double period_of(double frequency_squared) const;
 };
 
 bool ShellSystem::State::build_factor() {
@@ -205,9 +211,12 @@ void ShellSystem::State::refine(std::span<Refinement> all, double tolerance) con
   }
 }
 
-double ShellSystem::State::compute_period() const {
-  const double frequency_squared = first_frequency_squared(
-      *structure, [this](const std::vector<const VecX*>& loads) { return precondition(loads); });
+FrequencyEstimate ShellSystem::State::estimate_frequency(int steps) const {
+  return first_frequency(
+      *structure, [this](const std::vector<const VecX*>& loads) { return precondition(loads); }, steps);
+}
+
+double ShellSystem::State::period_of(double frequency_squared) const {
   // A mechanism has no period; the shift's own frequency stands for "very long".
   double least = shift.maxCoeff();
   for (Size dof = 0; dof < structure->place.size(); ++dof)
@@ -327,8 +336,20 @@ std::vector<LoadCompliance> ShellSystem::compliances(const std::vector<VecX>& lo
 }
 
 double ShellSystem::first_period() const {
-  std::call_once(state_->has_period, [this] { state_->period = state_->compute_period(); });
+  std::call_once(state_->has_period, [this] {
+    state_->period = state_->period_of(state_->estimate_frequency(kMostPeriodSteps).squared);
+  });
   return state_->period;
+}
+
+bool ShellSystem::is_first_period_above(double limit) const {
+  std::call_once(state_->has_rough_frequency,
+                 [this] { state_->rough_frequency = state_->estimate_frequency(kRoughPeriodSteps); });
+  const FrequencyEstimate& rough = state_->rough_frequency;
+  const double rough_period = state_->period_of(rough.squared);
+  if (rough_period > limit) return true;  // estimates only grow
+  if (rough.previous < kRoughChange * rough.squared && kRoughMargin * rough_period < limit) return false;
+  return first_period() > limit;
 }
 
 double ShellSystem::screening() const {

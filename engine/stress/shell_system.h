@@ -63,6 +63,8 @@ class ShellSystem {
   /// Longest period of free (or supported) vibration, s, to about 1 %; computed at the first call, then kept.
   /// Only of use with s = 0.
   double first_period() const;
+  /// first_period() > limit (s), mostly at half the price.
+  bool is_first_period_above(double limit) const;
 
   double screening() const;  // s, 1/s
   int dof_count() const;

@@ -132,12 +132,12 @@ TEST_CASE("square plates, simply supported and clamped: deflection and moment co
 namespace {
 
 struct DiscErrors {
-  double deflection, moment, averaged_moment;
+  double deflection, moment, averaged_moment, outer_moment;
 };
 
 /// Free disc of radius 1 under a force in its middle: relative errors of w(0) - w(1), and of the whole field
-/// of moments in L2, plain and after averaging. Closed form of NUMERICS section 2: w = P r^2 ln r / 8 pi D -
-/// P r^4 / 64 pi D - P (3 + nu) r^2 / 32 pi D (1 + nu).
+/// of moments in L2: plain, after averaging, and plain outside a quarter of the radius. Closed form of
+/// NUMERICS section 2: w = P r^2 ln r / 8 pi D - P r^4 / 64 pi D - P (3 + nu) r^2 / 32 pi D (1 + nu).
 DiscErrors disc_errors(int rings) {
   const Elements elements = disc(rings);
   const ShellProperties properties = properties_of(0.01);
@@ -154,13 +154,14 @@ DiscErrors disc_errors(int rings) {
   for (int i = 0; i < 6 * rings; ++i) rim += solution.displacement(vertex_dof(first + i) + 2) / (6.0 * rings);
 
   const double nu = properties.poisson_ratio;
-  const auto moment_error = [&](const std::vector<CellStress>& stresses) {
+  const auto moment_error = [&](const std::vector<CellStress>& stresses, double least_radius) {
     double error = 0.0, size = 0.0;
     for (size_t c = 0; c < mesh.cells.size(); ++c) {
       const Mat3 frame = geometry::facet_frame(*elements, static_cast<int>(c));
       const Vec3 centre =
           geometry::position_in_element(*elements, static_cast<int>(c), Vec2(1.0 / 3.0, 1.0 / 3.0));
       const double r = centre.norm();
+      if (r < least_radius) continue;
       const double c0 = (3.0 + nu) / (1.0 + nu) / 16.0;
       const double slope = (2.0 * core::log(r) + 1.0) / 8.0 - r * r / 16.0 - c0;            // pi D w' / r
       const double curvature = (2.0 * core::log(r) + 3.0) / 8.0 - 3.0 * r * r / 16.0 - c0;  // pi D w''
@@ -179,8 +180,9 @@ DiscErrors disc_errors(int rings) {
   };
   const auto stresses = cell_stresses(*stiffness, mesh, solution.displacement);
   return {(solution.displacement(2) - rim) * bending_stiffness(properties) / 0.0302241 - 1.0,
-          moment_error(stresses),
-          moment_error(average_stresses(mesh, geometry::find_cell_contacts(mesh), stresses))};
+          moment_error(stresses, 0.0),
+          moment_error(average_stresses(mesh, geometry::find_cell_contacts(mesh), stresses), 0.0),
+          moment_error(stresses, 0.25)};
 }
 
 }  // namespace
@@ -192,8 +194,13 @@ TEST_CASE("free disc hit in the middle: closed form of the relieved load") {
   CAPTURE(coarse.averaged_moment, middle.averaged_moment, fine.averaged_moment);
   REQUIRE(std::abs(middle.deflection) < 0.02);
   REQUIRE(std::abs(fine.deflection) < 0.006);
-  // Plain moments are one constant a triangle: first order, slowed by the logarithm under the force. The
-  // averaged ones, which the criterion reads, are held to the tolerance.
+  // Plain moments are one constant a triangle: first order away from the force (14.4, 7.3, 3.6 % at 8, 16, 32
+  // rings outside a quarter of the radius, as NUMERICS has it for Morley's element), slowed by its logarithm
+  // in the norm over the whole disc (19, 10.9, 6.0 %). The averaged ones, which the criterion reads, are held
+  // to the tolerance everywhere.
+  REQUIRE(middle.outer_moment < 0.0735);
+  REQUIRE(fine.outer_moment < 0.0370);
+  REQUIRE(fine.outer_moment < 0.51 * middle.outer_moment);
   REQUIRE(middle.moment < 0.6 * coarse.moment);
   REQUIRE(fine.moment < 0.6 * middle.moment);
   REQUIRE(middle.averaged_moment < 0.07);
@@ -321,6 +328,23 @@ TEST_CASE("first period: free square plate and clamped square plate") {
           Approx(2.0 * core::kPi * unit / 13.468).epsilon(0.03));
   const auto clamped = make_system(stiffness, mesh, 0.0, square_support(mesh, true));
   REQUIRE(clamped->first_period() == Approx(2.0 * core::kPi * unit / 35.985).epsilon(0.06));
+}
+
+TEST_CASE("whether the first period is above a limit is what the period says") {
+  const ShellProperties properties = properties_of(0.01);
+  const Elements plate = grid(14, 11, 1.0, 0.7, 0.3);
+  const std::vector<Elements> shapes{plate, grid(30, 3, 2.0, 0.1, 0.2), disc(6), icosphere(2)};
+  const auto check = [&](const std::shared_ptr<const ShellStiffness>& stiffness,
+                         const geometry::ShellMesh& mesh) {
+    const double period = make_system(stiffness, mesh)->first_period();
+    for (const double share : {0.1, 0.5, 0.8, 0.97, 1.03, 1.2, 1.6, 3.0, 30.0}) {
+      CAPTURE(share, period);
+      REQUIRE(make_system(stiffness, mesh)->is_first_period_above(share * period) == (share < 1.0));
+    }
+  };
+  for (const Elements& elements : shapes)
+    check(make_shell_stiffness(elements, properties), geometry::make_shell_mesh(elements));
+  check(make_shell_stiffness(plate, properties), cut_between(geometry::make_shell_mesh(plate), 0.4713));
 }
 
 TEST_CASE("the screened solve tends to the balanced one as the window grows, and is local when it is short") {
