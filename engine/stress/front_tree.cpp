@@ -1,198 +1,26 @@
 #include "engine/stress/front_tree.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "engine/stress/supernodes.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-using ElementNodes = std::array<int, NodeGraph::kElementNodes>;
 
 Size at(int i) {
   return static_cast<Size>(i);
 }
 
-/// Groups `count` items by key in [0, keys): items of key k are [first[k], first[k + 1]) of `items`,
-/// ascending.
-struct Buckets {
-  std::vector<int> first, items;
-
-  template <class Key>
-  Buckets(Size keys, Size count, const Key& key) : first(keys + 1, 0) {
-    for (Size i = 0; i < count; ++i)
-      if (const int k = key(i); k >= 0) ++first[at(k) + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    items.resize(at(first.back()));
-    std::vector<int> fill(first.begin(), first.end() - 1);
-    for (Size i = 0; i < count; ++i)
-      if (const int k = key(i); k >= 0) items[at(fill[at(k)]++)] = static_cast<int>(i);
-  }
-};
-
-/// Elements by places in the order of elimination, ascending; absent nodes at the end as -1.
-std::vector<ElementNodes> place_elements(const NodeGraph& graph, const std::vector<int>& place) {
-  std::vector<ElementNodes> placed(graph.elements.size());
-  for (Size e = 0; e < placed.size(); ++e) {
-    ElementNodes& nodes = placed[e];
-    nodes.fill(-1);
-    Size count = 0;
-    for (const int node : graph.elements[e]) {
-      if (node < 0) continue;
-      Size k = count++;
-      for (; k > 0 && nodes[k - 1] > place[at(node)]; --k) nodes[k] = nodes[k - 1];
-      nodes[k] = place[at(node)];
-    }
-  }
-  return placed;
-}
-
-/// Elimination tree (Liu's algorithm): an element's nodes are a clique, so links between successive ones are
-/// enough.
-std::vector<int> build_elimination_tree(Size count, const std::vector<ElementNodes>& placed) {
-  constexpr Size kLinks = NodeGraph::kElementNodes - 1;
-  const Buckets links(count, placed.size() * kLinks,
-                      [&](Size i) { return placed[i / kLinks][i % kLinks + 1]; });
-  std::vector<int> parent(count, -1);
-  std::vector<int> ancestor(count, -1);
-  for (Size j = 0; j < count; ++j)
-    for (int l = links.first[j]; l < links.first[j + 1]; ++l) {
-      const Size link = at(links.items[at(l)]);
-      int i = placed[link / kLinks][link % kLinks];
-      while (i != -1 && i != static_cast<int>(j)) {
-        const int next = ancestor[at(i)];
-        ancestor[at(i)] = static_cast<int>(j);
-        if (next == -1) parent[at(i)] = static_cast<int>(j);
-        i = next;
-      }
-    }
-  return parent;
-}
-
-/// Number of each node in a postorder of the forest.
-std::vector<int> postorder(const std::vector<int>& parent) {
-  const Size count = parent.size();
-  std::vector<int> child(count, -1), sibling(count, -1), number(count, -1), stack;
-  int root = -1;
-  for (Size i = count; i-- > 0;) {
-    int& head = parent[i] < 0 ? root : child[at(parent[i])];
-    sibling[i] = head;
-    head = static_cast<int>(i);
-  }
-  int next = 0;
-  for (; root >= 0; root = sibling[at(root)]) {
-    stack.push_back(root);
-    while (!stack.empty()) {
-      const int top = stack.back();
-      if (int& first = child[at(top)]; first >= 0) {
-        stack.push_back(first);
-        first = sibling[at(first)];
-      } else {
-        number[at(top)] = next++;
-        stack.pop_back();
-      }
-    }
-  }
-  return number;
-}
-
-/// Successive nodes with the same structure below them.
-struct Supernode {
-  int first = 0, last = 0;   // nodes, by postorder
-  std::vector<int> below;    // nodes, unordered
-  int pivots = 0, rows = 0;  // unknowns
-  int parent = -1;           // supernode
-  int merged_into = -1;
-  double zeros = 0.0;  // entries that merging stores in vain
-};
-
-std::vector<Supernode> find_supernodes(const std::vector<ElementNodes>& placed,
-                                       const std::vector<int>& parent, const std::vector<int>& size) {
-  const Size count = parent.size();
-  const Buckets starting(count, placed.size(), [&](Size e) { return placed[e][0]; });
-  std::vector<int> child_count(count, 0), mark(count, -1), owner(count, -1);
-  for (const int p : parent)
-    if (p >= 0) ++child_count[at(p)];
-  const Buckets children(count, count, [&](Size i) { return parent[i]; });
-
-  std::vector<Supernode> supernodes;
-  const auto finish = [&] {
-    if (supernodes.empty()) return;
-    Supernode& s = supernodes.back();
-    std::erase_if(s.below, [&](int node) { return node <= s.last; });
-    for (const int node : s.below) s.rows += size[at(node)];
-  };
-  for (int j = 0; j < static_cast<int>(count); ++j) {
-    const int stamp = static_cast<int>(supernodes.size()) - 1;
-    bool continues = j > 0 && parent[at(j) - 1] == j && child_count[at(j)] == 1;
-    for (int k = starting.first[at(j)]; continues && k < starting.first[at(j) + 1]; ++k)
-      for (const int node : placed[at(starting.items[at(k)])])
-        continues = continues && (node < 0 || mark[at(node)] == stamp);
-    if (!continues) {
-      finish();
-      supernodes.emplace_back();
-      Supernode& s = supernodes.back();
-      s.first = j;
-      const int fresh = stamp + 1;
-      mark[at(j)] = fresh;
-      const auto add = [&](int node) {
-        if (node <= j || mark[at(node)] == fresh) return;
-        mark[at(node)] = fresh;
-        s.below.push_back(node);
-      };
-      for (int k = starting.first[at(j)]; k < starting.first[at(j) + 1]; ++k)
-        for (const int node : placed[at(starting.items[at(k)])]) add(node);
-      for (int k = children.first[at(j)]; k < children.first[at(j) + 1]; ++k)
-        for (const int node : supernodes[at(owner[at(children.items[at(k)])])].below) add(node);
-    }
-    Supernode& s = supernodes.back();
-    s.last = j;
-    s.pivots += size[at(j)];
-    owner[at(j)] = static_cast<int>(supernodes.size()) - 1;
-  }
-  finish();
-  for (Supernode& s : supernodes)
-    if (parent[at(s.last)] >= 0) s.parent = owner[at(parent[at(s.last)])];
-  return supernodes;
-}
-
-double trapezoid(double pivots, double rows) {
-  return 0.5 * pivots * (pivots + 1.0) + pivots * rows;
-}
-
-/// Joins small supernodes to their parents: some stored zeros for fewer, larger dense blocks.
-void merge_supernodes(std::vector<Supernode>& supernodes) {
-  for (Size i = 0; i < supernodes.size(); ++i) {
-    Supernode& s = supernodes[i];
-    if (s.parent < 0) continue;
-    Supernode& p = supernodes[at(s.parent)];
-    const double joined = trapezoid(s.pivots + p.pivots, p.rows);
-    const double zeros =
-        joined - trapezoid(s.pivots, s.rows) - trapezoid(p.pivots, p.rows) + s.zeros + p.zeros;
-    const int pivots = s.pivots + p.pivots;
-    const double allowed = pivots <= 16 ? 0.2 : pivots <= 32 ? 0.08 : pivots <= 64 ? 0.04 : 0.015;
-    if (zeros > allowed * joined) continue;
-    s.merged_into = s.parent;
-    p.pivots = pivots;
-    p.zeros = zeros;
-  }
-  // What the parent pointer names may itself have been merged; parents come later, so resolve from the end.
-  for (Size i = supernodes.size(); i-- > 0;) {
-    Supernode& s = supernodes[i];
-    if (s.parent >= 0 && supernodes[at(s.parent)].merged_into >= 0)
-      s.parent = supernodes[at(s.parent)].merged_into;
-    if (s.merged_into >= 0) s.merged_into = s.parent;
-  }
-}
-
 class TreeBuilder {
  public:
-  TreeBuilder(const NodeGraph& graph, std::vector<ElementNodes> placed, std::vector<int> size,
-              std::vector<Supernode> supernodes)
+  TreeBuilder(const NodeGraph& graph, const EliminationOrder& elimination)
       : graph_(graph),
-        placed_(std::move(placed)),
-        size_(std::move(size)),
-        supernodes_(std::move(supernodes)) {}
+        placed_(elimination.elements),
+        size_(elimination.size),
+        number_(elimination.number),
+        supernodes_(find_merged_supernodes(elimination)) {}
 
   FrontTree build() {
     number_fronts();
@@ -210,8 +38,6 @@ class TreeBuilder {
 
   /// Place of a node's first unknown, by its number in the postorder.
   const std::vector<int>& place() const { return place_; }
-
-  void set_node_numbers(std::vector<int> number) { number_ = std::move(number); }
 
  private:
   void number_fronts() {
@@ -306,10 +132,10 @@ class TreeBuilder {
   }
 
   const NodeGraph& graph_;
-  std::vector<ElementNodes> placed_;
-  std::vector<int> size_;
+  const std::vector<ElementNodes>& placed_;
+  const std::vector<int>& size_;
+  const std::vector<int>& number_;  // of each node of the graph, in the postorder
   std::vector<Supernode> supernodes_;
-  std::vector<int> number_;  // of each node of the graph, in the postorder
   std::vector<int> top_, front_of_supernode_, front_of_node_, place_, local_;
   std::vector<int> pivot_nodes_, nodes_of_front_first_;
   FrontTree tree_;
@@ -318,39 +144,13 @@ class TreeBuilder {
 }  // namespace
 
 FrontTree build_front_tree(const NodeGraph& graph, const std::vector<int>& order) {
-  std::vector<char> is_used(graph.node_size.size(), 0);
-  for (const ElementNodes& nodes : graph.elements)
-    for (const int node : nodes)
-      if (node >= 0) is_used[at(node)] = 1;
-  std::vector<int> number(graph.node_size.size(), -1);
-  int count = 0;
-  for (const int node : order)
-    if (is_used[at(node)]) number[at(node)] = count++;
-
-  std::vector<ElementNodes> placed = place_elements(graph, number);
-  std::vector<int> parent = build_elimination_tree(at(count), placed);
-  const std::vector<int> post = postorder(parent);
-  std::vector<int> post_parent(parent.size());
-  for (Size i = 0; i < parent.size(); ++i)
-    post_parent[at(post[i])] = parent[i] < 0 ? -1 : post[at(parent[i])];
-  for (ElementNodes& nodes : placed)
-    for (int& node : nodes)
-      if (node >= 0) node = post[at(node)];  // ascending still: a clique is a path in the tree
-  std::vector<int> size(at(count));
-  for (Size node = 0; node < number.size(); ++node)
-    if (number[node] >= 0) {
-      number[node] = post[at(number[node])];
-      size[at(number[node])] = graph.node_size[node];
-    }
-
-  std::vector<Supernode> supernodes = find_supernodes(placed, post_parent, size);
-  merge_supernodes(supernodes);
-  TreeBuilder builder(graph, std::move(placed), std::move(size), std::move(supernodes));
-  builder.set_node_numbers(number);
+  const EliminationOrder elimination = order_by_elimination(graph, order);
+  TreeBuilder builder(graph, elimination);
   FrontTree tree = builder.build();
-  tree.node_place.assign(number.size(), -1);
-  for (Size node = 0; node < number.size(); ++node)
-    if (number[node] >= 0) tree.node_place[node] = builder.place()[at(number[node])];
+  tree.node_place.assign(elimination.number.size(), -1);
+  for (Size node = 0; node < elimination.number.size(); ++node)
+    if (const int number = elimination.number[node]; number >= 0)
+      tree.node_place[node] = builder.place()[at(number)];
   return tree;
 }
 

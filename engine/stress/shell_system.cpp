@@ -1,17 +1,10 @@
 #include "engine/stress/shell_system.h"
 
 #include <algorithm>
-#include <array>
-#include <mutex>
-#include <optional>
-#include <span>
 
 #include "engine/core/elementary.h"
 #include "engine/core/parallel.h"
-#include "engine/stress/first_frequency.h"
-#include "engine/stress/front_factor.h"
-#include "engine/stress/front_solve.h"
-#include "engine/stress/front_tiles.h"
+#include "engine/stress/shell_system_state.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -22,8 +15,7 @@ Size at(int i) {
   return static_cast<Size>(i);
 }
 
-constexpr int kIterations = 40;  // of the refinement; 1 to 3 do for a body without mechanisms
-constexpr std::size_t kMostLanes = 4;
+constexpr int kIterations = 40;        // of the refinement; 1 to 3 do for a body without mechanisms
 constexpr double kSplitShift = 1e6;    // of s^2 over a part's shift: below, about, the first frequency
 constexpr int kMostPeriodSteps = 30;   // of the subspace iteration
 constexpr int kRoughPeriodSteps = 2;   // of one that may decide that the period is below a limit:
@@ -31,47 +23,7 @@ constexpr double kRoughChange = 2.0;   // if the last step changed the frequency
 constexpr double kRoughMargin = 1.5;   // and the period found is so much shorter
 constexpr double kShiftRetry = 100.0;  // a factor that fails is made again with a shift so much larger
 
-struct Refinement {
-  VecX x, image;  // image: K x
-  VecX residual, direction;
-  double rho = 0.0, load_norm = 0.0;
-  bool is_done = false;
-};
-
 }  // namespace
-
-/// Everything in units of the shell (ShellStiffness), vectors in the order of the mesh's degrees of freedom.
-struct ShellSystem::State {
-  std::shared_ptr<const ShellStructure> structure;
-  double screening = 0.0;          // 1/s
-  double screening_squared = 0.0;  // in units of the shell
-  std::optional<FrontFactor> factor;
-  VecX shift;  // factored in place of screening_squared: never too small to be seen beside the stiffness
-  std::vector<double> diagonal;  // shift times mass, in the order of elimination
-  // By part: the load's rigid part is answered in closed form, R R^T / s^2, because the factor would answer
-  // it with few digits (s far below the first frequency) or not at all (s = 0).
-  std::vector<char> is_split;
-  mutable std::once_flag has_period, has_rough_frequency;
-  mutable double period = 0.0;
-  mutable FrequencyEstimate rough_frequency;
-
-  bool build_factor();
-  bool is_balanced() const { return screening_squared == 0.0; }
-  /// Half a solve of four loads: load i . answer j = y_i . y_j + what the rigid motions split off add.
-  struct Half {
-    SolveLanes y;
-    std::vector<RigidModes::Amounts> rigid;
-  };
-  Half solve_half(const std::vector<VecX>& loads, std::size_t first) const;
-  /// What the rigid motions split off add to load i . answer j.
-  double rigid_compliance(const RigidModes::Amounts& a, const RigidModes::Amounts& b) const;
-  VecX scaled(const VecX& load) const;
-  void put_lane(const VecX& load, std::size_t lane, SolveLanes& lanes) const;
-  std::vector<VecX> precondition(const std::vector<const VecX*>& loads) const;
-  void refine(std::span<Refinement> all, double tolerance) const;
-  FrequencyEstimate estimate_frequency(int steps) const;
-  double period_of(double frequency_squared) const;
-};
 
 bool ShellSystem::State::build_factor() {
   const RigidModes& rigid = structure->rigid;
@@ -134,37 +86,12 @@ void ShellSystem::State::put_lane(const VecX& load, Size lane, SolveLanes& lanes
       lanes.values[at(lanes.lanes * place[dof]) + lane] = load(static_cast<Eigen::Index>(dof));
 }
 
-double ShellSystem::State::rigid_compliance(const RigidModes::Amounts& a,
-                                            const RigidModes::Amounts& b) const {
-  if (is_balanced()) return 0.0;
-  double sum = 0.0;
-  for (Size part = 0; part < a.size(); ++part) sum += a[part].dot(b[part]);
-  return sum / screening_squared;
-}
-
 /// A load in units of the shell, on active unknowns only.
 VecX ShellSystem::State::scaled(const VecX& load) const {
   VecX b = load / structure->stiffness->force_unit();
   b.tail(b.size() - structure->vertex_dofs) /= structure->stiffness->length;
   structure->restrict_to_active(b);
   return b;
-}
-
-/// L^-1 of the loads [first, first + 4), each relieved of the rigid motions that are split off.
-ShellSystem::State::Half ShellSystem::State::solve_half(const std::vector<VecX>& loads, Size first) const {
-  Half half{SolveLanes(structure->tree, kMostLanes), {}};
-  const Size count = std::min(kMostLanes, loads.size() - first);
-  for (Size l = 0; l < count; ++l) {
-    VecX b = scaled(loads[first + l]);
-    RigidModes::Amounts amounts = structure->rigid.resultants(b);
-    for (Size part = 0; part < amounts.size(); ++part)
-      if (is_split[part] == 0) amounts[part].setZero();
-    structure->rigid.subtract(b, amounts);
-    put_lane(b, l, half.y);
-    half.rigid.push_back(std::move(amounts));
-  }
-  solve_forward(structure->tree, *factor, half.y);
-  return half;
 }
 
 /// Conjugate gradients with the factor as preconditioner: iterative refinement that also copes with the few
@@ -254,9 +181,9 @@ std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads, do
   const double force = structure.stiffness->force_unit();
   std::vector<ShellSolution> solutions(loads.size());
   core::parallel_chunks(loads.size(), kMostLanes, [&](Size begin, Size end) {
-    std::vector<Refinement> work(end - begin);
+    std::vector<State::Refinement> work(end - begin);
     for (Size l = 0; l < work.size(); ++l) {
-      Refinement& one = work[l];
+      State::Refinement& one = work[l];
       one.residual = state.scaled(loads[begin + l]);
       one.load_norm = one.residual.norm();
       if (state.is_balanced()) structure.rigid.balance(one.residual);
@@ -265,7 +192,7 @@ std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads, do
     }
     state.refine(work, tolerance);
     for (Size l = 0; l < work.size(); ++l) {
-      Refinement& one = work[l];
+      State::Refinement& one = work[l];
       if (state.is_balanced()) structure.rigid.remove_motion(one.x);
       ShellSolution& solution = solutions[begin + l];
       solution.residual = one.load_norm > 0.0 ? one.residual.norm() / one.load_norm : 0.0;
@@ -280,59 +207,6 @@ std::vector<ShellSolution> ShellSystem::solve(const std::vector<VecX>& loads, do
 
 ShellSolution ShellSystem::solve(const VecX& load, double tolerance) const {
   return solve(std::vector<VecX>{load}, tolerance).front();
-}
-
-Eigen::MatrixXd ShellSystem::compliance_matrix(const std::vector<VecX>& loads,
-                                               const std::vector<int>& groups) const {
-  const State& state = *state_;
-  const Size blocks = (loads.size() + kMostLanes - 1) / kMostLanes;
-  std::vector<std::optional<State::Half>> halves(blocks);
-  core::parallel_for(blocks, 1, [&](Size b) { halves[b] = state.solve_half(loads, kMostLanes * b); });
-  const auto n = static_cast<Eigen::Index>(loads.size());
-  Eigen::MatrixXd compliance = Eigen::MatrixXd::Zero(n, n);
-  core::parallel_for(blocks, 1, [&](Size b) {
-    for (Size a = 0; a <= b; ++a) {
-      const auto is_wanted = [&](Size i, Size j) {
-        return i < loads.size() && j < loads.size() && groups[i] == groups[j];
-      };
-      bool is_any = false;
-      for (Size k = 0; k < kMostLanes * kMostLanes; ++k)
-        is_any = is_any || is_wanted(kMostLanes * b + k / kMostLanes, kMostLanes * a + k % kMostLanes);
-      if (!is_any) continue;
-      const tiles::Tile products = tiles::multiply(halves[b]->y.values.data(), halves[a]->y.values.data(),
-                                                   state.structure->tree.unknowns);
-      for (Size k = 0; k < kMostLanes * kMostLanes; ++k) {
-        const Size row = k / kMostLanes, column = k % kMostLanes;
-        const Size i = kMostLanes * b + row, j = kMostLanes * a + column;
-        if (!is_wanted(i, j) || j > i) continue;
-        double sum = row < 2 ? products.low[column][row] : products.high[column][row - 2];
-        sum += state.rigid_compliance(halves[b]->rigid[row], halves[a]->rigid[column]);
-        compliance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = sum;
-      }
-    }
-  });
-  compliance.triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
-  return compliance * (state.structure->stiffness->force_unit() * state.structure->stiffness->length);
-}
-
-std::vector<LoadCompliance> ShellSystem::compliances(const std::vector<VecX>& loads) const {
-  const State& state = *state_;
-  const double unit = state.structure->stiffness->force_unit() * state.structure->stiffness->length;
-  std::vector<LoadCompliance> result(loads.size());
-  core::parallel_chunks(loads.size(), kMostLanes, [&](Size begin, Size end) {
-    State::Half half = state.solve_half(loads, begin);
-    SolveLanes& x = half.y;
-    std::array<double, kMostLanes> total{}, inertial{};
-    for (Size i = 0; i < x.values.size(); ++i) total[i % kMostLanes] += x.values[i] * x.values[i];
-    solve_backward(state.structure->tree, *state.factor, x);
-    for (Size i = 0; i < x.values.size(); ++i)
-      inertial[i % kMostLanes] += state.diagonal[i / kMostLanes] * x.values[i] * x.values[i];
-    for (Size l = 0; begin + l < end; ++l) {
-      result[begin + l].elastic = unit * std::max(0.0, total[l] - inertial[l]);
-      result[begin + l].total = unit * (total[l] + state.rigid_compliance(half.rigid[l], half.rigid[l]));
-    }
-  });
-  return result;
 }
 
 double ShellSystem::first_period() const {
