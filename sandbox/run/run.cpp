@@ -89,8 +89,9 @@ void describe_job(const Job& job, report::RunRecord& record) {
   record.asked_seconds = scene.seconds;
   record.warnings = scene.warnings;
   record.warnings.insert(record.warnings.end(), job.built->plan.notes.begin(), job.built->plan.notes.end());
-  bool has_breakable = false, has_grains = false;
+  bool has_breakable = false, has_grains = false, has_script = !scene.events.empty();
   for (const scene::BodyEntry& body : scene.bodies) {
+    has_script |= body.repeat.every > 0.0;
     const auto* shell = std::get_if<scene::ShellForm>(&body.form);
     if (shell == nullptr || !shell->is_breakable) continue;
     has_breakable = true;
@@ -105,7 +106,7 @@ void describe_job(const Job& job, report::RunRecord& record) {
   sort_in(job.options.has_pictures, "render");
   sort_in(job.options.has_pictures && scene.light.casts_shadow, "shadow");
   sort_in(!job.options.video.empty(), "video");
-  sort_in(!scene.events.empty(), "script");
+  sort_in(has_script, "script");
 }
 
 /// The loop. A sentence if it failed, else empty.
