@@ -81,6 +81,38 @@ Json merged(const world::WorldReport& report) {
   return {{"count", count}, {"mass_share", number(share)}};
 }
 
+/// The first findings; all of them would be a flood.
+constexpr std::size_t kMostFindings = 200;
+
+Json audit(const RunRecord& record) {
+  const audit::AuditReport& report = record.audit;
+  Json json = {{"on", record.has_audit},
+               {"steps", report.steps},
+               {"crossings", report.crossings},
+               {"passages", report.passages},
+               {"first_time", report.first_time < 0.0 ? Json(nullptr) : number(report.first_time)}};
+  if (!record.has_audit) return json;
+  json["exempt"] = {{"pairs", report.exempt_pairs},
+                    {"crossings", report.exempt_crossings},
+                    {"passages", report.exempt_passages}};
+  json["one_group"] = {{"crossings", report.group_crossings}, {"passages", report.group_passages}};
+  json["unsettled"] = report.unsettled;
+  json["time_ms"] = number(record.audit_time);
+  json["findings"] = Json::array();
+  for (std::size_t i = 0; i < std::min(report.findings.size(), kMostFindings); ++i) {
+    const audit::Finding& f = report.findings[i];
+    json["findings"].push_back({{"step", f.step},
+                                {"time", number(f.time)},
+                                {"what", audit::name_of(f.kind)},
+                                {"a", record.audit_names[2 * i]},
+                                {"b", record.audit_names[2 * i + 1]},
+                                {"feature_a", f.feature_a},
+                                {"feature_b", f.feature_b},
+                                {"exempt", f.is_exempt}});
+  }
+  return json;
+}
+
 Json times(const RunRecord& record) {
   std::vector<double> frame, simulate, render, encode;
   for (const FrameRecord& f : record.frames) {
@@ -135,6 +167,7 @@ Json make_json(const RunRecord& record) {
       {"start", w.triangles_start}, {"end", record.triangles_end}, {"max", w.triangles_most}};
   json["impacts"] = impacts(w);
   json["breaks"] = breaks(w);
+  json["audit"] = audit(record);
   json["contact"] = {{"most", w.contact.most_contacts},
                      {"failsafe_steps", w.contact.failsafe_steps},
                      {"frozen_share", number(w.contact.frozen_share)},

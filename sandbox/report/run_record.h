@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/audit/audit.h"
 #include "engine/world/report.h"
 
 namespace shatterbox::sandbox::report {
@@ -17,6 +18,7 @@ struct FrameRecord {
   double simulate = 0.0;  // stepping and making the frame's data
   double render = 0.0;
   double encode = 0.0;  // by the encoder's own clock, and pictures written
+  double audit = 0.0;   // in none of the times above
   int contacts = 0;     // most in any of its steps
   int awake = 0;        // dynamic bodies not asleep, at its end
   int hits = 0;         // of the continuous pass, summed over its steps
@@ -41,7 +43,11 @@ struct RunRecord {
       stages;                                        // ms in each frame, in the order of the step
   std::vector<std::pair<std::string, double>> load;  // ms
   std::vector<std::string> used, left_out;
-  double peak_memory = 0.0;  // MB
+  bool has_audit = false;
+  audit::AuditReport audit;
+  double audit_time = 0.0;               // ms, in no frame's time
+  std::vector<std::string> audit_names;  // of the findings' two bodies, in turn
+  double peak_memory = 0.0;              // MB
   std::vector<std::string> outputs;
   std::vector<std::string> warnings;
 };

@@ -113,6 +113,32 @@ std::string error_line(const RunRecord& record) {
       w.solver.worst_residual, w.contact.residual, 100.0 * w.contact.frozen_share);
 }
 
+std::string audit_line(const RunRecord& record) {
+  if (!record.has_audit) return {};
+  const audit::AuditReport& a = record.audit;
+  std::string text =
+      fmt::format("audit of {}: {}, {}", plural(a.steps, "step", "steps"),
+                  plural(a.crossings, "crossing", "crossings"), plural(a.passages, "passage", "passages"));
+  if (a.first_time >= 0.0) text += fmt::format(", the first at {:.4f} s", a.first_time);
+  if (a.exempt_pairs > 0)
+    text += fmt::format("; apart: {} crossed from the start or from birth",
+                        plural(a.exempt_pairs, "pair", "pairs"));
+  if (a.group_crossings + a.group_passages > 0)
+    text += fmt::format("; apart: {} and {} of bodies of one group",
+                        plural(a.group_crossings, "crossing", "crossings"),
+                        plural(a.group_passages, "passage", "passages"));
+  text += fmt::format("; {:.1f} s on the clock\n", 1e-3 * record.audit_time);
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < a.findings.size() && shown < kMostRows; ++i) {
+    const audit::Finding& f = a.findings[i];
+    if (f.is_exempt) continue;
+    ++shown;
+    text += fmt::format("  {:8.4f} s  {}: {} ({}) and {} ({})\n", f.time, audit::name_of(f.kind),
+                        record.audit_names[2 * i], f.feature_a, record.audit_names[2 * i + 1], f.feature_b);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string make_summary(const RunRecord& record) {
@@ -121,7 +147,7 @@ std::string make_summary(const RunRecord& record) {
     text += fmt::format("interrupted at {:.2f} of {:g} s\n", record.simulated_seconds, record.asked_seconds);
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
-          error_line(record);
+          error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,

@@ -39,6 +39,8 @@ void add_run_options(CLI::App& command, Options& options) {
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));
+  command.add_flag("--audit", options.has_audit,
+                   "check after every step that nothing crosses; status 1 if it does");
   command.add_flag("!--no-render", options.has_pictures, "simulate only");
 }
 

@@ -32,6 +32,7 @@ struct Options {
   std::vector<std::string> overrides;
   std::string script;
   bool has_pictures = true;
+  bool has_audit = false;
 };
 
 /// The size of "640x360"; nothing, with a problem, if it is none (16 to 8192 each, even for video).

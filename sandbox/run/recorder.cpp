@@ -11,10 +11,11 @@ void Recorder::note_step(const world::World& world) {
   hits_ += world.report().contact.hits;
 }
 
-void Recorder::note_frame(const world::World& world, double simulate) {
+void Recorder::note_frame(const world::World& world, double simulate, double audit) {
   const world::WorldReport& report = world.report();
   report::FrameRecord frame;
   frame.simulate = frame.frame = simulate;
+  frame.audit = audit;
   frame.contacts = most_contacts_;
   frame.hits = hits_;
   for (const body::Body& body : world.bodies()) frame.awake += body.is_dynamic() && body.is_awake ? 1 : 0;
@@ -41,7 +42,7 @@ void Recorder::note_pictures(const Painted& painted) {
   record.frame_hashes = painted.hashes;
   record.load.emplace_back("renderer", painted.start);
   for (std::size_t i = 0; i < std::min(painted.frame.size(), record.frames.size()); ++i) {
-    record.frames[i].frame = painted.frame[i];
+    record.frames[i].frame = std::max(painted.frame[i] - record.frames[i].audit, 0.0);
     record.frames[i].render = painted.render[i];
     record.frames[i].encode = painted.encode[i];
   }

@@ -15,8 +15,8 @@ class Recorder {
 
   /// After one step.
   void note_step(const world::World& world);
-  /// After the steps of one frame, which took `simulate` ms.
-  void note_frame(const world::World& world, double simulate);
+  /// After the steps of one frame, which took `simulate` ms, and the audit of them `audit` ms more.
+  void note_frame(const world::World& world, double simulate, double audit);
   /// Times and hashes of pictures.
   void note_pictures(const Painted& painted);
   /// At the end: counts, hash, memory, what was used.

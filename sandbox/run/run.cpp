@@ -13,6 +13,7 @@
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/obj_frames.h"
 #include "sandbox/report/summary.h"
+#include "sandbox/run/inspector.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/painter.h"
 #include "sandbox/run/progress.h"
@@ -115,20 +116,28 @@ std::string play(Job& job, Recorder& recorder, Painter* painter) {
   world::World& world = job.built->world;
   script::Script script(scene);
   view::View view(scene, *job.built);
+  Inspector inspector(job.options.has_audit, recorder.record);
+  const auto advance = [&] {
+    for (std::string& fault : script.play(*job.built)) recorder.record.warnings.push_back(std::move(fault));
+    inspector.begin_step(world);
+    world.step();
+    inspector.end_step(world);
+  };
   const int rate = scene.world.steps_per_second, fps = job.options.frames_per_second;
   const auto frame_count = std::max(1, static_cast<int>(scene.seconds * fps + 0.5));
   Progress progress(frame_count, stderr_is_terminal());
   for (int frame = 0; frame < frame_count && !is_interrupted(); ++frame) {
     const auto start = Clock::now();
+    const double audited = recorder.record.audit_time;
     const long due = static_cast<long>(frame) * rate / fps;
     while (world.steps() < due && !is_interrupted()) {
-      for (std::string& fault : script.play(*job.built)) recorder.record.warnings.push_back(std::move(fault));
-      world.step();
+      advance();
       recorder.note_step(world);
     }
     std::optional<render::Frame> picture;
     if (painter != nullptr) picture = view.make_frame();
-    recorder.note_frame(world, milliseconds_since(start));
+    const double audit_time = recorder.record.audit_time - audited;
+    recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
     if (!job.options.meshes_folder.empty()) {
       std::string fault = report::write_obj_frame(job.options.meshes_folder, frame, world);
       if (!fault.empty()) return fault;
@@ -139,10 +148,7 @@ std::string play(Job& job, Recorder& recorder, Painter* painter) {
   }
   // The picture of the last frame shows its begin; the world is asked for `seconds` in full.
   const auto last_step = static_cast<long>(scene.seconds * rate + 0.5);
-  while (world.steps() < last_step && !is_interrupted()) {
-    for (std::string& fault : script.play(*job.built)) recorder.record.warnings.push_back(std::move(fault));
-    world.step();
-  }
+  while (world.steps() < last_step && !is_interrupted()) advance();
   return {};
 }
 
@@ -170,7 +176,8 @@ int finish(const Job& job, Recorder& recorder, Painter* painter, std::string fau
     fmt::print(stderr, "failed: {}\n", fault);
     return kFailed;
   }
-  return record.is_interrupted ? kFailed : kDone;
+  if (record.is_interrupted) return kFailed;
+  return record.audit.crossings + record.audit.passages > 0 ? kDiffers : kDone;
 }
 
 }  // namespace

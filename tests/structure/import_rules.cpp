@@ -16,11 +16,12 @@ struct Floor {
 };
 
 // STYLE.md's floors: a file includes lower floors or its own folder.
-constexpr std::array<Floor, 9> kFloors{{{"core", 1},
+constexpr std::array<Floor, 10> kFloors{{{"core", 1},
                                         {"geometry", 2},
                                         {"material", 2},
                                         {"body", 3},
                                         {"stress", 3},
+                                        {"audit", 4},
                                         {"collision", 4},
                                         {"fracture", 4},
                                         {"dynamics", 5},

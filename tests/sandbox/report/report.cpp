@@ -71,6 +71,8 @@ TEST_CASE("the report has the fields of its description, by name") {
     INFO(name);
     CHECK(json["breaks"][0].contains(name));
   }
+  for (const char* name : {"on", "steps", "crossings", "passages", "first_time"})
+    CHECK(json["audit"].contains(name));
   for (const char* name : {"most", "failsafe_steps", "frozen_share", "least_gap"})
     CHECK(json["contact"].contains(name));
   for (const char* name : {"frame", "simulate", "render", "encode", "stages", "phases"}) {
@@ -83,6 +85,26 @@ TEST_CASE("the report has the fields of its description, by name") {
   }
   CHECK(json["merged"]["count"] == 2);
   CHECK(json["time_ms"]["stages"]["motion"]["median"] == 2.5);
+}
+
+TEST_CASE("the audit's findings are in the report and in the closing words") {
+  RunRecord record = some_record();
+  CHECK(make_summary(record).find("audit") == std::string::npos);
+  CHECK(make_json(record)["audit"]["on"] == false);
+  record.has_audit = true;
+  record.audit.steps = 10;
+  record.audit.crossings = 1;
+  record.audit.first_time = 0.25;
+  record.audit.findings.push_back({3, 0.25, audit::FindingKind::crossing, 1, 2, 7, 8, false});
+  record.audit_names = {"cup", "plate"};
+  const auto json = make_json(record)["audit"];
+  CHECK(json["crossings"] == 1);
+  CHECK(json["first_time"] == 0.25);
+  CHECK(json["findings"][0]["b"] == "plate");
+  CHECK(json["findings"][0]["feature_b"] == 8);
+  const std::string text = make_summary(record);
+  CHECK(text.find("1 crossing, 0 passages, the first at 0.2500 s") != std::string::npos);
+  CHECK(text.find("cup (7) and plate (8)") != std::string::npos);
 }
 
 TEST_CASE("numbers that are not finite become null, not broken JSON") {

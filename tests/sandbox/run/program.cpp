@@ -95,6 +95,23 @@ TEST_CASE(
   CHECK(program(folder, "bench boats_10 --brief --report no/such/b.json").status == 3);
 }
 
+TEST_CASE("the option --audit checks every step and leaves the result as it is") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  REQUIRE(program(folder, "run good.toml --no-render --report plain.json").status == 0);
+  const Outcome outcome = program(folder, "run good.toml --no-render --audit --report r.json");
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.status == 0);
+  const auto plain = read_json(folder / "plain.json"), json = read_json(folder / "r.json");
+  CHECK(plain["audit"]["on"] == false);
+  CHECK(json["audit"]["on"] == true);
+  CHECK(json["audit"]["steps"] == json["steps"]);
+  CHECK(json["audit"]["crossings"] == 0);
+  CHECK(json["audit"]["passages"] == 0);
+  CHECK(json["audit"]["first_time"].is_null());
+  CHECK(json["state_hash"] == plain["state_hash"]);
+}
+
 TEST_CASE("the same scene gives the same bits with one thread and two") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);

@@ -1,0 +1,240 @@
+#include "engine/audit/audit.h"
+
+#include <algorithm>
+
+#include "engine/audit/pair_audit.h"
+#include "engine/core/parallel.h"
+
+namespace shatterbox::audit {
+namespace {
+
+using body::BodyId;
+using body::ShapeKind;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+bool is_same(const Pose& a, const Pose& b) {
+  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+}  // namespace
+
+const char* name_of(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::crossing:
+      return "triangles cross";
+    case FindingKind::vertex_passage:
+      return "vertex passed through triangle";
+    case FindingKind::triangle_passage:
+      return "triangle passed through by vertex";
+    case FindingKind::edge_passage:
+      return "edge passed through edge";
+    case FindingKind::sunk_in_plane:
+      return "vertex below plane";
+    case FindingKind::sunk_in_sphere:
+      return "triangle in sphere";
+    case FindingKind::sphere_passage:
+      return "triangle passed through sphere";
+  }
+  return "";
+}
+
+struct Audit::Actor {
+  BodyId id = 0;
+  bool is_dynamic = false, is_moving = false, is_new = false;
+  int group = -1;
+  ShapeKind kind = ShapeKind::shell;
+  double radius = 0.0;  // of a sphere, m
+  Pose start, end;
+  std::shared_ptr<const Surface> surface;
+  MovingSurface moving;
+  Bounds bounds;  // of the way; without end for planes
+};
+
+struct Audit::PairResult {
+  PairFindings findings;
+  bool crossed_at_start = false;
+};
+
+void Audit::begin_step(std::span<const body::Body> bodies) {
+  starts_.clear();
+  for (const body::Body& b : bodies) starts_.emplace_hint(starts_.end(), b.id, Start{b.shape, b.pose});
+}
+
+/// A piece starts where the body started that it is, or was, a part of: their material points are the same.
+Audit::Start Audit::start_of(const body::Body& body, std::span<const Birth> births) const {
+  BodyId id = body.id;
+  for (std::size_t i = 0; i <= births.size(); ++i) {
+    const auto found = starts_.find(id);
+    if (found != starts_.end()) {
+      const Start& start = found->second;
+      if (id == body.id) return start;
+      Pose pose = start.pose;
+      pose.translation = start.pose.apply(body.shape->material_from_body - start.shape->material_from_body);
+      return {body.shape, pose};
+    }
+    const auto birth =
+        std::find_if(births.begin(), births.end(), [id](const Birth& b) { return b.child == id; });
+    if (birth == births.end()) break;
+    id = birth->parent;
+  }
+  return {body.shape, body.pose};
+}
+
+std::shared_ptr<const Surface> Audit::surface_of(const std::shared_ptr<const body::Shape>& shape) {
+  auto& surface = surfaces_[shape.get()];  // the surface keeps its shape: no other can get this address
+  if (!surface) surface = make_surface(shape);
+  return surface;
+}
+
+std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
+                                             std::span<const Birth> births) {
+  std::vector<Actor> actors(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const body::Body& body = bodies[i];
+    Actor& actor = actors[i];
+    actor.id = body.id;
+    actor.is_dynamic = body.is_dynamic();
+    actor.group = body.group;
+    actor.kind = body.shape->kind;
+    actor.radius = actor.kind == ShapeKind::sphere ? body.shape->radius : 0.0;
+    actor.start = start_of(body, births).pose;
+    actor.end = body.pose;
+    actor.is_moving = !is_same(actor.start, actor.end);
+    const auto known = known_.find(body.id);
+    actor.is_new = known == known_.end() || known->second != body.shape;
+    actor.surface = surface_of(body.shape);
+  }
+  core::parallel_for(actors.size(), 4, [&](std::size_t i) {
+    Actor& actor = actors[i];
+    if (actor.kind == ShapeKind::plane) return;
+    if (actor.kind == ShapeKind::sphere) {
+      actor.moving.start = {actor.start.translation};
+      actor.moving.end = {actor.end.translation};
+      actor.bounds.include(actor.start.translation);
+      actor.bounds.include(actor.end.translation);
+      actor.bounds.low.array() -= actor.radius;
+      actor.bounds.high.array() += actor.radius;
+      return;
+    }
+    actor.moving = move_surface(*actor.surface, actor.start, actor.end);
+    if (!actor.moving.nodes.empty()) actor.bounds = actor.moving.nodes.front();
+  });
+  return actors;
+}
+
+/// Pairs with a dynamic body whose ways' boxes meet, in ascending order. Pairs in which nothing moved and
+/// nothing is new stand as they stood.
+std::vector<std::pair<int, int>> Audit::find_pairs(const std::vector<Actor>& actors) const {
+  std::vector<std::pair<int, int>> pairs;
+  const auto is_wanted = [&](const Actor& a, const Actor& b) {
+    if (!a.is_dynamic && !b.is_dynamic) return false;
+    if (!a.is_moving && !b.is_moving && !a.is_new && !b.is_new) return crossing_.count({a.id, b.id}) > 0;
+    if (a.kind == ShapeKind::plane || b.kind == ShapeKind::plane) return a.kind != b.kind;
+    return a.kind == ShapeKind::shell || b.kind == ShapeKind::shell;
+  };
+  std::vector<int> order;
+  for (int i = 0; i < static_cast<int>(actors.size()); ++i) {
+    if (actors[at(i)].kind != ShapeKind::plane) {
+      order.push_back(i);
+      continue;
+    }
+    for (int j = 0; j < static_cast<int>(actors.size()); ++j)
+      if (j != i && is_wanted(actors[at(std::min(i, j))], actors[at(std::max(i, j))]))
+        pairs.emplace_back(std::min(i, j), std::max(i, j));
+  }
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const double x = actors[at(a)].bounds.low.x(), y = actors[at(b)].bounds.low.x();
+    return x < y || (x == y && a < b);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Actor& a = actors[at(order[i])];
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Actor& b = actors[at(order[j])];
+      if (b.bounds.low.x() > a.bounds.high.x()) break;
+      if (!a.bounds.meets(b.bounds)) continue;
+      const auto [low, high] = std::minmax(order[i], order[j]);
+      if (is_wanted(actors[at(low)], actors[at(high)])) pairs.emplace_back(low, high);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> births, double time) {
+  ++report_.steps;
+  const std::vector<Actor> actors = make_actors(bodies, births);
+  const auto pairs = find_pairs(actors);
+  std::vector<PairResult> results(pairs.size());
+  core::parallel_for(pairs.size(), 4, [&](std::size_t i) {
+    const Actor* a = &actors[at(pairs[i].first)];
+    const Actor* b = &actors[at(pairs[i].second)];
+    const auto rank = [](const Actor& x) {
+      return x.kind == ShapeKind::plane ? 2 : x.kind == ShapeKind::sphere ? 1 : 0;
+    };
+    const bool is_flipped = rank(*a) > rank(*b);
+    if (is_flipped) std::swap(a, b);
+    const bool is_new = a->is_new || b->is_new;
+    PairResult& result = results[i];
+    if (b->kind == ShapeKind::plane) {
+      if (is_new) result.crossed_at_start = is_below_plane(a->moving.start, a->radius, b->end);
+      audit_plane(a->moving, a->radius, b->end, result.findings);
+    } else if (b->kind == ShapeKind::sphere) {
+      if (is_new)
+        result.crossed_at_start =
+            crosses_sphere_at_start(*a->surface, a->moving, b->start.translation, b->radius);
+      audit_sphere(*a->surface, a->moving, b->start.translation, b->end.translation, b->radius,
+                   result.findings);
+    } else {
+      if (is_new) result.crossed_at_start = cross_at_start(*a->surface, a->moving, *b->surface, b->moving);
+      audit_surfaces(*a->surface, a->moving, *b->surface, b->moving, result.findings);
+    }
+    for (Finding& finding : result.findings.list) {
+      finding.a = a->id;
+      finding.b = b->id;
+    }
+  });
+  auto crossing_before = std::move(crossing_);
+  crossing_.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::pair<BodyId, BodyId> ids{actors[at(pairs[i].first)].id, actors[at(pairs[i].second)].id};
+    const auto before = crossing_before.find(ids);
+    const bool was_exempt = before != crossing_before.end() && before->second;
+    const bool is_exempt = was_exempt || results[i].crossed_at_start;
+    const int group = actors[at(pairs[i].first)].group;
+    const bool is_one_group = group >= 0 && group == actors[at(pairs[i].second)].group;
+    if (is_exempt && !was_exempt && !is_one_group) ++report_.exempt_pairs;
+    if (results[i].findings.has_crossing) crossing_[ids] = is_exempt;
+    if (!is_one_group) report_.unsettled += results[i].findings.unsettled;
+    book(results[i].findings.list, is_exempt, is_one_group, time);
+  }
+  known_.clear();
+  for (const body::Body& b : bodies) known_.emplace_hint(known_.end(), b.id, b.shape);
+  std::erase_if(surfaces_, [](const auto& entry) { return entry.second->shape.use_count() == 1; });
+}
+
+void Audit::book(std::vector<Finding>& found, bool is_exempt, bool is_one_group, double time) {
+  for (Finding& finding : found) {
+    finding.step = report_.steps;
+    finding.time = time;
+    finding.is_exempt = is_exempt;
+    if (!is_one_group && report_.findings.size() < kMostFindings) report_.findings.push_back(finding);
+    const bool is_passage =
+        finding.kind == FindingKind::vertex_passage || finding.kind == FindingKind::triangle_passage ||
+        finding.kind == FindingKind::edge_passage || finding.kind == FindingKind::sphere_passage;
+    if (is_one_group) {
+      ++(is_passage ? report_.group_passages : report_.group_crossings);
+      continue;
+    }
+    if (is_exempt) {
+      ++(is_passage ? report_.exempt_passages : report_.exempt_crossings);
+      continue;
+    }
+    ++(is_passage ? report_.passages : report_.crossings);
+    if (report_.first_time < 0.0) report_.first_time = time;
+  }
+}
+
+}  // namespace shatterbox::audit

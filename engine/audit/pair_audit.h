@@ -1,0 +1,37 @@
+// The audit of one pair of bodies in one step: all features of one against those of the other.
+#pragma once
+
+#include <vector>
+
+#include "engine/audit/audit.h"
+#include "engine/audit/surface.h"
+
+namespace shatterbox::audit {
+
+struct PairFindings {
+  std::vector<Finding> list;  // step, time and bodies still to be filled in
+  long unsettled = 0;
+  bool has_crossing = false;  // at the end of the step
+
+  void add(FindingKind kind, int feature_a, int feature_b);
+};
+
+/// Two bodies made of triangles.
+void audit_surfaces(const Surface& a, const MovingSurface& moving_a, const Surface& b,
+                    const MovingSurface& moving_b, PairFindings& findings);
+
+/// True if they cross at the start of the step.
+bool cross_at_start(const Surface& a, const MovingSurface& moving_a, const Surface& b,
+                    const MovingSurface& moving_b);
+
+/// Vertices with a radius against the half space y < 0 of `plane`. The plane is b.
+void audit_plane(const MovingSurface& moving, double radius, const Pose& plane, PairFindings& findings);
+bool is_below_plane(const std::vector<Vec3>& points, double radius, const Pose& plane);
+
+/// Triangles against a ball of `radius` whose centre moves along a straight line. The sphere is b.
+void audit_sphere(const Surface& a, const MovingSurface& moving_a, const Vec3& centre_start,
+                  const Vec3& centre_end, double radius, PairFindings& findings);
+bool crosses_sphere_at_start(const Surface& a, const MovingSurface& moving_a, const Vec3& centre,
+                             double radius);
+
+}  // namespace shatterbox::audit

@@ -1,0 +1,123 @@
+#include "engine/audit/surface.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace shatterbox::audit {
+namespace {
+
+constexpr int kLeafSize = 4;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+void add_box(const Vec3& half, Surface& surface) {
+  for (int corner = 0; corner < 8; ++corner)
+    surface.vertices.push_back(half.cwiseProduct(
+        Vec3((corner & 1) ? 1.0 : -1.0, (corner & 2) ? 1.0 : -1.0, (corner & 4) ? 1.0 : -1.0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = 1 << ((axis + 1) % 3), v = 1 << ((axis + 2) % 3);
+    for (const int base : {0, 1 << axis}) {  // the sides at the lower and the upper end of the axis
+      const int a = base, b = base + u, c = base + u + v, d = base + v;
+      if (base == 0) {
+        surface.triangles.push_back({a, c, b});
+        surface.triangles.push_back({a, d, c});
+      } else {
+        surface.triangles.push_back({a, b, c});
+        surface.triangles.push_back({a, c, d});
+      }
+    }
+  }
+}
+
+void add_owners(Surface& surface) {
+  std::vector<bool> vertex_is_owned(surface.vertices.size(), false);
+  std::vector<bool> edge_is_owned(surface.topology.edges.size(), false);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    std::array<bool, 3> corners{}, edges{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto vertex = at(surface.triangles[t][i]), edge = at(surface.topology.triangle_edges[t][i]);
+      corners[i] = !vertex_is_owned[vertex];
+      edges[i] = !edge_is_owned[edge];
+      vertex_is_owned[vertex] = edge_is_owned[edge] = true;
+    }
+    surface.owns_corner.push_back(corners);
+    surface.owns_edge.push_back(edges);
+  }
+}
+
+void add_tree(Surface& surface) {
+  std::vector<Vec3> centres;
+  for (const auto& t : surface.triangles)
+    centres.push_back(surface.vertices[at(t[0])] + surface.vertices[at(t[1])] + surface.vertices[at(t[2])]);
+  surface.order.resize(surface.triangles.size());
+  std::iota(surface.order.begin(), surface.order.end(), 0);
+  if (surface.order.empty()) return;
+  surface.nodes.push_back({0, static_cast<int>(surface.order.size()), -1, -1});
+  for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
+    const Surface::Node node = surface.nodes[i];
+    if (node.end - node.begin <= kLeafSize) continue;
+    Bounds bounds;
+    for (int k = node.begin; k < node.end; ++k) bounds.include(centres[at(surface.order[at(k)])]);
+    int axis = 0;
+    (bounds.high - bounds.low).maxCoeff(&axis);
+    const int middle = (node.begin + node.end) / 2;
+    const auto first = surface.order.begin();
+    std::nth_element(first + node.begin, first + middle, first + node.end, [&](int a, int b) {
+      return centres[at(a)][axis] < centres[at(b)][axis] ||
+             (centres[at(a)][axis] == centres[at(b)][axis] && a < b);
+    });
+    surface.nodes[i].left = static_cast<int>(surface.nodes.size());
+    surface.nodes[i].right = surface.nodes[i].left + 1;
+    surface.nodes.push_back({node.begin, middle, -1, -1});
+    surface.nodes.push_back({middle, node.end, -1, -1});
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Surface> make_surface(const std::shared_ptr<const body::Shape>& shape) {
+  auto surface = std::make_shared<Surface>();
+  surface->shape = shape;
+  if (shape->kind == body::ShapeKind::box) {
+    add_box(shape->half_extent, *surface);
+  } else if (shape->kind == body::ShapeKind::shell) {
+    surface->vertices = shape->surface.positions;
+    surface->triangles = shape->surface.triangles;
+  }
+  surface->topology = geometry::build_edge_topology(surface->triangles);
+  add_owners(*surface);
+  add_tree(*surface);
+  return surface;
+}
+
+MovingSurface move_surface(const Surface& surface, const Pose& start, const Pose& end) {
+  MovingSurface moving;
+  moving.start.reserve(surface.vertices.size());
+  moving.end.reserve(surface.vertices.size());
+  for (const Vec3& v : surface.vertices) {
+    moving.start.push_back(start.apply(v));
+    moving.end.push_back(end.apply(v));
+  }
+  moving.triangles.resize(surface.triangles.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (const int v : surface.triangles[t]) {
+      moving.triangles[t].include(moving.start[at(v)]);
+      moving.triangles[t].include(moving.end[at(v)]);
+    }
+  moving.nodes.resize(surface.nodes.size());
+  for (std::size_t i = surface.nodes.size(); i-- > 0;) {
+    const Surface::Node& node = surface.nodes[i];
+    if (node.left >= 0) {
+      moving.nodes[i].include(moving.nodes[at(node.left)]);
+      moving.nodes[i].include(moving.nodes[at(node.right)]);
+      continue;
+    }
+    for (int k = node.begin; k < node.end; ++k)
+      moving.nodes[i].include(moving.triangles[at(surface.order[at(k)])]);
+  }
+  return moving;
+}
+
+}  // namespace shatterbox::audit

@@ -1,0 +1,48 @@
+#include "sandbox/run/inspector.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string name_of(const world::World& world, body::BodyId id) {
+  const auto bodies = world.bodies();
+  const auto found = std::lower_bound(bodies.begin(), bodies.end(), id,
+                                      [](const body::Body& b, body::BodyId i) { return b.id < i; });
+  return found != bodies.end() && found->id == id ? found->name : std::string();
+}
+
+}  // namespace
+
+Inspector::Inspector(bool is_on, report::RunRecord& record) : record_(record) {
+  record_.has_audit = is_on;
+}
+
+void Inspector::begin_step(const world::World& world) {
+  if (!record_.has_audit) return;
+  const auto start = Clock::now();
+  audit_.begin_step(world.bodies());
+  record_.audit_time += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void Inspector::end_step(const world::World& world) {
+  if (!record_.has_audit) return;
+  const auto start = Clock::now();
+  std::vector<audit::Birth> births;
+  const auto& breaks = world.report().breaks;
+  for (; breaks_ < breaks.size(); ++breaks_)
+    for (const body::BodyId child : breaks[breaks_].born) births.push_back({child, breaks[breaks_].id});
+  audit_.end_step(world.bodies(), births, world.time());
+  record_.audit = audit_.report();
+  for (std::size_t i = record_.audit_names.size() / 2; i < record_.audit.findings.size(); ++i) {
+    record_.audit_names.push_back(name_of(world, record_.audit.findings[i].a));
+    record_.audit_names.push_back(name_of(world, record_.audit.findings[i].b));
+  }
+  record_.audit_time += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,129 @@
+// The audit of solids, births, exempt pairs and bodies at rest.
+#include "engine/audit/audit.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/engine/audit/plates.h"
+
+using namespace shatterbox;
+using namespace shatterbox::audit;
+using body::Body;
+
+namespace {
+
+Body make_solid(body::BodyId id, body::ShapeKind kind, double size) {
+  auto shape = std::make_shared<body::Shape>();
+  shape->kind = kind;
+  shape->radius = size;
+  shape->half_extent = Vec3::Constant(size);
+  Body body = test::make_dynamic(id, shape);
+  if (kind == body::ShapeKind::plane) body.inverse_mass = 0.0;
+  return body;
+}
+
+const std::vector<Vec3> kPlate{Vec3(-4, 0, -4), Vec3(4, 0, -4), Vec3(0, 0, 4)};
+
+/// One step in which body 1 goes from `from` to `to`, after one at rest.
+AuditReport move(Body moving, const Body& other, const Vec3& from, const Vec3& to) {
+  Audit audit;
+  moving.pose.translation = from;
+  std::vector<Body> bodies{moving, other};
+  audit.begin_step(bodies);
+  audit.end_step(bodies, {}, 0.1);
+  audit.begin_step(bodies);
+  bodies[0].pose.translation = to;
+  audit.end_step(bodies, {}, 0.2);
+  return audit.report();
+}
+
+}  // namespace
+
+TEST_CASE("audit: what sinks into a plane is counted, what lies on it is not") {
+  const Body plane = make_solid(2, body::ShapeKind::plane, 0.0);
+  const Body plate = test::make_plate(1, kPlate);
+  CHECK(move(plate, plane, Vec3(0, 1, 0), Vec3(0, 0, 0)).crossings == 0);
+  const AuditReport sunk = move(plate, plane, Vec3(0, 1, 0), Vec3(0, -1e-9, 0));
+  CHECK(sunk.crossings == 3);
+  CHECK(sunk.first_time == 0.2);
+  CHECK(move(plate, plane, Vec3(0, -1, 0), Vec3(0, -2, 0)).exempt_crossings == 6);
+  const Body ball = make_solid(1, body::ShapeKind::sphere, 0.5),
+             crate = make_solid(1, body::ShapeKind::box, 0.5);
+  for (const Body& solid : {ball, crate}) {
+    CHECK(move(solid, plane, Vec3(0, 1, 0), Vec3(3, 0.5, 0)).crossings == 0);
+    CHECK(move(solid, plane, Vec3(0, 1, 0), Vec3(3, 0.5 - 1e-9, 0)).crossings > 0);
+  }
+}
+
+TEST_CASE("audit: a sphere may touch a triangle, not reach through it, nor pass within the step") {
+  const Body ball = make_solid(1, body::ShapeKind::sphere, 0.5), plate = test::make_plate(2, kPlate);
+  const AuditReport touch = move(ball, plate, Vec3(0, 1, 0), Vec3(1, 0.5, 0));
+  CHECK(touch.crossings + touch.passages == 0);
+  const AuditReport reach = move(ball, plate, Vec3(0, 1, 0), Vec3(1, 0.49, 0));
+  CHECK(reach.crossings == 1);
+  CHECK(reach.passages == 0);
+  CHECK(move(ball, plate, Vec3(0, 1, 0), Vec3(0, -1, 0)).passages == 1);        // through the inside
+  CHECK(move(ball, plate, Vec3(0, 1, -4.4), Vec3(0, -1, -4.4)).passages == 1);  // past the rim, but too near
+  CHECK(move(ball, plate, Vec3(0, 1, -4.6), Vec3(0, -1, -4.6)).passages == 0);
+  CHECK(move(test::make_plate(1, kPlate), make_solid(2, body::ShapeKind::sphere, 0.5), Vec3(0, -1, 0),
+             Vec3(0, 1, 0))
+            .passages == 1);
+}
+
+TEST_CASE("audit: a plate through a box, a box through a plate") {
+  const Body crate = make_solid(1, body::ShapeKind::box, 0.5), plate = test::make_plate(2, kPlate);
+  CHECK(move(crate, plate, Vec3(0, 1, 0), Vec3(0, 0.5, 0.25)).crossings == 2);  // its base lies in the plate
+  CHECK(move(crate, plate, Vec3(0, 1, 0), Vec3(0, 0.25, 0)).crossings == 8);
+  CHECK(move(crate, plate, Vec3(0, 1, 0), Vec3(0, -1, 0)).passages >= 8);
+  CHECK(move(crate, plate, Vec3(0, 1, 0), Vec3(0, 0.500001, 0)).crossings == 0);
+}
+
+TEST_CASE("audit: bodies of one group are counted apart, fixed pairs are not looked at") {
+  Body a = test::make_plate(1, kPlate), b = test::make_plate(2, kPlate);
+  a.group = b.group = 3;
+  const AuditReport one_group = move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0));
+  CHECK(one_group.passages == 0);
+  CHECK(one_group.group_passages > 0);
+  b.group = 4;
+  CHECK(move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0)).passages > 0);
+  a.inverse_mass = b.inverse_mass = 0.0;
+  CHECK(move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0)).passages == 0);
+}
+
+TEST_CASE("audit: a piece starts where its parent did, and what crosses at the birth is exempt") {
+  const Body parent = test::make_plate(1, kPlate),
+             other = test::make_plate(2, {Vec3(0, -2, -1), Vec3(0, -2, 1), Vec3(0, -1, 0)});
+  for (const bool crosses_at_birth : {false, true}) {
+    Audit audit;
+    std::vector<Body> bodies{parent, other};
+    if (crosses_at_birth) bodies[1].pose.translation.y() = 1.5;
+    audit.begin_step(bodies);
+    Body piece = test::make_plate(4, kPlate);
+    piece.pose.translation = Vec3(0, -3, 0);  // wholly beyond
+    bodies = {bodies[1], piece};
+    const std::vector<Birth> births{{3, 1}, {4, 3}};
+    audit.end_step(bodies, births, 0.1);
+    CHECK(audit.report().passages == (crosses_at_birth ? 0 : 3));
+    CHECK(audit.report().exempt_pairs == (crosses_at_birth ? 1 : 0));
+    CHECK(audit.report().exempt_passages == (crosses_at_birth ? 2 : 0));
+    // What has come apart is no longer exempt.
+    audit.begin_step(bodies);
+    bodies[1].pose.translation = Vec3(0, 3, 0);
+    audit.end_step(bodies, births, 0.2);
+    CHECK(audit.report().passages >= 3);
+  }
+}
+
+TEST_CASE("audit: a crossing that does not move is counted in every step") {
+  Audit audit;
+  std::vector<Body> bodies{test::make_plate(1, kPlate),
+                           test::make_plate(2, {Vec3(0, 1, 0), Vec3(0.5, 2, 0), Vec3(0, 2, 1)})};
+  for (int step = 0; step < 5; ++step) {
+    audit.begin_step(bodies);
+    if (step == 1) bodies[1].pose.translation.y() = -1.5;
+    audit.end_step(bodies, {}, step);
+  }
+  CHECK(audit.report().steps == 5);
+  CHECK(audit.report().crossings == 4);
+  CHECK(audit.report().passages == 1);
+  CHECK(audit.report().first_time == 1.0);
+}
