@@ -19,7 +19,6 @@ Size at(int i) {
 
 constexpr double kLeastDistance = 0.75;  // of seeds, share of the local cell size
 constexpr double kDartsPerCell = 8.0;    // for the smallest cells
-constexpr double kSmallest = 1.0;        // cell size inside the patch, share of that at its edge
 constexpr double kVertexMargin = 0.05;   // no facet crosses an edge nearer to a vertex, share of the edge
 constexpr double kLostArea = 1e-14;      // of an element: parts below are nothing but rounding
 constexpr double kMargin = 2.0;     // seeds beyond the core that bound its cells, in cell sizes at its rim
@@ -31,7 +30,7 @@ struct Seed {
 };
 
 double size_at(const CoreSetup& setup, double distance) {
-  return setup.cell_size * std::max(kSmallest, distance / setup.patch_radius);
+  return setup.cell_size * std::max(1.0, distance / setup.patch_radius);
 }
 
 /// How far from the centre seeds are needed, m.
@@ -85,9 +84,8 @@ std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>&
   part.mesh.positions = cutter.elements().mesh.positions;
   for (const int element : elements)
     part.mesh.triangles.push_back(cutter.elements().mesh.triangles[at(element)]);
-  const double smallest = kSmallest * setup.cell_size;
   std::vector<SurfacePoint> darts =
-      scatter_on_surface(part, kDartsPerCell / (smallest * smallest), setup.seed);
+      scatter_on_surface(part, kDartsPerCell / (setup.cell_size * setup.cell_size), setup.seed);
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });

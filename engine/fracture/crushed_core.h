@@ -15,9 +15,8 @@ namespace shatterbox::fracture {
 struct CoreSetup {
   Vec3 centre = Vec3::Zero();
   double patch_radius = 0.0;  // m
-  double cell_size =
-      0.0;              // m, at the edge of the patch; half of it inside, growing with the distance outside
-  double radius = 0.0;  // m: cells whose seed is nearer to the centre than this are broken out whole
+  double cell_size = 0.0;     // m, inside the patch; it grows with the distance outside
+  double radius = 0.0;        // m: cells whose seed is nearer to the centre than this are broken out whole
   double most_length = -1.0;  // m of crack that the energy allows; below zero: no guard
   int crack = 0;              // number of the core as one crack
   int generation = 0;

@@ -69,10 +69,10 @@ struct ShellSubject {
 struct FractureSettings {
   int most_generations = 4;   // solves of the cracking body; 2 for speed
   double waviness = 0.15;     // rad, of crack paths
-  double core_spacing = 4.0;  // crushed core: cell size at the hit, in thicknesses; 0: no core
+  double core_spacing = 4.0;  // crushed core: size of its cells at the hit, in thicknesses; 0: no core
   double least_width = 0.0;   // m, what contact can resolve; cracks keep wider pieces than that
   bool has_energy_guard = true;
-  double patch_radius = 0.0;  // m; 0: max(Hertz radius, thickness, 0.05 body size, 1.5 element sizes)
+  double patch_radius = 0.0;  // m; 0: max(Hertz radius, thickness, 0.075 body size, 1.5 element sizes)
 };
 
 enum class Outcome : std::uint8_t { held, broke, not_evaluated };

@@ -1,5 +1,6 @@
 // What must be true of each scene: it breaks as its first line says, keeps mass and momenta, and holds when
 // spared.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -78,6 +79,27 @@ TEST_CASE("bowl: breaks into a few large pieces, a low drop is held") {
   check_breaks(broken);
   const auto held = play(folder, "bowl --seconds 1 --set bowl.position=[0,0.09,0]");
   CHECK(held["breaks"].empty());
+}
+
+TEST_CASE("how near a hit comes to breaking does not depend on the step") {
+  const Folder folder;
+  const std::vector<std::string> hits{
+      "ornament --seconds 0.2 --set ornament.position=[0,0.15,0]",
+      "window --seconds 0.6 --set throw.from=[0.06,0.05,0.3] --set throw.speed=1.7",
+      "bowl --seconds 0.25 --set bowl.position=[0,0.11,0]"};
+  for (const std::string& hit : hits) {
+    double least = 1e9, most = 0.0;
+    for (const char* rate : {"120", "240", "480", "960"}) {
+      const auto report = play(folder, hit + " --set scene.steps_per_second=" + rate);
+      CHECK(report["breaks"].empty());
+      least = std::min(least, worst_ratio(report));
+      most = std::max(most, worst_ratio(report));
+    }
+    INFO(hit << ": " << least << " to " << most);
+    CHECK(least > 0.3);
+    // The ratio goes as the speed, so the height that breaks moves by twice as much.
+    CHECK(most < 1.025 * least);
+  }
 }
 
 TEST_CASE("a broken scene gives the same bits with one thread and two") {

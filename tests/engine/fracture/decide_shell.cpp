@@ -2,6 +2,7 @@
 #include "engine/fracture/decide_shell.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "engine/core/elementary.h"
 #include "engine/fracture/split_shell.h"
@@ -99,6 +100,27 @@ TEST_CASE("a slow ball does not break the pane, and the verdict says how near it
   const auto tap = fracture::decide_shell(subject, test::steel_ball(1e-4));
   CHECK(tap.verdict.outcome == fracture::Outcome::held);
   CHECK(tap.generations == 0);
+}
+
+TEST_CASE("the speed that breaks a held pane grows as the root of its thickness") {
+  // Compliance ~ t^-3, so T ~ t^-3/2; peak force F = V sqrt(m / C) ~ V t^3/2; bending stress ~ F / t^2 ~ V
+  // t^-1/2.
+  std::vector<double> log_thickness, log_speed, log_duration;
+  for (const double share : {0.7, 1.0, 1.4}) {
+    auto subject = test::make_window(1);
+    subject.thickness *= share;
+    subject.systems = nullptr;
+    const auto held = fracture::decide_shell(subject, test::steel_ball(1.0));
+    REQUIRE(held.verdict.outcome == fracture::Outcome::held);
+    REQUIRE(held.generations > 0);
+    log_thickness.push_back(std::log(subject.thickness));
+    log_speed.push_back(-std::log(held.verdict.ratio));
+    log_duration.push_back(std::log(held.verdict.duration));
+  }
+  const double span = log_thickness[2] - log_thickness[0];
+  INFO((log_speed[2] - log_speed[0]) / span << " and " << (log_duration[2] - log_duration[0]) / span);
+  CHECK((log_speed[2] - log_speed[0]) / span == Approx(0.5).margin(0.1));
+  CHECK((log_duration[2] - log_duration[0]) / span == Approx(-1.5).margin(0.15));
 }
 
 TEST_CASE("the same seed gives the same bits") {
