@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/elementary.h"
+#include "sandbox/script/room.h"
 
 namespace shatterbox::sandbox::script {
 
@@ -93,6 +94,11 @@ void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& fau
           fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, description.error()));
       continue;
     }
+    if (const std::string obstacle = find_obstacle(built.world, description.value()); !obstacle.empty()) {
+      faults.push_back(fmt::format("event \"{}\" at {:g} s did nothing: {} is where its body would come in",
+                                   event.name, event.at, obstacle));
+      continue;
+    }
     const int count = ++throws_[static_cast<std::size_t>(event.body)];
     if (count > 1) description.value().name += fmt::format("[{}]", count);
     const auto id = built.world.add_body(description.value());
@@ -106,12 +112,22 @@ void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& fau
 }
 
 void Script::bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults) {
-  for (; next_copy_ < copies_.size() && copies_[next_copy_].due <= built.world.steps(); ++next_copy_) {
-    const LateCopy& late = copies_[next_copy_];
+  for (; next_copy_ < copies_.size() && copies_[next_copy_].due <= built.world.steps(); ++next_copy_)
+    waiting_.push_back(copies_[next_copy_]);
+  std::vector<LateCopy> still_waiting;
+  for (LateCopy& late : waiting_) {
     const auto entry = static_cast<std::size_t>(late.entry);
     world::BodyDescription description = built.plan.bodies[entry].description;
     description.name = scene::copy_name(scene_.bodies[entry], late.copy);
     description.pose = late.pose;
+    if (const std::string obstacle = find_obstacle(built.world, description); !obstacle.empty()) {
+      if (!late.was_told)
+        faults.push_back(fmt::format("{} waits at {:g} s: {} is where it would come in", description.name,
+                                     built.world.time(), obstacle));
+      late.was_told = true;
+      still_waiting.push_back(late);
+      continue;
+    }
     const auto id = built.world.add_body(description);
     if (id) {
       built.origins[id.value()] = {late.entry, late.copy};
@@ -119,6 +135,7 @@ void Script::bring_copies(scene::BuiltScene& built, std::vector<std::string>& fa
       faults.push_back(fmt::format("{} could not come in: {}", description.name, id.error()));
     }
   }
+  waiting_ = std::move(still_waiting);
 }
 
 std::vector<std::string> Script::play(scene::BuiltScene& built) {

@@ -18,10 +18,13 @@ class Script {
   explicit Script(const scene::SceneDescription& scene);
 
   /// Brings in the copies and plays the events that are due before the coming step (each lands on the first
-  /// step border at or after its time). Returns what could not be done, in sentences.
+  /// step border at or after its time). A copy for which there is no room waits until there is; an event is
+  /// refused. Returns what could not be done, in sentences.
   std::vector<std::string> play(scene::BuiltScene& built);
 
-  bool is_over() const { return next_ == scene_.events.size() && next_copy_ == copies_.size(); }
+  bool is_over() const {
+    return next_ == scene_.events.size() && next_copy_ == copies_.size() && waiting_.empty();
+  }
 
  private:
   /// A copy of a body that comes in later than the first.
@@ -29,13 +32,15 @@ class Script {
     long due = 0;  // step
     int entry = 0, copy = 0;
     Pose pose;
+    bool was_told = false;  // that it waits for room
   };
 
   void bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults);
   void play_events(scene::BuiltScene& built, std::vector<std::string>& faults);
 
   const scene::SceneDescription& scene_;
-  std::vector<LateCopy> copies_;  // ascending in time
+  std::vector<LateCopy> copies_;   // ascending in time
+  std::vector<LateCopy> waiting_;  // due, but something is in the way
   std::size_t next_ = 0, next_copy_ = 0;
   std::vector<int> throws_;  // per [[body]]: how often it was brought in
 };

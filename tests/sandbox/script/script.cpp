@@ -81,3 +81,32 @@ TEST_CASE("copies with a time between them come in one after another, named and 
   CHECK(built->world.bodies()[2].pose.translation == Vec3(2, 0, 0));
   CHECK(built->origins.at(built->world.bodies()[2].id).copy == 2);
 }
+
+TEST_CASE("a copy waits until there is room for it, an event into another body is refused, both in words") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"drops\"\nkind = \"shell\"\nshape = \"sphere\"\nradius "
+      "= 0.1\n"
+      "edge_length = 0.05\nbreakable = false\nvelocity = [1, 0, 0]\nrepeat = {count = 2, every = 0.1}\n"
+      "[[event]]\nname = \"late\"\nat = 0.12\ndo = \"drop\"\nbody = {kind = \"box\", size = 0.1}\n"
+      "position = [0.15, 0, 0]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  script::Script script(*reading.scene);
+  std::vector<std::string> words;
+  int second_step = -1;
+  for (int step = 0; step < 60; ++step) {
+    for (std::string& word : script.play(*built)) words.push_back(word);
+    if (second_step < 0 && built->world.bodies().size() == 2) second_step = step;
+    built->world.step();
+  }
+  // Two spheres of 0.1 m at 1 m/s: clear of each other after 0.2 s, about step 48 (their meshes are inside).
+  CHECK(second_step > 40);
+  CHECK(second_step <= 49);
+  REQUIRE(words.size() == 2);
+  CHECK(words[0].find("drops[2] waits at 0.1 s: drops[1]") == 0);
+  CHECK(words[1].find("\"late\"") != std::string::npos);
+  CHECK(script.is_over());
+}
