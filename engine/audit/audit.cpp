@@ -56,6 +56,7 @@ struct Audit::Actor {
 struct Audit::PairResult {
   PairFindings findings;
   bool crossed_at_start = false;
+  bool is_one_group = false;
 };
 
 void Audit::begin_step(std::span<const body::Body> bodies) {
@@ -178,6 +179,13 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
     if (is_flipped) std::swap(a, b);
     const bool is_new = a->is_new || b->is_new;
     PairResult& result = results[i];
+    if (a->group >= 0 && a->group == b->group) {
+      result.is_one_group = true;
+      result.findings.has_crossing =
+          b->surface->triangles.size() > 0 &&
+          do_cross(*a->surface, a->moving, *b->surface, b->moving, &MovingSurface::end);
+      return;
+    }
     if (b->kind == ShapeKind::plane) {
       if (is_new) result.crossed_at_start = is_below_plane(a->moving.start, a->radius, b->end);
       audit_plane(a->moving, a->radius, b->end, result.findings);
@@ -188,7 +196,9 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
       audit_sphere(*a->surface, a->moving, b->start.translation, b->end.translation, b->radius,
                    result.findings);
     } else {
-      if (is_new) result.crossed_at_start = cross_at_start(*a->surface, a->moving, *b->surface, b->moving);
+      if (is_new)
+        result.crossed_at_start =
+            do_cross(*a->surface, a->moving, *b->surface, b->moving, &MovingSurface::start);
       audit_surfaces(*a->surface, a->moving, *b->surface, b->moving, result.findings);
     }
     for (Finding& finding : result.findings.list) {
@@ -196,6 +206,7 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
       finding.b = b->id;
     }
   });
+  long group_pairs = 0;
   auto crossing_before = std::move(crossing_);
   crossing_.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -203,31 +214,27 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
     const auto before = crossing_before.find(ids);
     const bool was_exempt = before != crossing_before.end() && before->second;
     const bool is_exempt = was_exempt || results[i].crossed_at_start;
-    const int group = actors[at(pairs[i].first)].group;
-    const bool is_one_group = group >= 0 && group == actors[at(pairs[i].second)].group;
-    if (is_exempt && !was_exempt && !is_one_group) ++report_.exempt_pairs;
+    if (is_exempt && !was_exempt) ++report_.exempt_pairs;
     if (results[i].findings.has_crossing) crossing_[ids] = is_exempt;
-    if (!is_one_group) report_.unsettled += results[i].findings.unsettled;
-    book(results[i].findings.list, is_exempt, is_one_group, time);
+    if (results[i].is_one_group && results[i].findings.has_crossing) ++group_pairs;
+    report_.unsettled += results[i].findings.unsettled;
+    book(results[i].findings.list, is_exempt, time);
   }
+  report_.group_pairs = std::max(report_.group_pairs, group_pairs);
   known_.clear();
   for (const body::Body& b : bodies) known_.emplace_hint(known_.end(), b.id, b.shape);
   std::erase_if(surfaces_, [](const auto& entry) { return entry.second->shape.use_count() == 1; });
 }
 
-void Audit::book(std::vector<Finding>& found, bool is_exempt, bool is_one_group, double time) {
+void Audit::book(std::vector<Finding>& found, bool is_exempt, double time) {
   for (Finding& finding : found) {
     finding.step = report_.steps;
     finding.time = time;
     finding.is_exempt = is_exempt;
-    if (!is_one_group && report_.findings.size() < kMostFindings) report_.findings.push_back(finding);
+    if (report_.findings.size() < kMostFindings) report_.findings.push_back(finding);
     const bool is_passage =
         finding.kind == FindingKind::vertex_passage || finding.kind == FindingKind::triangle_passage ||
         finding.kind == FindingKind::edge_passage || finding.kind == FindingKind::sphere_passage;
-    if (is_one_group) {
-      ++(is_passage ? report_.group_passages : report_.group_crossings);
-      continue;
-    }
     if (is_exempt) {
       ++(is_passage ? report_.exempt_passages : report_.exempt_crossings);
       continue;

@@ -47,9 +47,8 @@ struct AuditReport {
   // Apart: of pairs that crossed when the audit first saw them (at the start, or at the birth of one), until
   // they have come apart.
   long exempt_pairs = 0, exempt_crossings = 0, exempt_passages = 0;
-  // Apart: of bodies of one group, which are meant to pass each other.
-  long group_crossings = 0, group_passages = 0;
-  long unsettled = 0;  // touched, or missed each other, by no more than rounding: not counted above
+  long group_pairs = 0;  // apart: pairs of one group, meant to pass each other, that cross: most at once
+  long unsettled = 0;    // touched, or missed each other, by no more than rounding: not counted above
   std::vector<Finding> findings;  // the first kMostFindings, exempt ones included
 };
 
@@ -83,7 +82,7 @@ class Audit {
   Start start_of(const body::Body& body, std::span<const Birth> births) const;
   std::shared_ptr<const Surface> surface_of(const std::shared_ptr<const body::Shape>& shape);
   std::vector<std::pair<int, int>> find_pairs(const std::vector<Actor>& actors) const;
-  void book(std::vector<Finding>& found, bool is_exempt, bool is_one_group, double time);
+  void book(std::vector<Finding>& found, bool is_exempt, double time);
 
   std::map<body::BodyId, Start> starts_;
   std::map<body::BodyId, std::shared_ptr<const body::Shape>> known_;  // seen at the end of the last step

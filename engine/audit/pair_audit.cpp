@@ -28,7 +28,7 @@ Bounds bounds_of(const Corners& corners) {
   return bounds;
 }
 
-/// Calls visit(triangle of a, triangle of b) for all whose ways' boxes meet.
+/// Calls visit(triangle of a, triangle of b) for all whose ways' boxes meet, until one returns false.
 template <class Visit>
 void for_each_near_pair(const Surface& a, const MovingSurface& moving_a, const Surface& b,
                         const MovingSurface& moving_b, const Visit& visit) {
@@ -46,7 +46,7 @@ void for_each_near_pair(const Surface& a, const MovingSurface& moving_a, const S
         if (!moving_a.triangles[at(s)].meets(box_b)) continue;
         for (int l = node_b.begin; l < node_b.end; ++l) {
           const int t = b.order[at(l)];
-          if (moving_a.triangles[at(s)].meets(moving_b.triangles[at(t)])) visit(s, t);
+          if (moving_a.triangles[at(s)].meets(moving_b.triangles[at(t)]) && !visit(s, t)) return;
         }
       }
     } else if (node_b.left < 0 ||
@@ -212,14 +212,16 @@ void audit_surfaces(const Surface& a, const MovingSurface& moving_a, const Surfa
     pass_vertices(a, moving_a, s, b, moving_b, t, false, findings);
     pass_vertices(b, moving_b, t, a, moving_a, s, true, findings);
     pass_edges(a, moving_a, s, b, moving_b, t, findings);
+    return true;
   });
 }
 
-bool cross_at_start(const Surface& a, const MovingSurface& moving_a, const Surface& b,
-                    const MovingSurface& moving_b) {
+bool do_cross(const Surface& a, const MovingSurface& moving_a, const Surface& b,
+              const MovingSurface& moving_b, std::vector<Vec3> MovingSurface::*when) {
   bool crosses = false;
   for_each_near_pair(a, moving_a, b, moving_b, [&](int s, int t) {
-    crosses = crosses || cross(a, moving_a.start, s, b, moving_b.start, t);
+    crosses = cross(a, moving_a.*when, s, b, moving_b.*when, t);
+    return !crosses;
   });
   return crosses;
 }

@@ -20,9 +20,9 @@ struct PairFindings {
 void audit_surfaces(const Surface& a, const MovingSurface& moving_a, const Surface& b,
                     const MovingSurface& moving_b, PairFindings& findings);
 
-/// True if they cross at the start of the step.
-bool cross_at_start(const Surface& a, const MovingSurface& moving_a, const Surface& b,
-                    const MovingSurface& moving_b);
+/// True if they cross at the start or at the end of the step (`when`).
+bool do_cross(const Surface& a, const MovingSurface& moving_a, const Surface& b,
+              const MovingSurface& moving_b, std::vector<Vec3> MovingSurface::*when);
 
 /// Vertices with a radius against the half space y < 0 of `plane`. The plane is b.
 void audit_plane(const MovingSurface& moving, double radius, const Pose& plane, PairFindings& findings);

@@ -95,7 +95,7 @@ Json audit(const RunRecord& record) {
   json["exempt"] = {{"pairs", report.exempt_pairs},
                     {"crossings", report.exempt_crossings},
                     {"passages", report.exempt_passages}};
-  json["one_group"] = {{"crossings", report.group_crossings}, {"passages", report.group_passages}};
+  json["one_group"] = {{"pairs", report.group_pairs}};
   json["unsettled"] = report.unsettled;
   json["time_ms"] = number(record.audit_time);
   json["findings"] = Json::array();

@@ -123,10 +123,9 @@ std::string audit_line(const RunRecord& record) {
   if (a.exempt_pairs > 0)
     text += fmt::format("; apart: {} crossed from the start or from birth",
                         plural(a.exempt_pairs, "pair", "pairs"));
-  if (a.group_crossings + a.group_passages > 0)
-    text += fmt::format("; apart: {} and {} of bodies of one group",
-                        plural(a.group_crossings, "crossing", "crossings"),
-                        plural(a.group_passages, "passage", "passages"));
+  if (a.group_pairs > 0)
+    text +=
+        fmt::format("; apart: up to {} of one group crossed at once", plural(a.group_pairs, "pair", "pairs"));
   text += fmt::format("; {:.1f} s on the clock\n", 1e-3 * record.audit_time);
   std::size_t shown = 0;
   for (std::size_t i = 0; i < a.findings.size() && shown < kMostRows; ++i) {

@@ -82,7 +82,15 @@ TEST_CASE("audit: bodies of one group are counted apart, fixed pairs are not loo
   a.group = b.group = 3;
   const AuditReport one_group = move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0));
   CHECK(one_group.passages == 0);
-  CHECK(one_group.group_passages > 0);
+  CHECK(one_group.group_pairs == 0);
+  CHECK(move(a, test::make_plate(2, {Vec3(0, -1, 0), Vec3(1, -1, 0), Vec3(0, -3, 0)}), Vec3(0, 1, 0),
+             Vec3(0, -2, 0))
+            .group_pairs == 0);
+  Body c = test::make_plate(2, {Vec3(0, -1, 0), Vec3(1, -1, 0), Vec3(0, -3, 0)});
+  c.group = 3;
+  const AuditReport crossing = move(a, c, Vec3(0, 1, 0), Vec3(0, -2, 0));
+  CHECK(crossing.group_pairs == 1);
+  CHECK(crossing.crossings + crossing.passages == 0);
   b.group = 4;
   CHECK(move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0)).passages > 0);
   a.inverse_mass = b.inverse_mass = 0.0;
