@@ -28,6 +28,16 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// A point of an element in its facet frame, m from corner 0.
+Vec2 place_in_frame(const geometry::ShellElements& elements, int element, const Vec2& barycentric) {
+  const Mat3 frame = geometry::facet_frame(elements, element);
+  const geometry::Triangle& t = elements.mesh.triangles[at(element)];
+  const Vec3& origin = elements.mesh.positions[at(t[0])];
+  const Vec3 way = barycentric.x() * (elements.mesh.positions[at(t[1])] - origin) +
+                   barycentric.y() * (elements.mesh.positions[at(t[2])] - origin);
+  return {frame.col(0).dot(way), frame.col(1).dot(way)};
+}
+
 class Decider {
  public:
   Decider(const ShellSubject& subject, const ShellImpact& impact, const FractureSettings& settings)
@@ -67,19 +77,21 @@ class Decider {
     return mesh_ == subject_.mesh ? subject_.systems->figures().contacts : contacts_;
   }
 
-  /// Stress at the pulse's peak under all loads together, averaged once.
-  std::vector<stress::CellStress> solved_stresses() {
+  /// Stress at the pulse's peak under all loads together, averaged once; and its slope, for the flaws.
+  void solve_stresses() {
     ++decision_.generations;
     decision_.residual = std::max(decision_.residual, force_.residual());
-    return stress::average_stresses(
+    fits_ = stress::fit_stresses(
         *mesh_, contacts(),
         stress::cell_stresses(subject_.systems->stiffness(), *mesh_, force_.displacement()));
+    stresses_.clear();
+    for (const stress::LinearStress& fit : fits_) stresses_.push_back(fit.mean);
   }
 
   /// The first solve's verdict: held, unless a flaw bears more than it can.
   bool is_overloaded() {
-    stresses_ = solved_stresses();
-    candidates_ = find_candidates(stresses_, true);
+    solve_stresses();
+    candidates_ = find_candidates(true);
     note_element_stress(stresses_);
     if (decision_.verdict.ratio > 1.0) return true;
     decision_.verdict.outcome = Outcome::held;
@@ -88,7 +100,7 @@ class Decider {
   }
 
   /// Flaws under more stress than they bear; and, for the verdict, the worst of all.
-  std::vector<Candidate> find_candidates(const std::vector<stress::CellStress>& stresses, bool is_first) {
+  std::vector<Candidate> find_candidates(bool is_first) {
     const geometry::ShellMesh& mesh = *mesh_;
     const FlawField& flaws = *subject_.flaws;
     // Cracks start where flaws are, which are the same on every mesh. Sound material breaks too, but of
@@ -108,12 +120,12 @@ class Decider {
     };
     for (Size c = 0; c < mesh.cells.size(); ++c) {
       const int element = mesh.cells[c].element;
-      const double tension = stress::worst_stress(stresses[c]).principal.first;
-      if (!(tension > 0.0)) continue;
       bool has_flaw = false;
       for (const Flaw& flaw : flaws.of_element(element)) {
         if (!cell_holds(mesh, mesh.cells[c], flaw.barycentric)) continue;
         has_flaw = true;
+        const Vec2 place = place_in_frame(elements(), element, flaw.barycentric);
+        const double tension = stress::worst_stress(fits_[c].at(place)).principal.first;
         consider(candidates, element, flaw.barycentric, tension, flaw.strength,
                  static_cast<int>(&flaw - flaws.flaws.data()));
       }
@@ -122,6 +134,7 @@ class Decider {
       const int corners = mesh.cells[c].corner_count;
       for (int i = 0; i < corners; ++i)
         middle += mesh.corners[at(mesh.cells[c].first_corner + i)].barycentric;
+      const double tension = stress::worst_stress(fits_[c].mean).principal.first;
       consider(sound, element, middle / corners, tension, flaws.greatest_strength,
                static_cast<int>(flaws.flaws.size()) + static_cast<int>(c));
     }
@@ -154,8 +167,8 @@ class Decider {
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
         if (!force_.settle_again(*mesh_, contacts_, decision_, decision_.verdict.reason)) break;
-        stresses_ = solved_stresses();
-        candidates_ = find_candidates(stresses_, false);
+        solve_stresses();
+        candidates_ = find_candidates(false);
       }
       const auto start = Clock::now();
       ShellCutter cutter(*mesh_);
@@ -270,7 +283,8 @@ class Decider {
   std::optional<PathNoise> noise_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;  // as it is in this generation
   std::vector<geometry::CellContact> contacts_;      // of the cracked mesh
-  std::vector<stress::CellStress> stresses_;         // of this generation
+  std::vector<stress::LinearStress> fits_;           // of this generation
+  std::vector<stress::CellStress> stresses_;         // their means
   std::vector<Candidate> candidates_;
   int next_crack_ = 0;
 };

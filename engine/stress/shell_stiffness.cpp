@@ -108,7 +108,8 @@ double bounding_diagonal(const geometry::TriangleMesh& mesh) {
   return core::sqrt((high - low).squaredNorm());
 }
 
-/// Weights of a cell's centroid for its element's corners.
+}  // namespace
+
 Vec3 centroid_weights(const geometry::ShellMesh& mesh, const geometry::ShellCell& cell) {
   Vec2 sum = Vec2::Zero();
   double twice_area = 0.0;
@@ -128,8 +129,6 @@ Vec3 centroid_weights(const geometry::ShellMesh& mesh, const geometry::ShellCell
   weights = weights.cwiseMax(kLeast);
   return weights / weights.sum();
 }
-
-}  // namespace
 
 std::shared_ptr<const ShellStiffness> make_shell_stiffness(
     std::shared_ptr<const geometry::ShellElements> elements, const ShellProperties& properties) {

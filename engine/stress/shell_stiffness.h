@@ -71,6 +71,9 @@ std::array<int, kElementDofs> cell_dofs(const geometry::ShellMesh& mesh, const g
 /// Share of its element's area by which a cell's stiffness is scaled, in [kLeastAreaFraction, 1].
 double stiffness_fraction(const geometry::ShellElements& elements, const geometry::ShellCell& cell);
 
+/// Weights of a cell's centroid for its element's corners, none below a thousandth.
+Vec3 centroid_weights(const geometry::ShellMesh& mesh, const geometry::ShellCell& cell);
+
 /// K u in SI units: u in m and rad (|dof|), result in N and N m. For tests and energies; cost: one pass over
 /// the cells.
 VecX apply_stiffness(const ShellStiffness& stiffness, const geometry::ShellMesh& mesh,

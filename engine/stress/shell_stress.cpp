@@ -27,31 +27,104 @@ PlaneStress turn_back(const PlaneStress& s, const Vec2& along) {
   return turn(s, Vec2(along.x(), -along.y()));
 }
 
-/// What averaging needs to know of a contact across an edge.
-struct Fold {
-  Vec2 along_a, along_b;  // the edge in both frames
-  bool is_flipped;        // the two triangles see the edge in the same direction: their normals disagree
+/// One cell's view of the edge that it shares: a point on it and its direction, in the cell's frame.
+struct FoldSide {
+  Vec2 origin = Vec2::Zero(), along = Vec2::UnitX();
 };
 
+struct Fold {
+  FoldSide a, b;
+  bool is_flipped = false;  // the two triangles see the edge in the same direction: their normals disagree
+};
+
+/// Inside one element there is no fold.
 Fold find_fold(const geometry::ShellMesh& mesh, const std::vector<Mat3>& frames,
                const geometry::CellContact& contact) {
-  const geometry::ShellElements& elements = *mesh.elements;
+  const int element_a = mesh.cells[at(contact.cell_a)].element;
+  const int element_b = mesh.cells[at(contact.cell_b)].element;
+  if (element_a == element_b) return {};
+  const geometry::TriangleMesh& whole = mesh.elements->mesh;
   const auto edge_of = [&](int c, int side) {
     const geometry::ShellCell& cell = mesh.cells[at(c)];
     const Size i = at(mesh.corners[at(cell.first_corner + side)].side_id);
-    const geometry::Triangle& t = elements.mesh.triangles[at(cell.element)];
+    const geometry::Triangle& t = whole.triangles[at(cell.element)];
     return std::array<int, 2>{t[i], t[(i + 1) % 3]};
   };
   const auto ends_a = edge_of(contact.cell_a, contact.side_a);
   const auto ends_b = edge_of(contact.cell_b, contact.side_b);
-  const auto& positions = elements.mesh.positions;
-  const Vec3 along = (positions[at(ends_a[1])] - positions[at(ends_a[0])]).normalized();
-  const auto flatten = [&](int c) {
+  const Vec3& origin = whole.positions[at(ends_a[0])];
+  const Vec3 along = (whole.positions[at(ends_a[1])] - origin).normalized();
+  const auto view = [&](int c, int element) {
     const Mat3& frame = frames[at(c)];
-    return Vec2(frame.col(0).dot(along), frame.col(1).dot(along));
+    const Vec3 way = origin - whole.positions[at(whole.triangles[at(element)][0])];
+    return FoldSide{{frame.col(0).dot(way), frame.col(1).dot(way)},
+                    {frame.col(0).dot(along), frame.col(1).dot(along)}};
   };
-  return {flatten(contact.cell_a), flatten(contact.cell_b), ends_a[0] == ends_b[0]};
+  return {view(contact.cell_a, element_a), view(contact.cell_b, element_b), ends_a[0] == ends_b[0]};
 }
+
+/// A point of one side's plane, turned about the edge into the other's.
+Vec2 unfold(const Vec2& point, const FoldSide& from, const FoldSide& to, bool is_flipped) {
+  const auto left_of = [](const Vec2& v) { return Vec2(-v.y(), v.x()); };
+  const Vec2 way = point - from.origin;
+  // Where normals agree both see the edge from opposite sides, and left stays left; else it changes.
+  const double across = (is_flipped ? -1.0 : 1.0) * way.dot(left_of(from.along));
+  return to.origin + way.dot(from.along) * to.along + across * left_of(to.along);
+}
+
+Vec2 centroid_in_frame(const geometry::ShellMesh& mesh, const geometry::ShellCell& cell, const Mat3& frame) {
+  const geometry::TriangleMesh& whole = mesh.elements->mesh;
+  const geometry::Triangle& t = whole.triangles[at(cell.element)];
+  const Vec3 weights = centroid_weights(mesh, cell);
+  const Vec3& origin = whole.positions[at(t[0])];
+  const Vec3 way =
+      weights(1) * (whole.positions[at(t[1])] - origin) + weights(2) * (whole.positions[at(t[2])] - origin);
+  return {frame.col(0).dot(way), frame.col(1).dot(way)};
+}
+
+/// Sums over a cell and its neighbours, for the least squares.
+struct Moments {
+  double area = 0.0;
+  Vec2 first = Vec2::Zero();
+  Mat2 second = Mat2::Zero();
+  CellStress stress;
+  std::array<CellStress, 2> stress_by_place;
+
+  void add(double weight, const Vec2& place, const CellStress& s) {
+    area += weight;
+    first += weight * place;
+    second += weight * place * place.transpose();
+    stress.membrane += weight * s.membrane;
+    stress.bending += weight * s.bending;
+    for (int i = 0; i < 2; ++i) {
+      stress_by_place[at(i)].membrane += weight * place(i) * s.membrane;
+      stress_by_place[at(i)].bending += weight * place(i) * s.bending;
+    }
+  }
+
+  LinearStress fit(const CellStress& own) const {
+    constexpr double kLeastSpread = 1e-3;  // of the spread along the other axis: hardly more than a line
+    LinearStress result;
+    result.mean = own;
+    if (!(area > 0.0)) return result;
+    result.centre = first / area;
+    result.mean = {stress.membrane / area, stress.bending / area};
+    const Mat2 spread = second / area - result.centre * result.centre.transpose();
+    const double determinant = spread(0, 0) * spread(1, 1) - spread(0, 1) * spread(1, 0);
+    const double trace = spread(0, 0) + spread(1, 1);
+    if (!(determinant > kLeastSpread * trace * trace)) return result;
+    Mat2 inverse;
+    inverse << spread(1, 1), -spread(0, 1), -spread(1, 0), spread(0, 0);
+    inverse /= determinant;
+    for (const auto part : {&CellStress::membrane, &CellStress::bending}) {
+      const PlaneStress x = stress_by_place[0].*part / area - result.centre.x() * (result.mean.*part);
+      const PlaneStress y = stress_by_place[1].*part / area - result.centre.y() * (result.mean.*part);
+      result.slope[0].*part = inverse(0, 0) * x + inverse(0, 1) * y;
+      result.slope[1].*part = inverse(1, 0) * x + inverse(1, 1) * y;
+    }
+    return result;
+  }
+};
 
 }  // namespace
 
@@ -106,46 +179,55 @@ std::vector<CellStress> cell_stresses(const ShellStiffness& stiffness, const geo
   return stresses;
 }
 
+CellStress LinearStress::at(const Vec2& place) const {
+  const Vec2 way = place - centre;
+  return {mean.membrane + way.x() * slope[0].membrane + way.y() * slope[1].membrane,
+          mean.bending + way.x() * slope[0].bending + way.y() * slope[1].bending};
+}
+
+std::vector<LinearStress> fit_stresses(const geometry::ShellMesh& mesh,
+                                       const std::vector<geometry::CellContact>& contacts,
+                                       const std::vector<CellStress>& stresses) {
+  std::vector<Mat3> frames(mesh.cells.size());
+  std::vector<Vec2> centroids(mesh.cells.size());
+  core::parallel_for(mesh.cells.size(), 512, [&](Size c) {
+    frames[c] = geometry::facet_frame(*mesh.elements, mesh.cells[c].element);
+    centroids[c] = centroid_in_frame(mesh, mesh.cells[c], frames[c]);
+  });
+  std::vector<Moments> sums(stresses.size());
+  for (Size c = 0; c < stresses.size(); ++c) sums[c].add(mesh.cells[c].area, centroids[c], stresses[c]);
+  for (const geometry::CellContact& contact : contacts) {
+    const Fold fold = find_fold(mesh, frames, contact);
+    const auto carry = [&](int from, const FoldSide& side_from, const FoldSide& side_to) {
+      const auto turned = [&](const PlaneStress& stress) {
+        PlaneStress edge = turn(stress, side_from.along);
+        if (fold.is_flipped) edge(2) = -edge(2);
+        return turn_back(edge, side_to.along);
+      };
+      const CellStress& stress = stresses[at(from)];
+      const double sign = fold.is_flipped ? -1.0 : 1.0;
+      return CellStress{turned(stress.membrane), sign * turned(stress.bending)};
+    };
+    const auto add = [&](int to, const FoldSide& side_to, int from, const FoldSide& side_from) {
+      sums[at(to)].add(mesh.cells[at(from)].area,
+                       unfold(centroids[at(from)], side_from, side_to, fold.is_flipped),
+                       carry(from, side_from, side_to));
+    };
+    add(contact.cell_a, fold.a, contact.cell_b, fold.b);
+    add(contact.cell_b, fold.b, contact.cell_a, fold.a);
+  }
+  std::vector<LinearStress> fits(stresses.size());
+  core::parallel_for(fits.size(), 512, [&](Size c) { fits[c] = sums[c].fit(stresses[c]); });
+  return fits;
+}
+
 std::vector<CellStress> average_stresses(const geometry::ShellMesh& mesh,
                                          const std::vector<geometry::CellContact>& contacts,
                                          const std::vector<CellStress>& stresses) {
-  std::vector<Mat3> frames(mesh.cells.size());
-  core::parallel_for(mesh.cells.size(), 512, [&](Size c) {
-    frames[c] = geometry::facet_frame(*mesh.elements, mesh.cells[c].element);
-  });
-  std::vector<CellStress> sums(stresses.size());
-  std::vector<double> areas(stresses.size());
-  for (Size c = 0; c < stresses.size(); ++c) {
-    areas[c] = mesh.cells[c].area;
-    sums[c] = {areas[c] * stresses[c].membrane, areas[c] * stresses[c].bending};
-  }
-  const auto add = [&](int to, const Vec2& along_to, int from, const Vec2& along_from, bool is_flipped) {
-    const auto carry = [&](const PlaneStress& stress) {
-      PlaneStress edge = turn(stress, along_from);
-      if (is_flipped) edge(2) = -edge(2);
-      return turn_back(edge, along_to);
-    };
-    const double area = mesh.cells[at(from)].area;
-    areas[at(to)] += area;
-    sums[at(to)].membrane += area * carry(stresses[at(from)].membrane);
-    sums[at(to)].bending += (is_flipped ? -area : area) * carry(stresses[at(from)].bending);
-  };
-  for (const geometry::CellContact& contact : contacts) {
-    Fold fold{Vec2::UnitX(), Vec2::UnitX(), false};  // inside one element there is no fold
-    if (mesh.cells[at(contact.cell_a)].element != mesh.cells[at(contact.cell_b)].element)
-      fold = find_fold(mesh, frames, contact);
-    add(contact.cell_a, fold.along_a, contact.cell_b, fold.along_b, fold.is_flipped);
-    add(contact.cell_b, fold.along_b, contact.cell_a, fold.along_a, fold.is_flipped);
-  }
-  for (Size c = 0; c < sums.size(); ++c) {
-    if (!(areas[c] > 0.0)) {
-      sums[c] = stresses[c];
-      continue;
-    }
-    sums[c].membrane /= areas[c];
-    sums[c].bending /= areas[c];
-  }
-  return sums;
+  std::vector<CellStress> means;
+  means.reserve(stresses.size());
+  for (const LinearStress& fit : fit_stresses(mesh, contacts, stresses)) means.push_back(fit.mean);
+  return means;
 }
 
 std::vector<CellStress> combine_stresses(const std::vector<std::vector<CellStress>>& stresses,

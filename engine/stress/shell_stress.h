@@ -2,6 +2,7 @@
 // averaging over neighbours [BHTF07] sec. VII-A, carried through folds and never across a crack.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/core/vec.h"
@@ -51,6 +52,21 @@ std::vector<CellStress> cell_stresses(const ShellStiffness& stiffness, const geo
 std::vector<CellStress> average_stresses(const geometry::ShellMesh& mesh,
                                          const std::vector<geometry::CellContact>& contacts,
                                          const std::vector<CellStress>& stresses);
+
+/// Stress that varies linearly over a cell; places are in its element's facet frame, m from corner 0.
+struct LinearStress {
+  CellStress mean;                         // as average_stresses, which is the stress at `centre`
+  Vec2 centre = Vec2::Zero();              // m, of the cell and its neighbours together
+  std::array<CellStress, 2> slope;         // Pa/m along x and y
+  CellStress at(const Vec2& place) const;  // m
+};
+
+/// Fits a plane through the stresses of each cell and of those that it has contact with, by least squares,
+/// areas as weights, neighbours unfolded into the cell's plane. Exact for a stress that varies linearly. The
+/// slope is zero where the neighbours do not span one.
+std::vector<LinearStress> fit_stresses(const geometry::ShellMesh& mesh,
+                                       const std::vector<geometry::CellContact>& contacts,
+                                       const std::vector<CellStress>& stresses);
 
 /// sum of factor_i * stress_i, cell by cell; all of the same size.
 std::vector<CellStress> combine_stresses(const std::vector<std::vector<CellStress>>& stresses,

@@ -93,6 +93,65 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a stress that varies linearly is fitted exactly, on flat meshes, over folds and beside cuts") {
+  // The same sheet flat, and folded by a right angle along a line of its edges.
+  for (const bool is_folded : {false, true}) {
+    geometry::TriangleMesh mesh = grid(8, 8, 1.0, 1.0, 0.0)->mesh;
+    const std::vector<Vec3> flat = mesh.positions;
+    for (Vec3& p : mesh.positions)
+      if (is_folded && p.x() > 0.5) p = Vec3(0.5, p.y(), p.x() - 0.5);
+    const Elements elements = make_elements(mesh);
+    const geometry::ShellMesh whole = geometry::make_shell_mesh(elements);
+    for (const geometry::ShellMesh& shell : {whole, cut_between(whole, 0.37)}) {
+      // In the flat sheet's axes: s = (x, 2 y, x - y), bending -3 s.
+      const auto stress_at = [](const Vec2& p) { return PlaneStress(p.x(), 2.0 * p.y(), p.x() - p.y()); };
+      const auto local = [&](int element, const PlaneStress& s) {
+        const auto& t = elements->mesh.triangles[static_cast<size_t>(element)];
+        const Vec3 edge = (flat[static_cast<size_t>(t[1])] - flat[static_cast<size_t>(t[0])]).normalized();
+        Mat2 axes, tensor;
+        axes << edge.x(), -edge.y(), edge.y(), edge.x();
+        tensor << s(0), s(2), s(2), s(1);
+        const Mat2 turned = axes.transpose() * tensor * axes;
+        return PlaneStress(turned(0, 0), turned(1, 1), turned(0, 1));
+      };
+      const auto flat_place = [&](int element, const Vec3& weights) {
+        Vec3 p = Vec3::Zero();
+        for (size_t i = 0; i < 3; ++i)
+          p += weights(static_cast<int>(i)) *
+               flat[static_cast<size_t>(elements->mesh.triangles[static_cast<size_t>(element)][i])];
+        return Vec2(p.x(), p.y());
+      };
+      std::vector<CellStress> stresses;
+      for (const geometry::ShellCell& cell : shell.cells) {
+        const PlaneStress s =
+            local(cell.element, stress_at(flat_place(cell.element, centroid_weights(shell, cell))));
+        stresses.push_back({s, -3.0 * s});
+      }
+      const auto fits = fit_stresses(shell, geometry::find_cell_contacts(shell), stresses);
+      int sloped = 0;
+      for (size_t c = 0; c < fits.size(); ++c) {
+        const geometry::ShellCell& cell = shell.cells[c];
+        const double slope = fits[c].slope[0].membrane.norm() + fits[c].slope[1].membrane.norm();
+        if (slope == 0.0) continue;  // in a corner
+        ++sloped;
+        const auto& t = elements->mesh.triangles[static_cast<size_t>(cell.element)];
+        const Mat3 frame = geometry::facet_frame(*elements, cell.element);
+        const Vec3 weights(0.2, 0.5, 0.3);
+        const Vec3& origin = elements->mesh.positions[static_cast<size_t>(t[0])];
+        Vec3 way = Vec3::Zero();
+        for (size_t i = 1; i < 3; ++i)
+          way +=
+              weights(static_cast<int>(i)) * (elements->mesh.positions[static_cast<size_t>(t[i])] - origin);
+        const CellStress found = fits[c].at({frame.col(0).dot(way), frame.col(1).dot(way)});
+        const PlaneStress expected = local(cell.element, stress_at(flat_place(cell.element, weights)));
+        REQUIRE((found.membrane - expected).norm() < 1e-9);
+        REQUIRE((found.bending + 3.0 * expected).norm() < 1e-9);
+      }
+      CHECK(sloped > static_cast<int>(0.8 * static_cast<double>(fits.size())));
+    }
+  }
+}
+
 TEST_CASE("averaging never crosses a crack") {
   const Elements elements = grid(6, 6, 1.0, 1.0);
   const geometry::ShellMesh mesh = cut_between(geometry::make_shell_mesh(elements), 0.45);
