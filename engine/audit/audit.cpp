@@ -45,6 +45,7 @@ struct Audit::Actor {
   BodyId id = 0;
   bool is_dynamic = false, is_moving = false, is_new = false;
   int group = -1;
+  body::BodyId family = 0;
   ShapeKind kind = ShapeKind::shell;
   double radius = 0.0;  // of a sphere, m
   Pose start, end;
@@ -99,6 +100,7 @@ std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
     actor.id = body.id;
     actor.is_dynamic = body.is_dynamic();
     actor.group = body.group;
+    actor.family = body.family;
     actor.kind = body.shape->kind;
     actor.radius = actor.kind == ShapeKind::sphere ? body.shape->radius : 0.0;
     actor.start = start_of(body, births).pose;
@@ -179,7 +181,7 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
     if (is_flipped) std::swap(a, b);
     const bool is_new = a->is_new || b->is_new;
     PairResult& result = results[i];
-    if (a->group >= 0 && a->group == b->group) {
+    if (a->group >= 0 && a->group == b->group && (a->family == 0 || a->family != b->family)) {
       result.is_one_group = true;
       result.findings.has_crossing =
           b->surface->triangles.size() > 0 &&

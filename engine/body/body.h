@@ -35,13 +35,18 @@ struct Body {
   double restitution = 0.3;
   double young = 70e9;  // Pa, for the contact's own compliance
   double poisson = 0.22;
-  int group = -1;    // bodies of one group >= 0 do not collide with each other
-  int material = 0;  // number in the world's list of materials
+  int group = -1;     // bodies of one group >= 0 do not collide with each other: see collides_with
+  BodyId family = 0;  // the body of the scene that this one is, or was, a part of; 0: of none
+  int material = 0;   // number in the world's list of materials
 
   bool is_awake = true;
   double quiet_time = 0.0;  // s for which the body has hardly moved
 
   bool is_dynamic() const { return inverse_mass > 0.0; }
+  /// False for bodies of one group, unless they are pieces of one body, which collide in any case.
+  bool collides_with(const Body& other) const {
+    return group < 0 || group != other.group || (family != 0 && family == other.family);
+  }
   Mat3 inverse_inertia_world() const {
     const Mat3 r = pose.rotation.toRotationMatrix();
     return r * inverse_inertia * r.transpose();

@@ -117,7 +117,7 @@ collision::SweptBound swept_bound(const WorkBody& w, const Pose& end, double gro
 bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& wb) {
   if (!a.is_dynamic() && !b.is_dynamic()) return false;
   if (!wa.is_active && !wb.is_active) return false;
-  return a.group < 0 || a.group != b.group;
+  return a.collides_with(b);
 }
 
 std::vector<collision::IndexPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work,

@@ -93,8 +93,7 @@ class PlaneImpulses {
     for (int sweep = 0; sweep < kPlaneSweeps; ++sweep) {
       bool is_clear = true;
       for (const Body& plane : bodies_) {
-        const bool is_apart = plane.group >= 0 && plane.group == body.group;
-        if (plane.shape->kind != ShapeKind::plane || is_apart) continue;
+        if (plane.shape->kind != ShapeKind::plane || !body.collides_with(plane)) continue;
         is_clear = !lift(body, surface, plane, sweep == 0) && is_clear;
       }
       if (is_clear) return;
@@ -173,8 +172,7 @@ class PlaneImpulses {
 
 bool may_meet(const Body& a, const Body& b) {
   const bool is_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
-  const bool is_apart = a.group >= 0 && a.group == b.group;
-  return !is_plane && !is_apart && (a.is_dynamic() || b.is_dynamic());
+  return !is_plane && a.collides_with(b) && (a.is_dynamic() || b.is_dynamic());
 }
 
 /// Pairs whose particles' swept boxes overlap.

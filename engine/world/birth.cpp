@@ -203,6 +203,7 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   born.group = description.group;
   born.material = description.material;
   born.id = s.moving.next_id++;
+  born.family = born.id;
   if (fragile) {
     s.moving.fragiles[born.id] = fragile;
     s.moving.memories[born.id] = {};

@@ -91,6 +91,10 @@ TEST_CASE("audit: bodies of one group are counted apart, fixed pairs are not loo
   const AuditReport crossing = move(a, c, Vec3(0, 1, 0), Vec3(0, -2, 0));
   CHECK(crossing.group_pairs == 1);
   CHECK(crossing.crossings + crossing.passages == 0);
+  a.family = b.family = 7;  // pieces of one body collide all the same
+  CHECK(move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0)).passages > 0);
+  a.family = 6;
+  CHECK(move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0)).passages == 0);
   b.group = 4;
   CHECK(move(a, b, Vec3(0, 1, 0), Vec3(0.1, -1, 0)).passages > 0);
   a.inverse_mass = b.inverse_mass = 0.0;

@@ -18,7 +18,7 @@ world::BodyDescription ground(int material) {
 }
 
 /// A glass sphere of 40 mm radius and 0.5 mm wall above a plane, thrown down.
-world::World make_drop(double speed, double thickness = 0.5e-3, int steps_per_second = 240) {
+world::World make_drop(double speed, double thickness = 0.5e-3, int steps_per_second = 240, int group = -1) {
   world::WorldSettings settings;
   settings.steps_per_second = steps_per_second;
   world::World w(settings);
@@ -29,6 +29,7 @@ world::World make_drop(double speed, double thickness = 0.5e-3, int steps_per_se
   world::BodyDescription ball;
   ball.name = "ball";
   ball.material = number;
+  ball.group = group;
   ball.pose.translation = Vec3(0, 0.06, 0);
   ball.velocity = Vec3(0, -speed, 0);
   world::ShellDescription shell;
@@ -101,6 +102,23 @@ TEST_CASE("a soft impact holds, and the report says by how much") {
     CHECK(row.ratio < 1.0);
     CHECK(row.verdict.substr(0, 4) == "held");
   }
+}
+
+TEST_CASE("pieces of one body collide with each other, whatever group they are in") {
+  world::World w = make_drop(4.4, 0.5e-3, 240, 2);
+  for (int i = 0; i < 30; ++i) w.step();
+  REQUIRE_FALSE(w.report().breaks.empty());
+  std::vector<const body::Body*> pieces;
+  for (const body::Body& b : w.bodies())
+    if (b.group == 2) pieces.push_back(&b);
+  REQUIRE(pieces.size() > 2);
+  for (const body::Body* a : pieces)
+    for (const body::Body* b : pieces) CHECK(a->collides_with(*b));
+  body::Body frame = *pieces[0];
+  frame.family = 999;
+  CHECK_FALSE(pieces[0]->collides_with(frame));
+  frame.group = -1;
+  CHECK(pieces[0]->collides_with(frame));
 }
 
 TEST_CASE("the same scene gives the same bits on any number of threads") {
