@@ -5,7 +5,7 @@
 namespace shatterbox::collision {
 
 void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint64_t>& loaded_keys,
-                     double radius, std::size_t cap) {
+                     double loaded_reach, double radius, std::size_t cap) {
   constexpr double kSameWay = 0.97;
   struct Ranked {
     double rank;
@@ -17,7 +17,7 @@ void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& c = contacts[i];
     const bool is_loaded = std::binary_search(loaded_keys.begin(), loaded_keys.end(), c.key);
-    order.push_back({is_loaded && c.gap > 0.0 ? 0.5 * c.gap : c.gap, c.key, i});
+    order.push_back({is_loaded && c.gap < loaded_reach ? c.gap - loaded_reach : c.gap, c.key, i});
   }
   std::sort(order.begin(), order.end(), [](const Ranked& x, const Ranked& y) {
     return x.rank < y.rank || (x.rank == y.rank && x.key < y.key);

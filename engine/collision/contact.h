@@ -18,10 +18,10 @@ struct Contact {
   bool is_time_of_impact = false;  // found on the path, not at its start
 };
 
-/// Keeps few contacts that stand for all: nearest first (those in `loaded_keys`, ascending, count as half as
-/// far), none within `radius` of a kept one that points the same way, at most `cap`. The order of the result
-/// is by key.
+/// Keeps few contacts that stand for all: those in `loaded_keys` (ascending) first while they are within
+/// `loaded_reach` (m), so that what rests keeps its feet; then nearest first, none within `radius` of a kept
+/// one that points the same way, at most `cap`. The order of the result is by key.
 void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint64_t>& loaded_keys,
-                     double radius, std::size_t cap);
+                     double loaded_reach, double radius, std::size_t cap);
 
 }  // namespace shatterbox::collision

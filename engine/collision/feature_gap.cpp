@@ -152,26 +152,30 @@ bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Coll
   return true;
 }
 
-PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least,
-                        const Vec3& hint) {
+PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint,
+                        const FeatureGap* start_gap) {
   constexpr int kMostSteps = 200;
+  constexpr double kAdvance = 0.95;
   const int split = start.is_edge_edge ? 2 : 1;  // points [0, split) are one body's
   PathResult result;
   result.time = 0.0;
   FeaturePoints now = start;
   for (int step = 0; step < kMostSteps; ++step) {
-    result.gap = measure(now, hint);
+    result.gap = step == 0 && start_gap ? *start_gap : measure(now, hint);
     // From the second group of points to the first.
     const Vec3 n = start.is_flipped ? Vec3(-result.gap.normal) : result.gap.normal;
     const double closing = reach(start, end, 0, split, -n) + reach(start, end, split, 4, n);
     const double room = result.gap.gap - least;
     // n separates the pair at both ends of what is left, hence all along the straight paths.
-    if (closing <= 0.0 || closing * (1.0 - result.time) < room) {
+    const double left = room - std::max(0.0, closing) * (1.0 - result.time);
+    if (closing <= 0.0 || left > 0.0) {
+      result.spare = std::max(0.0, std::min(result.spare, left));
       result.time = 1.0;
       return result;
     }
     if (room <= 0.1 * std::abs(least) || room <= 1e-14 * std::abs(result.gap.distance)) break;
-    result.time = std::min(1.0, result.time + 0.999 * room / closing);
+    result.spare = std::min(result.spare, (1.0 - kAdvance) * room);
+    result.time = std::min(1.0, result.time + kAdvance * room / closing);
     for (std::size_t i = 0; i < 4; ++i) {
       now.points[i] = start.points[i] + result.time * (end.points[i] - start.points[i]);
     }

@@ -29,7 +29,7 @@ struct FeatureGap {
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // m, world, on the surfaces (radius included)
   Vec3 normal = Vec3::UnitY();                    // unit, from b towards a
   double gap = 0.0;                               // m, radius subtracted; only a sphere's may be negative
-  double distance = 0.0;                          // m, of the features themselves
+  double distance = -1.0;                         // m, of the features themselves; negative: not measured
 };
 
 /// Closest points of the pair. Where they coincide the normal is the triangle's or the edges' common normal,
@@ -44,13 +44,15 @@ bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Coll
 
 struct PathResult {
   bool has_hit = false;
-  double time = 1.0;  // share of the path that is certainly free
-  FeatureGap gap;     // at `time` if it has hit
+  double time = 1.0;     // share of the path that is certainly free
+  double spare = 1e300;  // m, without a hit: free too are all paths that stay this close to it
+  FeatureGap gap;        // at `time` if it has hit
 };
 
 /// Follows the straight paths from `start` to `end`. Free means that the gap never falls to `least` (a pair
-/// that starts closer than that must only not approach).
-PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint);
+/// that starts closer than that must only not approach). `start_gap` spares the measure at the start.
+PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint,
+                        const FeatureGap* start_gap = nullptr);
 
 /// Where impulses of the pair act (Contact::lean): at the vertex, as it slides over the triangle.
 double lean(const FeaturePair& pair);

@@ -1,146 +1,230 @@
 #include "engine/collision/feature_list.h"
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/geometry/crossings.h"
+
 namespace shatterbox::collision {
 namespace {
 
-using geometry::Box;
-using geometry::TriangleTree;
+using Node = geometry::TriangleTree::Node;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-Box moved_along(const Box& box, const Vec3& way) {
-  return {box.low + way.cwiseMin(0.0), box.high + way.cwiseMax(0.0)};
+// Boxes of edges, triangles and nodes from those of the vertices.
+void refit(const Collider& c, FeatureBoxes& boxes) {
+  boxes.edges.resize(c.edges.size());
+  for (std::size_t e = 0; e < c.edges.size(); ++e) {
+    boxes.edges[e] = boxes.vertices[at(c.edges[e][0])];
+    boxes.edges[e].include(boxes.vertices[at(c.edges[e][1])]);
+  }
+  boxes.triangles.resize(c.triangles.size());
+  for (std::size_t t = 0; t < c.triangles.size(); ++t) {
+    TightBox& box = boxes.triangles[t] = boxes.vertices[at(c.triangles[t][0])];
+    box.include(boxes.vertices[at(c.triangles[t][1])]);
+    box.include(boxes.vertices[at(c.triangles[t][2])]);
+  }
+  boxes.nodes.resize(c.tree.nodes.size());
+  for (std::size_t i = c.tree.nodes.size(); i-- > 0;) {
+    const Node& node = c.tree.nodes[i];
+    TightBox box;
+    if (node.count == 0) {
+      box = boxes.nodes[i + 1];
+      box.include(boxes.nodes[at(node.right)]);
+    }
+    for (int k = node.begin; k < node.begin + node.count; ++k)
+      box.include(boxes.triangles[at(c.tree.order[at(k)])]);
+    boxes.nodes[i] = box;
+  }
 }
 
-// One side of a descent: boxes of vertices and of tree nodes, all moved along `way`.
-struct Side {
-  const Collider& collider;
-  const std::vector<Box>& vertex_boxes;
-  Vec3 way = Vec3::Zero();
+float extent(const TightBox& box) {
+  return (box.high[0] - box.low[0]) + (box.high[1] - box.low[1]) + (box.high[2] - box.low[2]);
+}
 
-  Box vertex_box(int vertex) const { return moved_along(vertex_boxes[at(vertex)], way); }
-  Box edge_box(int edge) const {
-    const auto& [v, w] = collider.edges[at(edge)];
-    Box box = vertex_boxes[at(v)];
-    box.include(vertex_boxes[at(w)]);
-    return moved_along(box, way);
+// Descends two trees together; visit(leaf_a, leaf_b) for leaves that come within the margin.
+class Descent {
+ public:
+  Descent(const Collider& a, const FeatureBoxes& boxes_a, const Collider& b, const FeatureBoxes& boxes_b,
+          const TightWay& way, double margin)
+      : a_(a), b_(b), boxes_a_(boxes_a), boxes_b_(boxes_b), way_(way) {
+    const float m = round_up(margin);
+    reach_squared_ = m * m * (1.0F + 1e-5F);
   }
-  Box triangle_box(int triangle) const {
-    const auto& t = collider.triangles[at(triangle)];
-    Box box = vertex_boxes[at(t[0])];
-    box.include(vertex_boxes[at(t[1])]);
-    box.include(vertex_boxes[at(t[2])]);
-    return moved_along(box, way);
+
+  float reach_squared() const { return reach_squared_; }
+  bool is_near(const TightBox& box_a, const TightBox& box_b) const {
+    return distance_squared(box_a, box_b) <= reach_squared_;
   }
-};
 
-using NumberedBoxes = std::vector<std::pair<int, Box>>;
-
-// Features of one leaf that come within the margin of the other leaf's box.
-struct LeafFeatures {
-  NumberedBoxes triangles, vertices, edges;
-
-  void fill(const Side& side, const TriangleTree::Node& leaf, const Box& other, double margin) {
-    const Collider& c = side.collider;
-    triangles.clear();
-    vertices.clear();
-    edges.clear();
-    const auto add = [&](NumberedBoxes& boxes, int number, const Box& box) {
-      if (geometry::overlaps(box, other, margin)) boxes.emplace_back(number, box);
-    };
-    for (int k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
-      const int t = c.tree.order[at(k)];
-      const Box box = side.triangle_box(t);
-      if (!geometry::overlaps(box, other, margin)) continue;  // and neither does what it owns
-      triangles.emplace_back(t, box);
-      for (int i = c.owned_vertex_begin[at(t)]; i < c.owned_vertex_begin[at(t) + 1]; ++i) {
-        const int v = c.owned_vertices[at(i)];
-        add(vertices, v, side.vertex_box(v));
-      }
-      for (int i = c.owned_edge_begin[at(t)]; i < c.owned_edge_begin[at(t) + 1]; ++i) {
-        const int e = c.owned_edges[at(i)];
-        add(edges, e, side.edge_box(e));
+  template <class Visit>
+  void run(const Visit& visit) {
+    if (boxes_a_.nodes.empty() || boxes_b_.nodes.empty()) return;
+    stack_.assign(1, {0, 0});
+    while (!stack_.empty()) {
+      const auto [i, j] = stack_.back();
+      stack_.pop_back();
+      const TightBox& box_a = boxes_a_.nodes[at(i)];
+      const TightBox box_b = stretched(boxes_b_.nodes[at(j)], way_);
+      if (!is_near(box_a, box_b)) continue;
+      const Node &node_a = a_.tree.nodes[at(i)], &node_b = b_.tree.nodes[at(j)];
+      if (node_a.count > 0 && node_b.count > 0) {
+        visit_triangles(node_a, box_a, node_b, box_b, visit);
+      } else if (node_b.count > 0 || (node_a.count == 0 && extent(box_a) >= extent(box_b))) {
+        stack_.push_back({node_a.right, j});
+        stack_.push_back({i + 1, j});
+      } else {
+        stack_.push_back({i, node_b.right});
+        stack_.push_back({i, j + 1});
       }
     }
   }
-};
 
-void add_overlapping(FeatureKind kind, const NumberedBoxes& as, const NumberedBoxes& bs, double margin,
-                     FeatureList& out) {
-  for (const auto& [a, box_a] : as) {
-    for (const auto& [b, box_b] : bs) {
-      if (geometry::overlaps(box_a, box_b, margin)) out.push_back({kind, a, b, 0.0});
+ private:
+  template <class Visit>
+  void visit_triangles(const Node& node_a, const TightBox& box_a, const Node& node_b, const TightBox& box_b,
+                       const Visit& visit) {
+    near_b_.clear();
+    for (int k = node_b.begin; k < node_b.begin + node_b.count; ++k) {
+      const int t = b_.tree.order[at(k)];
+      const TightBox box = stretched(boxes_b_.triangles[at(t)], way_);
+      if (is_near(box_a, box)) near_b_.emplace_back(t, box);
+    }
+    if (near_b_.empty()) return;
+    for (int k = node_a.begin; k < node_a.begin + node_a.count; ++k) {
+      const int t = a_.tree.order[at(k)];
+      const TightBox& box = boxes_a_.triangles[at(t)];
+      if (!is_near(box, box_b)) continue;
+      for (const auto& [other, other_box] : near_b_) {
+        if (is_near(box, other_box)) visit(t, box, other, other_box);
+      }
     }
   }
+
+  const Collider &a_, &b_;
+  const FeatureBoxes &boxes_a_, &boxes_b_;
+  const TightWay way_;
+  float reach_squared_ = 0.0F;
+  std::vector<std::pair<int, int>> stack_;
+  std::vector<std::pair<int, TightBox>> near_b_;
+};
+
+// Features that near triangles own.
+void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Collider& b,
+                   const FeatureBoxes& boxes_b, const TightWay& way, double margin, FeatureList& out) {
+  Descent descent(a, boxes_a, b, boxes_b, way, margin);
+  const bool a_has_faces = a.radius == 0.0, b_has_faces = b.radius == 0.0;
+  const auto add = [&](FeatureKind kind, int i, const TightBox& box_a, int j, const TightBox& box_b) {
+    const float apart = distance_squared(box_a, box_b);
+    if (apart <= descent.reach_squared()) out.push_back({kind, apart, i, j});
+  };
+  descent.run([&](int ta, const TightBox& box_a, int tb, const TightBox& box_b) {
+    for (int k = a.owned_vertex_begin[at(ta)]; b_has_faces && k < a.owned_vertex_begin[at(ta) + 1]; ++k) {
+      const int v = a.owned_vertices[at(k)];
+      add(FeatureKind::vertex_triangle, v, boxes_a.vertices[at(v)], tb, box_b);
+    }
+    for (int k = b.owned_vertex_begin[at(tb)]; a_has_faces && k < b.owned_vertex_begin[at(tb) + 1]; ++k) {
+      const int v = b.owned_vertices[at(k)];
+      add(FeatureKind::triangle_vertex, ta, box_a, v, stretched(boxes_b.vertices[at(v)], way));
+    }
+    for (int l = b.owned_edge_begin[at(tb)]; l < b.owned_edge_begin[at(tb) + 1]; ++l) {
+      const int f = b.owned_edges[at(l)];
+      const TightBox box_f = stretched(boxes_b.edges[at(f)], way);
+      for (int k = a.owned_edge_begin[at(ta)]; k < a.owned_edge_begin[at(ta) + 1]; ++k) {
+        const int e = a.owned_edges[at(k)];
+        add(FeatureKind::edge_edge, e, boxes_a.edges[at(e)], f, box_f);
+      }
+    }
+  });
+  for (FeaturePair& f : out) f.bound = std::sqrt(f.bound) * (1.0F - 1e-5F);
 }
 
-void list_features(const Side& a, const std::vector<Box>& boxes_a, const Side& b,
-                   const std::vector<Box>& boxes_b, double margin, FeatureList& out) {
-  out.clear();
-  std::vector<std::pair<int, int>> stack;
-  LeafFeatures leaf_a, leaf_b;
-  const bool a_has_faces = a.collider.radius == 0.0, b_has_faces = b.collider.radius == 0.0;
-  geometry::for_each_leaf_pair(
-      a.collider.tree, boxes_a, b.collider.tree, boxes_b, margin, stack,
-      [&](const TriangleTree::Node& node_a, const TriangleTree::Node& node_b) {
-        const auto number = [](const Collider& c, const TriangleTree::Node& node) {
-          return static_cast<std::size_t>(&node - c.tree.nodes.data());
-        };
-        leaf_a.fill(a, node_a, boxes_b[number(b.collider, node_b)], margin);
-        if (leaf_a.triangles.empty()) return;
-        leaf_b.fill(b, node_b, boxes_a[number(a.collider, node_a)], margin);
-        if (b_has_faces) {
-          add_overlapping(FeatureKind::vertex_triangle, leaf_a.vertices, leaf_b.triangles, margin, out);
-        }
-        if (a_has_faces) {
-          add_overlapping(FeatureKind::triangle_vertex, leaf_a.triangles, leaf_b.vertices, margin, out);
-        }
-        add_overlapping(FeatureKind::edge_edge, leaf_a.edges, leaf_b.edges, margin, out);
-      });
+std::array<Vec3, 3> corners(const PlacedCollider& placed, int triangle) {
+  const auto& t = placed.collider->triangles[at(triangle)];
+  return {placed.start[at(t[0])], placed.start[at(t[1])], placed.start[at(t[2])]};
 }
 
-void refit_tree(const Collider& collider, const std::vector<Box>& vertex_boxes, std::vector<Box>& boxes) {
-  geometry::refit(
-      collider.tree, collider.triangles, [&](int v) -> const Box& { return vertex_boxes[at(v)]; }, boxes);
+bool an_edge_pierces(const std::array<Vec3, 3>& edges, const std::array<Vec3, 3>& face) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (geometry::segment_pierces_triangle(edges[i], edges[(i + 1) % 3], face[0], face[1], face[2]))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace
 
 void refit_boxes(PlacedCollider& placed) {
-  const Vec3 radius = Vec3::Constant(placed.collider->radius);
-  placed.vertex_boxes.clear();
-  for (const Vec3& p : placed.start) placed.vertex_boxes.push_back({p - radius, p + radius});
-  refit_tree(*placed.collider, placed.vertex_boxes, placed.boxes);
+  const double radius = placed.collider->radius;
+  placed.boxes.vertices.resize(placed.start.size());
+  for (std::size_t v = 0; v < placed.start.size(); ++v) {
+    placed.boxes.vertices[v] = box_of_point(placed.start[v], radius);
+  }
+  refit(*placed.collider, placed.boxes);
 }
 
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& turned) {
-  const Vec3 radius = Vec3::Constant(placed.collider->radius);
-  placed.swept_vertex_boxes.clear();
-  for (std::size_t v = 0; v < placed.start.size(); ++v) {
-    const Vec3 &p = placed.start[v], &q = turned[v];
-    placed.swept_vertex_boxes.push_back({p.cwiseMin(q) - radius, p.cwiseMax(q) + radius});
+void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from,
+                       const std::vector<Vec3>& turned) {
+  const double radius = placed.collider->radius;
+  placed.swept.vertices.resize(from.size());
+  for (std::size_t v = 0; v < from.size(); ++v) {
+    placed.swept.vertices[v] = box_of_path(from[v], turned[v], radius);
   }
-  refit_tree(*placed.collider, placed.swept_vertex_boxes, placed.swept_boxes);
+  refit(*placed.collider, placed.swept);
 }
 
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out) {
-  list_features({*a.collider, a.vertex_boxes}, a.boxes, {*b.collider, b.vertex_boxes}, b.boxes, margin, out);
+  out.clear();
+  list_features(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), margin, out);
+  std::sort(out.begin(), out.end(), [](const FeaturePair& x, const FeaturePair& y) {
+    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
+  });
 }
 
 void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
                          double margin, FeatureList& out) {
   out.clear();
-  if (a.swept_boxes.empty() || b.swept_boxes.empty() ||
-      !geometry::overlaps(a.swept_boxes[0], moved_along(b.swept_boxes[0], relative_way), margin)) {
-    return;
+  list_features(*a.collider, a.swept, *b.collider, b.swept, TightWay(relative_way), margin, out);
+}
+
+bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius, const Vec3& relative_way,
+                   double margin) {
+  const TightBox path = box_of_path(centre, centre + relative_way, 0.0);
+  const float reach = round_up(radius + margin), reach_squared = reach * reach * (1.0F + 1e-5F);
+  std::vector<int> stack(1, 0);
+  const auto& nodes = body.collider->tree.nodes;
+  while (!stack.empty()) {
+    const int i = stack.back();
+    stack.pop_back();
+    if (distance_squared(body.swept.nodes[at(i)], path) > reach_squared) continue;
+    const Node& node = nodes[at(i)];
+    if (node.count == 0) {
+      stack.push_back(node.right);
+      stack.push_back(i + 1);
+      continue;
+    }
+    for (int k = node.begin; k < node.begin + node.count; ++k) {
+      const TightBox& box = body.swept.triangles[at(body.collider->tree.order[at(k)])];
+      if (distance_squared(box, path) <= reach_squared) return true;
+    }
   }
-  std::vector<Box> moved;
-  moved.reserve(b.swept_boxes.size());
-  for (const Box& box : b.swept_boxes) moved.push_back(moved_along(box, relative_way));
-  list_features({*a.collider, a.swept_vertex_boxes}, a.swept_boxes,
-                {*b.collider, b.swept_vertex_boxes, relative_way}, moved, margin, out);
+  return false;
+}
+
+bool crosses(const PlacedCollider& a, const PlacedCollider& b) {
+  if (a.collider->radius > 0.0 || b.collider->radius > 0.0) return false;
+  bool result = false;
+  Descent(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), 0.0)
+      .run([&](int ta, const TightBox&, int tb, const TightBox&) {
+        if (result) return;
+        const auto p = corners(a, ta), q = corners(b, tb);
+        result = an_edge_pierces(p, q) || an_edge_pierces(q, p);
+      });
+  return result;
 }
 
 }  // namespace shatterbox::collision

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "engine/collision/collider.h"
+#include "engine/collision/tight_box.h"
 #include "engine/core/vec.h"
-#include "engine/geometry/bvh.h"
 
 namespace shatterbox::collision {
 
@@ -16,8 +15,8 @@ enum class FeatureKind : std::uint8_t { vertex_triangle, triangle_vertex, edge_e
 
 struct FeaturePair {
   FeatureKind kind = FeatureKind::vertex_triangle;
+  float bound = 0.0F;  // m: the gap is not less than this where, or on the way on which, it was looked for
   int a = 0, b = 0;    // numbers of the features in the colliders of bodies a and b
-  double bound = 0.0;  // m: the gap was not less than this when the list was made
 
   std::uint64_t key() const {
     return (static_cast<std::uint64_t>(kind) << 60) | (static_cast<std::uint64_t>(a) << 30) |
@@ -27,29 +26,42 @@ struct FeaturePair {
 
 using FeatureList = std::vector<FeaturePair>;
 
-/// A collider in the world: where its vertices are, where they go, and the boxes over that.
-struct PlacedCollider {
-  const Collider* collider = nullptr;
-  std::vector<Vec3> start;                        // |V| x 3, world, m
-  std::vector<geometry::Box> vertex_boxes;        // |V|, over `start`, radius included
-  std::vector<geometry::Box> swept_vertex_boxes;  // |V|, over start and end less the centre's own way
-  std::vector<geometry::Box> boxes;               // of the tree's nodes over `start`; empty until needed
-  std::vector<geometry::Box> swept_boxes;  // over start and end less the centre's own way; empty until needed
+/// Boxes over all features and over the nodes of the tree.
+struct FeatureBoxes {
+  std::vector<TightBox> vertices, edges, triangles, nodes;  // |V|, |E|, |T|, |nodes|; empty until needed
 };
 
-/// Fills `placed.boxes` (grown by the sphere's radius) from `placed.start`.
+/// A collider in the world: where its vertices are, and the boxes over that and over where they go.
+struct PlacedCollider {
+  const Collider* collider = nullptr;
+  std::vector<Vec3> start;  // |V| x 3, world, m
+  FeatureBoxes boxes;       // over `start`, radius included
+  FeatureBoxes swept;       // over straight paths less the centre's own way, radius included
+};
+
+/// Fills `placed.boxes` from `placed.start`.
 void refit_boxes(PlacedCollider& placed);
 
-/// Fills `placed.swept_boxes` for straight paths from `start` to `turned` (|V| x 3: end positions less the
-/// way of the body's centre).
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& turned);
+/// Fills `placed.swept` for straight paths from `from` to `turned` (|V| x 3: end positions less the way of
+/// the body's centre).
+void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from,
+                       const std::vector<Vec3>& turned);
 
-/// All feature pairs that may be within `margin` (a superset; each pair once). Needs `boxes` of both.
+/// All feature pairs that may be within `margin` (a superset; each pair once), nearest first by their boxes.
+/// Needs `boxes` of both.
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out);
 
 /// All feature pairs whose straight paths may come within `margin`, when b moves by `relative_way` more than
-/// a. Needs `swept_boxes` of both.
+/// a. Needs `swept` of both.
 void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
                          double margin, FeatureList& out);
+
+/// True if a ball that moves by `relative_way` more than the body may come within `margin` of one of its
+/// triangles. Needs `swept`.
+bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius, const Vec3& relative_way,
+                   double margin);
+
+/// True if a triangle of a surely crosses one of b at `start`. Needs `boxes` of both.
+bool crosses(const PlacedCollider& a, const PlacedCollider& b);
 
 }  // namespace shatterbox::collision

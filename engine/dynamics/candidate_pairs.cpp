@@ -1,12 +1,13 @@
 // Stage: from bodies to pairs, contacts and islands.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <utility>
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/broad_phase.h"
 #include "engine/core/parallel.h"
+#include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/pair_contacts.h"
 #include "engine/dynamics/rest.h"
@@ -29,8 +30,38 @@ bool is_same_pose(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
 }
 
+// Colliders and inertia of bodies that the state does not know: from a copy of the same shape, from the
+// shelf, or made now, one for all copies.
+void find_colliders(ContactState& state, const std::vector<std::size_t>& unknown) {
+  if (unknown.empty()) return;
+  std::map<const body::Shape*, const BodyState*> known;
+  for (const auto* list : {&state.shelf->bodies, &state.bodies}) {
+    for (const BodyState& s : *list) {
+      if (s.collider) known.emplace(s.shape.get(), &s);
+    }
+  }
+  std::vector<std::size_t> to_make;
+  for (const std::size_t i : unknown) {
+    BodyState& fresh = state.bodies[i];
+    const auto [twin, is_first] = known.emplace(fresh.shape.get(), &fresh);
+    if (is_first) to_make.push_back(i);
+  }
+  core::parallel_for(to_make.size(), 1, [&](std::size_t k) {
+    BodyState& fresh = state.bodies[to_make[k]];
+    fresh.collider = collision::make_collider(*fresh.shape);
+    fresh.inertia = find_principal_inertia(fresh.shape->inertia);
+  });
+  for (const std::size_t i : unknown) {
+    BodyState& fresh = state.bodies[i];
+    const BodyState& twin = *known.at(fresh.shape.get());
+    fresh.collider = twin.collider;
+    fresh.inertia = twin.inertia;
+  }
+}
+
 void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWork& work) {
   std::vector<BodyState> matched;
+  std::vector<std::size_t> unknown;
   matched.reserve(bodies.size());
   std::size_t old = 0;
   for (const Body& b : bodies) {
@@ -40,19 +71,13 @@ void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWo
       work.is_new.push_back(!is_same_pose(matched.back().last_pose, b.pose));
       continue;
     }
-    const auto same_shape = [&](const BodyState& s) { return s.shape == b.shape; };
-    BodyState fresh{b.id, b.shape, nullptr, {}, b.pose, b.pose};
     work.is_new.push_back(1);
-    if (const auto twin = std::find_if(matched.begin(), matched.end(), same_shape); twin != matched.end()) {
-      fresh.collider = twin->collider;
-      fresh.inertia = twin->inertia;
-    } else {
-      fresh.collider = collision::make_collider(*b.shape);
-      fresh.inertia = find_principal_inertia(b.shape->inertia);
-    }
-    matched.push_back(std::move(fresh));
+    unknown.push_back(matched.size());
+    matched.push_back({b.id, b.shape, nullptr, {}, b.pose, b.pose});
   }
   state.bodies = std::move(matched);
+  find_colliders(state, unknown);
+  state.shelf->bodies = state.bodies;
 }
 
 WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSettings& settings) {
@@ -64,10 +89,12 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   w.start = w.end = w.predicted = b.pose;
   w.rotation = b.pose.rotation;
   const double dt = settings.time_step;
+  w.placed.collider = w.collider;
   if (b.motion == body::Motion::scripted) {
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;
     w.is_active = w.velocity.squaredNorm() + w.spin.squaredNorm() > 0.0;
+    w.turn_angle = dt * w.spin.norm();
     w.predicted.translation += dt * w.velocity;
     w.predicted.rotation = (rotation_by(dt * w.spin) * w.start.rotation).normalized();
   } else if (b.is_dynamic() && b.is_awake) {
@@ -75,6 +102,8 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
     w.inverse_mass = b.inverse_mass;
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;
+    w.velocity_start = w.velocity;
+    w.spin_start = w.spin;
     w.gravity = settings.gravity;
     if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0) w.inverse_moments = w.inertia.moments.cwiseInverse();
     const Mat3 axes = (w.rotation * w.inertia.body_from_axes).toRotationMatrix();
@@ -83,6 +112,7 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
     Vec3 spin = w.spin;
     advance_spin(w.inertia, dt, SpinOrder::fourth, w.predicted.rotation, spin);
     w.predicted_spin = spin;
+    w.turn_angle = w.shape->kind == ShapeKind::sphere ? 0.0 : dt * std::max(w.spin.norm(), spin.norm());
   }
   return w;
 }
@@ -145,6 +175,31 @@ std::vector<collision::IndexPair> find_pairs(const std::vector<Body>& bodies, co
   return pairs;
 }
 
+// A step that is taken again looks at pairs that stand where they stood.
+void take_from_shelf(ContactState& state, MotionWork& work) {
+  const auto& rows = state.shelf->pairs;
+  std::size_t row = 0;
+  for (const WorkPair& pair : work.pairs) {
+    PairState& memory = state.pairs[at(pair.state)];
+    const std::pair key(memory.body_a, memory.body_b);
+    while (row < rows.size() && std::pair(rows[row].body_a, rows[row].body_b) < key) ++row;
+    if (row == rows.size() || memory.search || std::pair(rows[row].body_a, rows[row].body_b) != key) continue;
+    const auto& kept = rows[row].search;
+    if (is_same_pose(kept->start_a, work.bodies[at(pair.a)].start) &&
+        is_same_pose(kept->start_b, work.bodies[at(pair.b)].start))
+      memory.search = kept;
+  }
+}
+
+void put_on_shelf(const ContactState& state, const MotionWork& work) {
+  auto& rows = state.shelf->pairs;
+  rows.clear();
+  for (const WorkPair& pair : work.pairs) {
+    const PairState& memory = state.pairs[at(pair.state)];
+    if (memory.search) rows.push_back({memory.body_a, memory.body_b, memory.search});
+  }
+}
+
 // The memory of pairs: of those found, of those of two bodies that both do not move (asleep), and of no
 // others.
 void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::IndexPair>& found,
@@ -171,8 +226,10 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::I
     w.state = static_cast<int>(matched.size());
     if (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) == key) {
       matched.push_back(std::move(state.pairs[old++]));
-      if (work.is_new[at(pair.a)] || work.is_new[at(pair.b)]) matched.back().features.reset();
+      w.is_first_seen = work.is_new[at(pair.a)] || work.is_new[at(pair.b)];
+      if (w.is_first_seen) matched.back().search.reset();
     } else {
+      w.is_first_seen = true;
       matched.emplace_back();
       matched.back().body_a = key.first;
       matched.back().body_b = key.second;
@@ -181,6 +238,7 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::I
   }
   while (old < state.pairs.size()) keep_still(state.pairs[old++]);
   state.pairs = std::move(matched);
+  take_from_shelf(state, work);
 }
 
 // What kind of pair this is and how far it must be looked at.
@@ -194,91 +252,24 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   const double predicted = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
   pair.motion = predicted + settings.gravity.norm() * settings.time_step * settings.time_step;
+  pair.rounding = 1e-14 * (pair.size + a.start.translation.cwiseAbs().maxCoeff() +
+                           b.start.translation.cwiseAbs().maxCoeff());
   const double usual_gap = settings.kept_gap * pair.size;
   pair.is_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
   pair.is_flipped = a.shape->kind == ShapeKind::plane;
   pair.is_analytic = collision::is_analytic_pair(a.shape->kind, b.shape->kind);
+  pair.has_sides = pair.is_plane || pair.is_analytic || a.shape->kind == ShapeKind::sphere ||
+                   b.shape->kind == ShapeKind::sphere;
   pair.margin =
       2.0 * usual_gap +
       (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));
   if (pair.is_plane || pair.is_analytic) return;
   const double slack = settings.search_slack * pair.size;
   pair.is_fast = predicted > slack;
-  const double list_needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
-  pair.needs_list =
-      !pair.is_fast && (!settings.has_caches || !memory.features || memory.list_margin < list_needed);
-}
-
-void add_solver_contacts(const ContactState& state, MotionWork& work) {
-  for (std::size_t p = 0; p < work.pairs.size(); ++p) {
-    const WorkPair& pair = work.pairs[p];
-    const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-    if (a.inverse_mass == 0.0 && b.inverse_mass == 0.0) continue;
-    const PairState& memory = state.pairs[at(pair.state)];
-    for (const Contact& found : pair.contacts) {
-      SolverContact c;
-      c.a = pair.a;
-      c.b = pair.b;
-      c.pair = static_cast<int>(p);
-      c.key = found.key;
-      c.friction = pair.material.friction;
-      c.restitution = pair.material.restitution;
-      c.rolling = pair.material.rolling_friction;
-      c.kept_gap = pair.kept_gap;
-      c.threshold = pair.threshold;
-      c.normal = found.normal;
-      int axis = 0;
-      c.normal.cwiseAbs().minCoeff(&axis);
-      c.tangent_u = c.normal.cross(Vec3::Unit(axis)).normalized();
-      c.tangent_v = c.normal.cross(c.tangent_u);
-      c.arm_a_start = found.on_a - a.start.translation;
-      c.arm_b_start = found.on_b - b.start.translation;
-      c.gap_start = found.gap;
-      c.lean = found.lean;
-      const auto known =
-          std::lower_bound(memory.contacts.begin(), memory.contacts.end(), found.key,
-                           [](const RememberedContact& r, std::uint64_t key) { return r.feature_key < key; });
-      if (known != memory.contacts.end() && known->feature_key == found.key) {
-        c.was_loaded = known->was_loaded;
-        c.arrival_speed = known->arrival_speed;
-        c.warm = {known->normal_impulse, c.tangent_u.dot(known->friction_impulse),
-                  c.tangent_v.dot(known->friction_impulse)};
-      }
-      work.contacts.push_back(c);
-    }
-  }
-}
-
-void build_islands(MotionWork& work) {
-  std::vector<int> parent(work.bodies.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
-  for (const SolverContact& c : work.contacts) {
-    WorkBody &a = work.bodies[at(c.a)], &b = work.bodies[at(c.b)];
-    if (a.inverse_mass > 0.0) a.is_free = false;
-    if (b.inverse_mass > 0.0) b.is_free = false;
-    if (a.is_free || b.is_free) continue;
-    const int ra = root(c.a), rb = root(c.b);
-    parent[at(std::max(ra, rb))] = std::min(ra, rb);
-  }
-  std::vector<int> number(work.bodies.size(), -1);
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    if (work.bodies[i].is_free) continue;
-    int& island = number[at(root(static_cast<int>(i)))];
-    if (island < 0) {
-      island = static_cast<int>(work.islands.size());
-      work.islands.emplace_back();
-    }
-    work.islands[at(island)].bodies.push_back(static_cast<int>(i));
-  }
-  for (std::size_t i = 0; i < work.contacts.size(); ++i) {
-    const SolverContact& c = work.contacts[i];
-    const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
-    work.islands[at(number[at(root(member))])].contacts.push_back(static_cast<int>(i));
-  }
+  const double needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
+  pair.needs_search =
+      !pair.is_fast && (!settings.has_caches || !memory.search ||
+                        memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start) < needed);
 }
 
 // Sleepers that something touches or is about to reach, unless that moves hardly at all.
@@ -302,11 +293,40 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
   }
 }
 
+// A pair that was not thought of: without contacts, only to be kept from crossing.
+void add_pair(const std::vector<Body>& bodies, const ContactSettings& settings,
+              const collision::IndexPair& found, ContactState& state, MotionWork& work) {
+  WorkPair pair;
+  pair.a = found.a;
+  pair.b = found.b;
+  PairState memory;
+  memory.body_a = bodies[at(pair.a)].id;
+  memory.body_b = bodies[at(pair.b)].id;
+  const auto place =
+      std::lower_bound(state.pairs.begin(), state.pairs.end(), memory, [](const auto& x, const auto& y) {
+        return std::pair(x.body_a, x.body_b) < std::pair(y.body_a, y.body_b);
+      });
+  pair.state = static_cast<int>(place - state.pairs.begin());
+  const bool is_known =
+      place != state.pairs.end() && place->body_a == memory.body_a && place->body_b == memory.body_b;
+  classify(bodies, settings, memory, work, pair);
+  memory.kept_gap = pair.kept_gap = settings.kept_gap * pair.size;
+  pair.threshold = impact_threshold(settings, pair.kept_gap);
+  pair.is_free_certified = false;
+  if (!is_known) {
+    for (WorkPair& other : work.pairs) other.state += other.state >= pair.state ? 1 : 0;
+    state.pairs.insert(place, std::move(memory));
+  }
+  work.pairs.push_back(std::move(pair));
+}
+
 }  // namespace
 
 void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
                           ContactState& state, MotionWork& work) {
   work = MotionWork();
+  work.substep = settings.time_step / settings.substeps;
+  work.warm_scale = state.substep > 0.0 ? work.substep / state.substep : 1.0;
   match_bodies(bodies, state, work);
   bool anything_moves = false;
   work.bodies.reserve(bodies.size());
@@ -318,8 +338,10 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   if (!anything_moves) return;
   std::vector<collision::SweptBound> bounds;
   bounds.reserve(bodies.size());
-  for (const WorkBody& w : work.bodies)
+  for (WorkBody& w : work.bodies) {
     bounds.push_back(swept_bound(w, w.predicted, broad_reserve(w, settings)));
+    w.looked = bounds.back().box;
+  }
   match_pairs(bodies, find_pairs(bodies, work, bounds), work, state);
 
   struct Needs {
@@ -330,8 +352,9 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     classify(bodies, settings, state.pairs[at(pair.state)], work, pair);
     for (const int i : {pair.a, pair.b}) {
       Needs& n = needs[at(i)];
-      n.place = n.place || !pair.is_analytic;
-      n.boxes = n.boxes || pair.needs_list;
+      n.place = true;
+      n.boxes = n.boxes || pair.needs_search || (pair.is_first_seen && !pair.is_analytic) ||
+                state.pairs[at(pair.state)].is_exempt;
       n.swept = n.swept || pair.is_fast;
     }
   }
@@ -340,17 +363,14 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     if (w.shape->kind == ShapeKind::plane) return;
     if (needs[i].place) place(w);
     if (needs[i].boxes) collision::refit_boxes(w.placed);
-    if (!needs[i].swept) return;
-    w.end_way = w.predicted.translation - w.start.translation;
-    place_at(w, {w.predicted.rotation, w.start.translation}, w.turned);
-    collision::refit_swept_boxes(w.placed, w.turned);
+    if (needs[i].swept) sweep(w, w.predicted);
   });
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
     find_pair_contacts(settings, work, state.pairs[at(work.pairs[p].state)], work.pairs[p]);
   });
+  put_on_shelf(state, work);
   find_sleepers_to_wake(bodies, settings, work);
-  add_solver_contacts(state, work);
-  build_islands(work);
+  build_contact_graph(state, work);
 }
 
 void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
@@ -358,44 +378,35 @@ void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& s
   std::vector<char> has_strayed(bodies.size(), 0);
   bool anyone = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const WorkBody& w = work.bodies[i];
-    if (!w.is_active || w.is_free) continue;
-    const double strayed = (w.end.translation - w.predicted.translation).norm() + turn_bound(w, w.end);
-    has_strayed[i] = strayed > 0.5 * broad_reserve(w, settings) ? 1 : 0;
-    anyone = anyone || has_strayed[i];
+    WorkBody& w = work.bodies[i];
+    if (!w.is_active || w.is_free || w.shape->kind == ShapeKind::plane) continue;
+    geometry::Box end = box_at(w, w.end);
+    const double gap =
+        2.0 * settings.kept_gap * w.reach + (w.turn_angle > kStraightTurn ? turn_bound(w, w.end) : 0.0);
+    const bool is_within = (end.low.array() - gap >= w.looked.low.array()).all() &&
+                           (end.high.array() + gap <= w.looked.high.array()).all();
+    if (is_within) continue;
+    has_strayed[i] = 1;
+    anyone = true;
+    const double grow = turn_bound(w, w.end) + kBroadSlack * 2.0 * w.reach;
+    end.low.array() -= grow;
+    end.high.array() += grow;
+    w.looked.include(end);
   }
   if (!anyone) return;
   std::vector<collision::SweptBound> bounds;
   bounds.reserve(bodies.size());
-  for (const WorkBody& w : work.bodies) {
-    bounds.push_back(swept_bound(w, w.end, turn_bound(w, w.end) + 2.0 * settings.kept_gap * w.reach));
-  }
-  std::vector<collision::IndexPair> missed = find_pairs(bodies, work, bounds);
+  for (const WorkBody& w : work.bodies) bounds.push_back({w.looked, w.is_active});
+  std::vector<collision::IndexPair> known;
+  for (const WorkPair& pair : work.pairs) known.push_back({pair.a, pair.b});
   const auto comes_before = [](const auto& x, const auto& y) {
     return std::pair(x.a, x.b) < std::pair(y.a, y.b);
   };
-  std::erase_if(missed, [&](const collision::IndexPair& pair) {
-    return !(has_strayed[at(pair.a)] || has_strayed[at(pair.b)]) ||
-           std::binary_search(work.pairs.begin(), work.pairs.end(), pair, comes_before);
-  });
-  for (const auto& found : missed) {
-    WorkPair pair;
-    pair.a = found.a;
-    pair.b = found.b;
-    PairState memory;
-    memory.body_a = bodies[at(pair.a)].id;
-    memory.body_b = bodies[at(pair.b)].id;
-    classify(bodies, settings, memory, work, pair);
-    memory.kept_gap = pair.kept_gap = settings.kept_gap * pair.size;
-    pair.threshold = impact_threshold(settings, pair.kept_gap);
-    const auto place =
-        std::lower_bound(state.pairs.begin(), state.pairs.end(), memory, [](const auto& x, const auto& y) {
-          return std::pair(x.body_a, x.body_b) < std::pair(y.body_a, y.body_b);
-        });
-    pair.state = static_cast<int>(place - state.pairs.begin());
-    for (WorkPair& other : work.pairs) other.state += other.state >= pair.state ? 1 : 0;
-    state.pairs.insert(place, std::move(memory));
-    work.pairs.push_back(std::move(pair));
+  std::sort(known.begin(), known.end(), comes_before);
+  for (const auto& found : find_pairs(bodies, work, bounds)) {
+    if (!has_strayed[at(found.a)] && !has_strayed[at(found.b)]) continue;
+    if (!std::binary_search(known.begin(), known.end(), found, comes_before))
+      add_pair(bodies, settings, found, state, work);
   }
 }
 

@@ -29,6 +29,7 @@ class IslandSolver {
       : settings_(settings), island_(island), work_(work), step_(settings.time_step / settings.substeps) {}
 
   void run() {
+    begin();
     for (int i = 0; i < settings_.substeps; ++i) {
       substep_start_ = i * step_;
       kick();
@@ -49,6 +50,38 @@ class IslandSolver {
   }
 
  private:
+  // The solver may be run again with more contacts: all begins at the start of the step.
+  void begin() {
+    for (const int i : island_.bodies) {
+      WorkBody& b = body(i);
+      b.velocity = b.velocity_start;
+      b.spin = b.spin_start;
+      b.way.setZero();
+      b.rotation = b.start.rotation;
+      b.turn.setIdentity();
+      b.turn_angle = 0.0;
+      b.substep_rotations.clear();
+      place_inertia(b);
+    }
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      c.warm = c.warm_start;
+      c.arrival_speed = c.arrival_before;
+      c.total.setZero();
+      c.moment_point.setZero();
+      c.moment_a.setZero();
+      c.moment_b.setZero();
+      c.impulse_a.setZero();
+      c.impulse_b.setZero();
+      c.moment_weight = c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
+    }
+  }
+
+  static void place_inertia(WorkBody& b) {
+    const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
+    b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
+  }
+
   WorkBody& body(int i) { return work_.bodies[at(i)]; }
 
   void kick() {
@@ -65,8 +98,11 @@ class IslandSolver {
       // A sphere touches with whatever point is lowest, not with the one that was.
       if (b.shape->kind != body::ShapeKind::sphere)
         b.turn = r * b.start.rotation.toRotationMatrix().transpose();
-      const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
-      b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
+      place_inertia(b);
+      if (b.shape->kind != body::ShapeKind::sphere) {
+        b.turn_angle += b.spin.norm() * step_;
+        b.substep_rotations.push_back(b.rotation);
+      }
     }
   }
 

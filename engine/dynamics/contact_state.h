@@ -9,9 +9,9 @@
 
 #include "engine/body/body.h"
 #include "engine/collision/collider.h"
-#include "engine/collision/feature_list.h"
 #include "engine/core/hash.h"
 #include "engine/core/vec.h"
+#include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
 
 namespace shatterbox::dynamics {
@@ -34,15 +34,11 @@ struct PairState {
   bool is_touching = false;  // holds an island together
   int trouble_age = 1000;    // steps since the continuous pass last had to act here
   int stuck_steps = 0;       // steps in a row in which the pair had to be cut short
-  bool is_exempt = false;    // crosses, or cannot be solved: lets pass until it has come apart
+  bool is_exempt = false;    // crossed when it was first seen, and still does: passes until it has come apart
+  bool is_reported = false;  // as exempt
   std::vector<RememberedContact> contacts;
 
-  // Caches.
-  double odometer = 0.0;  // m: how far the bodies may have come closer since the pair was first seen
-  double odometer_at_list = 0.0;
-  double list_margin = -1.0;  // m: the list holds all features that were this close; negative: no list
-  double list_reach = 0.0;    // m: the margin that it was made with
-  std::shared_ptr<const collision::FeatureList> features;  // ascending by `bound`
+  std::shared_ptr<const FeatureSearch> search;  // a cache
 };
 
 /// One body's own memory.
@@ -55,9 +51,23 @@ struct BodyState {
   Pose last_pose;  // at the end of the last step: whoever moves a body by hand makes its lists void
 };
 
+/// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and
+/// lists here. A cache that all copies of a state share.
+struct SearchShelf {
+  std::vector<BodyState> bodies;  // ascending id
+  struct Row {
+    body::BodyId body_a = 0, body_b = 0;
+    std::shared_ptr<const FeatureSearch> search;
+  };
+  std::vector<Row> pairs;  // ascending (body_a, body_b)
+};
+
 struct ContactState {
   std::vector<PairState> pairs;   // ascending (body_a, body_b)
   std::vector<BodyState> bodies;  // ascending id
+  double substep = 0.0;           // s, of the impulses that contacts remember
+  bool is_wild = false;           // many bodies spin and collide: the next step is taken in parts
+  std::shared_ptr<SearchShelf> shelf = std::make_shared<SearchShelf>();
 
   PairState* find_pair(body::BodyId a, body::BodyId b);
   const PairState* find_pair(body::BodyId a, body::BodyId b) const;

@@ -19,18 +19,118 @@ void place(WorkBody& body) {
   body.is_placed = true;
 }
 
+Vec3 direction_hint(const WorkBody& a, const WorkBody& b, const collision::FeaturePoints& points) {
+  const Vec3& touch = points.points[0];
+  if (b.shape->kind != body::ShapeKind::shell) return touch - b.start.translation;
+  if (a.shape->kind != body::ShapeKind::shell) return a.start.translation - touch;
+  return a.start.translation - b.start.translation;
+}
+
 Vec3 carry(const WorkBody& body, const Vec3& point, const Pose& from, const Pose& to) {
   if (body.shape->kind == body::ShapeKind::sphere) return point - from.translation + to.translation;
   return to.apply(from.apply_inverse(point));
 }
 
+Pose blend(const Pose& from, const Pose& to, double time) {
+  Pose pose;
+  pose.translation = from.translation + time * (to.translation - from.translation);
+  const double sign = from.rotation.dot(to.rotation) < 0.0 ? -1.0 : 1.0;
+  const Quat::Coefficients mixed = (1.0 - time) * from.rotation.coeffs() + time * sign * to.rotation.coeffs();
+  pose.rotation = Quat(mixed).normalized();
+  return pose;
+}
+
+Pose pose_on_way(const WorkBody& body, double time) {
+  if (time <= 0.0) return body.start;
+  if (time >= 1.0) return body.end;
+  if (body.knots.empty()) return blend(body.start, body.end, time);
+  const double place = time * static_cast<double>(body.knots.size() - 1);
+  const auto knot = std::min(static_cast<std::size_t>(place), body.knots.size() - 2);
+  Pose pose = blend({body.knots[knot], Vec3::Zero()}, {body.knots[knot + 1], Vec3::Zero()},
+                    place - static_cast<double>(knot));
+  pose.translation = body.start.translation + time * (body.end.translation - body.start.translation);
+  return pose;
+}
+
+int parts_of(const WorkBody& body) {
+  constexpr int kMost = 64;
+  return std::clamp(static_cast<int>(std::ceil(std::min(1e3, body.turn_angle / kStraightTurn))), 1, kMost);
+}
+
+void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
+  body.end.translation += shift;
+  body.end.rotation = (rotation_by(turn) * body.end.rotation).normalized();
+  body.is_free = false;
+  body.turn_angle += turn.norm();
+  if (body.knots.empty()) return;
+  const double last = static_cast<double>(body.knots.size() - 1);
+  for (std::size_t k = 1; k + 1 < body.knots.size(); ++k) {
+    body.knots[k] = (rotation_by(static_cast<double>(k) / last * turn) * body.knots[k]).normalized();
+  }
+  body.knots.back() = body.end.rotation;
+}
+
+void shorten(WorkBody& body, double share) {
+  body.is_free = false;
+  if (share <= 0.0) {
+    body.end = body.start;
+    body.turn_angle = 0.0;
+    body.knots.clear();
+    return;
+  }
+  std::vector<Quat> knots;
+  for (std::size_t k = 0; k < body.knots.size(); ++k) {
+    const double time = share * static_cast<double>(k) / static_cast<double>(body.knots.size() - 1);
+    knots.push_back(pose_on_way(body, time).rotation);
+  }
+  body.end = pose_on_way(body, share);
+  body.knots = std::move(knots);
+  body.turn_angle *= share;
+}
+
+void sweep(WorkBody& body, const Pose& end) {
+  const bool is_done = body.is_swept && body.swept_end.translation == end.translation &&
+                       body.swept_end.rotation.coeffs() == end.rotation.coeffs();
+  if (is_done) return;
+  place(body);
+  std::vector<Vec3> turned;
+  place_at(body, {end.rotation, body.start.translation}, turned);
+  collision::refit_swept_boxes(body.placed, body.placed.start, turned);
+  body.is_swept = true;
+  body.swept_end = end;
+}
+
+bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
+                         double margin) {
+  const Vec3 way_a = end_a.translation - a.start.translation, way_b = end_b.translation - b.start.translation;
+  const Vec3 apart = a.start.translation - b.start.translation, way = way_a - way_b;
+  const double length_squared = way.squaredNorm();
+  const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
+  if ((apart + t * way).norm() > (a.reach + b.reach + margin) * (1.0 + 1e-9)) return true;
+  if (a.turn_angle > kStraightTurn && b.turn_angle > kStraightTurn) return false;
+  const WorkBody &ball = a.turn_angle > kStraightTurn ? a : b, &other = a.turn_angle > kStraightTurn ? b : a;
+  const Vec3 relative = a.turn_angle > kStraightTurn ? way : Vec3(-way);
+  return !collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, margin);
+}
+
 double turn_bound(const WorkBody& body, const Pose& end) {
-  // |q - p| of unit quaternions is 2 sin(theta / 4); the chord of a point at `reach` is 2 sin(theta / 2)
-  // reach.
-  const Quat& p = body.start.rotation;
-  const Quat& q = end.rotation;
-  const double apart = std::min((p.coeffs() - q.coeffs()).norm(), (p.coeffs() + q.coeffs()).norm());
-  return std::min(2.0, 2.0 * apart) * body.reach;
+  constexpr double kAllWaysRound = 3.0;  // rad: the end says nothing about the way
+  if (body.turn_angle > kAllWaysRound) return 2.0 * body.reach;
+  return turn_bound(body.start.rotation, end.rotation, body.reach);
+}
+
+std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose& end_a, const WorkBody& b,
+                                                  const Pose& end_b, double margin) {
+  auto search = std::make_shared<FeatureSearch>();
+  search->is_swept = true;
+  search->margin = margin;
+  search->start_a = a.start;
+  search->start_b = b.start;
+  search->end_a = end_a;
+  search->end_b = end_b;
+  const Vec3 way_a = end_a.translation - a.start.translation, way_b = end_b.translation - b.start.translation;
+  collision::list_swept_features(a.placed, b.placed, way_b - way_a, margin, search->features);
+  return search;
 }
 
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b) {

@@ -8,10 +8,12 @@
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
 #include "engine/collision/contact.h"
-#include "engine/collision/feature_list.h"
+#include "engine/collision/feature_gap.h"
 #include "engine/core/vec.h"
 #include "engine/dynamics/contact_settings.h"
+#include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
+#include "engine/geometry/bvh.h"
 
 namespace shatterbox::dynamics {
 
@@ -25,22 +27,30 @@ struct WorkBody {
   double reach = 0.0;                   // m: greatest distance of a vertex from the centre
 
   Pose start, end;
-  Vec3 gravity = Vec3::Zero();          // m/s2; zero unless dynamic and awake
+  Vec3 gravity = Vec3::Zero();  // m/s2; zero unless dynamic and awake
+  Vec3 velocity_start = Vec3::Zero(), spin_start = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();         // m/s, now
   Vec3 spin = Vec3::Zero();             // rad/s, now
-  Vec3 way = Vec3::Zero();              // m, of the centre since the start
-  Quat rotation = Quat::Identity();     // now
-  Mat3 turn = Mat3::Identity();         // rotation since the start
+  double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
+  std::vector<Quat> substep_rotations;  // after each substep of the solver
+  std::vector<Quat> knots;           // rotations at equal times, start and end included; empty: a short turn
+  Vec3 way = Vec3::Zero();           // m, of the centre since the start
+  Quat rotation = Quat::Identity();  // now
+  Mat3 turn = Mat3::Identity();      // rotation since the start
   Mat3 inverse_inertia = Mat3::Zero();  // world, now
 
   bool is_placed = false;
-  bool is_free = true;                 // no contact: end is the predicted end
-  collision::PlacedCollider placed;    // vertices at the start
-  std::vector<Vec3> turned;            // vertices at the end less `end_way`, for swept tests
-  Vec3 end_way = Vec3::Zero();         // m
+  bool is_free = true;               // no contact: end is the predicted end
+  collision::PlacedCollider placed;  // vertices at the start
+  bool is_swept = false;             // `placed.swept` is for the way to `swept_end`
+  Pose swept_end;
+  geometry::Box looked;                // within it, everything that the body may meet is among the pairs
   Vec3 predicted_spin = Vec3::Zero();  // rad/s, then
   Pose predicted;                      // end pose if nothing touches
 };
+
+/// A turn of more than this in a step, rad, is followed in parts: straight paths would cut its corner.
+inline constexpr double kStraightTurn = 0.5;
 
 struct SolverContact {
   int a = 0, b = 0;  // numbers of the bodies
@@ -66,8 +76,10 @@ struct SolverContact {
   Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
   Vec3 warm = Vec3::Zero();     // to start the next substep from, in the same axes
   Vec2 rolling_impulse = Vec2::Zero();
-  double arrival_speed = 0.0;  // m/s, of an impact that has not bounced
-  double target = 0.0;         // m/s, of the bounce
+  Vec3 warm_start = Vec3::Zero();  // of the last step, to begin this one with
+  double arrival_speed = 0.0;      // m/s, of an impact that has not bounced
+  double arrival_before = 0.0;     // m/s, the same at the start of the step
+  double target = 0.0;             // m/s, of the bounce
   bool is_arriving = false;
 
   // Of the whole step.
@@ -86,20 +98,23 @@ struct WorkPair {
   int state = 0;     // number in ContactState::pairs
   PairMaterial material;
   double size = 0.0;         // m
+  double rounding = 0.0;     // m, of gaps where the bodies are
   double kept_gap = 0.0;     // m, after adaptation
   double threshold = 0.0;    // m/s
   bool is_plane = false;     // b is the plane
   bool is_flipped = false;   // the plane has the lower number
   bool is_analytic = false;  // spheres and boxes
+  bool has_sides = false;    // the gap has a sign: a plane, two solids, or a sphere and a surface
   bool is_fast = false;      // moves further than a feature list is good for
-  bool needs_list = false;
+  bool needs_search = false;
+  bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is
   double motion = 0.0;             // m: bound of the relative motion if nothing touches
   double margin = 0.0;             // m: contacts are felt from this gap on
   bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
-  std::vector<double> gaps;        // m, of the first `features` at the start
-  double list_moved = 0.0;         // m: how far the bodies have moved since the list was made
-  double list_margin = 0.0;        // m: `features` holds all pairs that were this close at the start
-  std::shared_ptr<const collision::FeatureList> features;
+  std::shared_ptr<const FeatureSearch> search;
+  std::vector<double> gaps;                       // m, of the first features of `search` at the start
+  std::vector<collision::FeatureGap> start_gaps;  // of its features at the start, where it was needed
+  double least_gap = 1e300;  // m, at the start; at least what was looked at if nothing is near
   std::vector<collision::Contact> contacts;
   double work = 0.0;  // J, of its impulses in this substep
 };
@@ -120,6 +135,8 @@ class MotionWork {
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
+  double substep = 0.0;     // s
+  double warm_scale = 1.0;  // of remembered impulses: this step's substep over the last one's
 };
 
 /// Fills a body's vertices at the start of the step, once.
@@ -128,12 +145,43 @@ void place(WorkBody& body);
 /// Vertices (|V| x 3, world) at a pose.
 void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out);
 
+/// Which way a separates from b where features touch: out of the solid one, or from centre to centre.
+Vec3 direction_hint(const WorkBody& a, const WorkBody& b, const collision::FeaturePoints& points);
+
 /// Where a point on the surface of the body goes that is at `point` when the body is at `from`, when it is at
 /// `to`: with its material, but on a sphere with its direction.
 Vec3 carry(const WorkBody& body, const Vec3& point, const Pose& from, const Pose& to);
 
+/// Between two poses: straight, and turning the short way.
+Pose blend(const Pose& from, const Pose& to, double time);
+
+/// Where the body is after the share `time` of the step.
+Pose pose_on_way(const WorkBody& body, double time);
+
+/// Straight parts in which its way must be followed.
+int parts_of(const WorkBody& body);
+
+/// Moves the end pose by `shift` (m) and `turn` (rotation vector), and the way to it in proportion.
+void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn);
+
+/// Lets the body go only this share of its way.
+void shorten(WorkBody& body, double share);
+
+/// Fills the boxes over the way to `end`, once.
+void sweep(WorkBody& body, const Pose& end);
+
+/// True if two bodies, one of which turns far, surely keep `margin` apart: the one within a ball. Those that
+/// do not turn far must be swept to their ends.
+bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
+                         double margin);
+
 /// No point of the body moves further than this by its turn from start to `end`, m.
 double turn_bound(const WorkBody& body, const Pose& end);
+
+/// All features of a pair that come within `margin` on the way to these ends. Both bodies must be swept to
+/// them.
+std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose& end_a, const WorkBody& b,
+                                                  const Pose& end_b, double margin);
 
 /// Relative motion of a pair during the step is at most this, m: from ways and turns of end poses.
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b);

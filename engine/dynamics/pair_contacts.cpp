@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/collision/analytic_contact.h"
@@ -19,14 +20,11 @@ constexpr double kLocalSlack = 0.1;       // sine: neighbouring features may lea
 constexpr double kManifoldRadius = 0.04;  // share of the pair's size
 constexpr double kAlwaysNear = 3.0;       // of the usual gap
 constexpr double kRaiseTime = 0.5;        // s
+constexpr double kTouching = 1e-9;        // share of the pair's size: what sinks less only touches
 constexpr double kImpactWindow = 0.1;     // share of the step after the first hit in which others count
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
-}
-
-Vec3 hint(const WorkBody& a, const WorkBody& b) {
-  return a.start.translation - b.start.translation;
 }
 
 Contact make_contact(const collision::FeaturePair& features, const collision::FeatureGap& gap) {
@@ -55,7 +53,7 @@ void keep_first_hits(std::vector<Hit>& hits, double size, std::vector<Contact>& 
     kept.push_back(hit.contact);
   }
   for (const Contact& c : out) std::erase_if(kept, [&](const Contact& k) { return k.key == c.key; });
-  collision::reduce_manifold(kept, {}, kManifoldRadius * size, 8);
+  collision::reduce_manifold(kept, {}, 0.0, kManifoldRadius * size, 8);
   out.insert(out.end(), kept.begin(), kept.end());
 }
 
@@ -63,51 +61,78 @@ double least_on_path(double gap, double kept_gap) {
   return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
 }
 
-// Nearest first, so that later steps need only look at the list's head.
-void sort_by_gap(const WorkBody& a, const WorkBody& b, collision::FeatureList& list) {
-  for (auto& features : list) {
-    const auto points = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    features.bound = collision::measure(points, hint(a, b)).gap * (1.0 - 1e-12);
-  }
-  std::sort(list.begin(), list.end(), [](const auto& x, const auto& y) {
-    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
-  });
+// All features that are near now, for as many steps as the pair stays about here.
+std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBody& b, double margin) {
+  auto search = std::make_shared<FeatureSearch>();
+  search->margin = margin;
+  search->start_a = a.start;
+  search->start_b = b.start;
+  collision::list_near_features(a.placed, b.placed, margin, search->features);
+  return search;
 }
+
+// Follows the predicted paths of features that are not near yet, and takes the first that meet.
+class Foresight {
+ public:
+  Foresight(const WorkBody& a, const WorkBody& b, double usual_gap) : a_(a), b_(b), usual_gap_(usual_gap) {
+    place_at(a, a.predicted, end_a_);
+    place_at(b, b.predicted, end_b_);
+  }
+
+  void follow(const collision::FeaturePair& features, const collision::FeaturePoints& start,
+              const collision::FeatureGap& gap, const Vec3& hint) {
+    const auto end = collision::gather(features, *a_.collider, end_a_, *b_.collider, end_b_);
+    const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap_), hint, &gap);
+    if (path.has_hit) hits_.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
+  }
+
+  std::vector<Hit>& hits() { return hits_; }
+
+ private:
+  const WorkBody &a_, &b_;
+  double usual_gap_;
+  std::vector<Vec3> end_a_, end_b_;
+  std::vector<Hit> hits_;
+};
 
 void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
                    WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-  collision::FeatureList fresh;
+  const double slack = settings.search_slack * pair.size;
+  const bool turns_far = a.turn_angle > kStraightTurn || b.turn_angle > kStraightTurn;
+  pair.least_gap = pair.margin;
+  if (turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
+    memory.search.reset();
+    pair.is_free_certified = true;
+    return;
+  }
+  double moved = 0.0;
   if (pair.is_fast) {
-    collision::list_swept_features(a.placed, b.placed, b.end_way - a.end_way, pair.margin, fresh);
-    pair.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
-    pair.list_margin = pair.margin;
-    memory.features.reset();
+    pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + slack);
+    memory.search.reset();
   } else {
-    if (pair.needs_list) {
-      memory.list_margin = memory.list_reach = pair.margin + settings.search_slack * pair.size;
-      collision::list_near_features(a.placed, b.placed, memory.list_margin, fresh);
-      sort_by_gap(a, b, fresh);
-      memory.features = std::make_shared<const collision::FeatureList>(std::move(fresh));
-    }
-    pair.features = memory.features;
-    pair.list_margin = memory.list_margin;
-    pair.list_moved = memory.list_reach - memory.list_margin;
+    if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack);
+    pair.search = memory.search;
+    moved = moved_since(*pair.search, a, a.start, b, b.start);
   }
   const double usual_gap = settings.kept_gap * pair.size;
-  std::vector<Vec3> end_a, end_b;
-  if (pair.is_fast && !pair.features->empty()) {
-    place_at(a, a.predicted, end_a);
-    place_at(b, b.predicted, end_b);
-  }
-  std::vector<Hit> hits;
-  pair.is_free_certified = true;
-  const double reach = std::max(pair.margin, pair.motion + usual_gap) + pair.list_moved;
-  for (const auto& features : *pair.features) {
-    if (!pair.is_fast && features.bound > reach) break;
+  std::optional<Foresight> foresight;
+  if (pair.is_fast && !pair.search->features.empty()) foresight.emplace(a, b, usual_gap);
+  pair.is_free_certified = !turns_far;
+  const double reach = std::max(pair.margin, pair.motion + usual_gap);
+  pair.least_gap = reach;
+  pair.gaps.reserve(pair.search->features.size());
+  for (const auto& features : pair.search->features) {
+    if (!pair.is_fast && features.bound > reach + moved) break;
+    if (pair.is_fast && features.bound > pair.margin) {
+      pair.gaps.push_back(features.bound - pair.motion);
+      continue;
+    }
     const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    const auto gap = collision::measure(start, hint(a, b));
+    const Vec3 hint = direction_hint(a, b, start);
+    const auto gap = collision::measure(start, hint);
     pair.gaps.push_back(gap.gap);
+    pair.least_gap = std::min(pair.least_gap, gap.gap);
     if (gap.gap <= pair.margin) {
       // So close that the direction cannot mislead, every feature counts.
       if (gap.gap <= kAlwaysNear * usual_gap ||
@@ -118,17 +143,16 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
         continue;
       }
     }
-    if (!pair.is_fast) {
-      if (gap.gap <= pair.motion + usual_gap) pair.is_free_certified = false;
-      continue;
+    if (gap.gap <= pair.motion + usual_gap) {
+      if (foresight)
+        foresight->follow(features, start, gap, hint);
+      else
+        pair.is_free_certified = false;
     }
-    const auto end = collision::gather(features, *a.collider, end_a, *b.collider, end_b);
-    const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap), hint(a, b));
-    if (path.has_hit) hits.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
   }
-  if (!hits.empty()) {
+  if (foresight && !foresight->hits().empty()) {
     pair.is_free_certified = false;
-    keep_first_hits(hits, pair.size, pair.contacts);
+    keep_first_hits(foresight->hits(), pair.size, pair.contacts);
   }
 }
 
@@ -139,6 +163,7 @@ void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPa
   const double usual_gap = settings.kept_gap * pair.size;
   Vec3 normal;
   const double gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
+  pair.least_gap = gap;
   if (gap <= pair.margin) {
     // Once the direction is fixed, all of a face's corners that the motion may bring down belong to the
     // contact.
@@ -147,7 +172,8 @@ void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPa
     return;
   }
   if (gap > pair.motion + usual_gap) return;
-  const SolidTouch touch = find_first_touch(a, a.predicted, b, b.predicted, usual_gap, pair.margin);
+  const SolidTouch touch =
+      find_first_touch({a, a.start, a.predicted}, {b, b.start, b.predicted}, usual_gap, pair.margin);
   pair.contacts = touch.contacts;
 }
 
@@ -156,6 +182,8 @@ void meet_plane(const MotionWork& work, WorkPair& pair) {
   const WorkBody& other = work.bodies[at(pair.is_flipped ? pair.b : pair.a)];
   collision::find_plane_contacts(*other.collider, other.placed.start, plane.start, pair.margin,
                                  pair.contacts);
+  pair.least_gap = pair.margin;
+  for (const Contact& c : pair.contacts) pair.least_gap = std::min(pair.least_gap, c.gap);
   if (!pair.is_flipped) return;
   for (Contact& c : pair.contacts) {
     std::swap(c.on_a, c.on_b);
@@ -182,6 +210,12 @@ void adapt_gap(const ContactSettings& settings, PairState& memory, WorkPair& pai
   pair.threshold = impact_threshold(settings, memory.kept_gap);
 }
 
+bool is_crossing(const MotionWork& work, const WorkPair& pair) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  if (pair.has_sides) return pair.least_gap < -kTouching * pair.size;
+  return collision::crosses(a.placed, b.placed);
+}
+
 }  // namespace
 
 void find_pair_contacts(const ContactSettings& settings, const MotionWork& work, PairState& memory,
@@ -193,9 +227,9 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
   } else {
     meet_features(settings, work, memory, pair);
   }
-  if (memory.is_exempt) {
-    memory.is_exempt = pair.features ? !pair.features->empty() : !pair.contacts.empty();
-    pair.contacts.clear();
+  if (pair.is_first_seen || memory.is_exempt) {
+    memory.is_exempt = is_crossing(work, pair);
+    if (memory.is_exempt && !pair.has_sides) pair.contacts.clear();
   }
   adapt_gap(settings, memory, pair);
   std::vector<std::uint64_t> loaded;
@@ -204,7 +238,7 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
   }
   const bool is_in_trouble = memory.trouble_age < 30;
   const double radius = kManifoldRadius * pair.size * (is_in_trouble ? 0.5 : 1.0);
-  collision::reduce_manifold(pair.contacts, loaded, radius, is_in_trouble ? 64 : 16);
+  collision::reduce_manifold(pair.contacts, loaded, 2.0 * pair.kept_gap, radius, is_in_trouble ? 64 : 16);
 }
 
 }  // namespace shatterbox::dynamics

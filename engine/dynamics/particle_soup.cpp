@@ -98,7 +98,7 @@ class Soup {
       ends[i].reserve(bodies_[i].positions.size());
       for (std::size_t v = 0; v < bodies_[i].positions.size(); ++v)
         ends[i].push_back(bodies_[i].positions[v] + time_step_ * bodies_[i].velocities[v]);
-      collision::refit_swept_boxes(placed_[i], ends[i]);
+      collision::refit_swept_boxes(placed_[i], placed_[i].start, ends[i]);
     });
     return collect([&](std::size_t p, std::vector<Meeting>& out) {
       const SoupPair& pair = pairs_[p];

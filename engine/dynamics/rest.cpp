@@ -25,13 +25,13 @@ BodyState* find_memory(ContactState& state, BodyId id) {
   return place != state.bodies.end() && place->id == id ? &*place : nullptr;
 }
 
-// No point of the body is further from where it was at `rest` than two of its usual gaps.
+// No point of the body is further from where it was at `rest` than six of its usual gaps.
 bool stays_near(const ContactSettings& settings, const Body& b, const Pose& rest) {
   const double reach = b.shape->bounding_radius;
   const double apart = std::min((b.pose.rotation.coeffs() - rest.rotation.coeffs()).norm(),
                                 (b.pose.rotation.coeffs() + rest.rotation.coeffs()).norm());
   const double moved = (b.pose.translation - rest.translation).norm() + 2.0 * apart * reach;
-  return moved <= 2.0 * settings.kept_gap * 2.0 * reach;
+  return moved <= 6.0 * settings.kept_gap * 2.0 * reach;
 }
 
 // Islands of dynamic bodies that touch, asleep or not: the least number in each.

@@ -1,5 +1,5 @@
 // When and where two solids (spheres, boxes) first touch on their way through a step, by conservative
-// advancement.
+// advancement along separating directions of their straight vertex paths.
 #pragma once
 
 #include <vector>
@@ -9,14 +9,20 @@
 
 namespace shatterbox::dynamics {
 
+/// One body on a straight part of its way.
+struct SolidWay {
+  const WorkBody& body;
+  Pose from, to;
+};
+
 struct SolidTouch {
-  double time = 1.0;                         // share of the step
+  bool has_touched = false;
+  double time = 1.0;                         // share of the way
   std::vector<collision::Contact> contacts;  // seen from the start of the step; empty if they do not touch
 };
 
-/// Follows both bodies from their starts to the end poses, straight and turning the short way, until their
-/// gap is `least` (m); contacts are those with gaps below `margin` (m) then.
-SolidTouch find_first_touch(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
-                            double least, double margin);
+/// Follows both bodies until their gap is `least` (m, below the present one); contacts are those with gaps
+/// below `margin` (m) then.
+SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, double margin);
 
 }  // namespace shatterbox::dynamics

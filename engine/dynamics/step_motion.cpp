@@ -14,6 +14,10 @@ namespace {
 using body::Body;
 using body::ImpulseKind;
 
+constexpr int kParts = 4;      // of a wild step
+constexpr int kManySpin = 20;  // a step is wild if of so many awake bodies more than one turns far
+constexpr int kManyHits = 30;  // and of so many more than one pair was hit
+
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -52,13 +56,13 @@ void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body:
 }
 
 void remember_contacts(const MotionWork& work, ContactState& state) {
+  state.substep = work.substep;
   for (const WorkPair& pair : work.pairs) {
     PairState& memory = state.pairs[at(pair.state)];
     memory.contacts.clear();
     memory.is_touching = false;
     memory.trouble_age = std::min(memory.trouble_age + 1, kNoTrouble);
     const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-    memory.list_margin -= motion_bound(a, a.end, b, b.end);
     // A sleeper and what lies on it quietly keep their memory through its sleep.
     if (a.inverse_mass == 0.0 && b.inverse_mass == 0.0) {
       for (const auto& c : pair.contacts)
@@ -72,14 +76,32 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
     memory.contacts.push_back(
         {c.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v, c.arrival_speed, is_loaded});
   }
+  // What was found on the way came last.
+  for (const WorkPair& pair : work.pairs) {
+    auto& contacts = state.pairs[at(pair.state)].contacts;
+    const auto by_key = [](const RememberedContact& x, const RememberedContact& y) {
+      return x.feature_key < y.feature_key;
+    };
+    if (!std::is_sorted(contacts.begin(), contacts.end(), by_key))
+      std::sort(contacts.begin(), contacts.end(), by_key);
+  }
 }
 
-void report_contacts(const MotionWork& work, ContactReport& report) {
+void report_contacts(const MotionWork& work, ContactState& state, ContactReport& report) {
   report.solver_contacts = static_cast<int>(work.contacts.size());
+  for (const WorkPair& pair : work.pairs) {
+    PairState& memory = state.pairs[at(pair.state)];
+    if (!memory.is_exempt) {
+      report.least_gap = std::min(report.least_gap, pair.least_gap);
+      continue;
+    }
+    ++report.crossing_pairs;
+    if (!memory.is_reported) report.new_crossing_pairs.emplace_back(memory.body_a, memory.body_b);
+    memory.is_reported = true;
+  }
   for (const SolverContact& c : work.contacts) {
     if (c.slack > c.kept_gap) continue;
     ++report.contacts;
-    report.least_gap = std::min(report.least_gap, c.slack + c.kept_gap);
     if (c.impulse[0] <= 0.0) continue;
     const WorkBody &a = work.bodies[at(c.a)], &b = work.bodies[at(c.b)];
     const Vec3 u = a.velocity + a.spin.cross(c.arm_a) - b.velocity - b.spin.cross(c.arm_b);
@@ -91,23 +113,66 @@ void report_contacts(const MotionWork& work, ContactReport& report) {
     report.frozen_share = static_cast<double>(work.failsafe_bodies) / report.awake_bodies;
 }
 
+// A body that turns far is followed through what it turned in between.
+void keep_knots(const std::vector<Quat>& rotations, WorkBody& w) {
+  w.knots.clear();
+  if (w.turn_angle <= kStraightTurn) return;
+  w.knots.push_back(w.start.rotation);
+  w.knots.insert(w.knots.end(), rotations.begin(), rotations.end());
+  w.knots.back() = w.end.rotation;
+}
+
+void end_in_contact(WorkBody& w) {
+  w.end.translation = w.start.translation + w.way;
+  w.end.rotation = w.rotation;
+  keep_knots(w.substep_rotations, w);
+}
+
+void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
+  w.end = w.predicted;
+  if (w.turn_angle > kStraightTurn) {
+    std::vector<Quat> rotations;
+    Quat rotation = w.start.rotation;
+    Vec3 spin = w.spin;
+    const int parts = parts_of(w);
+    for (int k = 0; k < parts; ++k) {
+      if (is_dynamic)
+        advance_spin(w.inertia, settings.time_step / parts, SpinOrder::fourth, rotation, spin);
+      else
+        rotation = (rotation_by(settings.time_step / parts * w.spin) * rotation).normalized();
+      rotations.push_back(rotation);
+    }
+    keep_knots(rotations, w);
+  }
+  if (!is_dynamic) return;
+  w.velocity += settings.time_step * w.gravity;
+  w.spin = w.predicted_spin;
+}
+
 }  // namespace
 
 void solve_motion(const std::vector<Body>& bodies, const ContactSettings& settings, MotionWork& work) {
-  core::parallel_for(work.islands.size(), 1,
-                     [&](std::size_t i) { solve_island(settings, work.islands[i], work); });
+  std::vector<char> all(bodies.size(), 1);
+  solve_islands(bodies, settings, all, work);
+}
+
+void solve_islands(const std::vector<Body>& bodies, const ContactSettings& settings,
+                   std::vector<char>& is_dirty, MotionWork& work) {
+  std::vector<std::size_t> due;
+  for (std::size_t i = 0; i < work.islands.size(); ++i) {
+    const auto& members = work.islands[i].bodies;
+    if (std::none_of(members.begin(), members.end(), [&](int b) { return is_dirty[at(b)] != 0; })) continue;
+    due.push_back(i);
+    for (const int b : members) is_dirty[at(b)] = 1;
+  }
+  core::parallel_for(due.size(), 1, [&](std::size_t k) {
+    const Island& island = work.islands[due[k]];
+    solve_island(settings, island, work);
+    for (const int b : island.bodies) end_in_contact(work.bodies[at(b)]);
+  });
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    WorkBody& w = work.bodies[i];
-    if (!w.is_active) continue;
-    if (w.is_free) {
-      w.end = w.predicted;
-      if (!bodies[i].is_dynamic()) continue;
-      w.velocity += settings.time_step * w.gravity;
-      w.spin = w.predicted_spin;
-    } else {
-      w.end.translation = w.start.translation + w.way;
-      w.end.rotation = w.rotation;
-    }
+    if (is_dirty[i] && work.bodies[i].is_active && work.bodies[i].is_free)
+      end_freely(bodies[i].is_dynamic(), settings, work.bodies[i]);
   }
 }
 
@@ -124,14 +189,16 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
   }
   log_contacts(bodies, work, log);
   remember_contacts(work, state);
-  report_contacts(work, report);
+  report_contacts(work, state, report);
 }
 
-ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
-                          body::ImpulseLog& log) {
+namespace {
+
+// The step, or one of the parts into which it is divided.
+ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
+                        body::ImpulseLog& log) {
   ContactReport report;
   MotionWork work;
-  wake_bodies(bodies, settings, state);
   find_candidate_pairs(bodies, settings, state, work);
   // What wakes may touch further sleepers, which its island's memory already wakes with it: few rounds, each
   // wakes more.
@@ -143,9 +210,68 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
     find_candidate_pairs(bodies, settings, state, work);
   }
   solve_motion(bodies, settings, work);
-  find_missed_pairs(bodies, settings, state, work);
-  guard_motion(settings, state, work, report);
+  guard_motion(bodies, settings, state, work, report);
   finish_motion(bodies, state, work, log, report);
+  return report;
+}
+
+// Newborn pieces lie in each other's way, and go far against their own size while they part: their first step
+// is taken in parts, and so are those after it while many spin and collide.
+int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
+  if (state.is_wild) return kParts;
+  std::size_t newborn = 0;
+  for (const Body& b : bodies) {
+    if (!b.is_dynamic() || b.shape->kind != body::ShapeKind::shell) continue;
+    const auto known = std::lower_bound(state.bodies.begin(), state.bodies.end(), b.id,
+                                        [](const BodyState& s, body::BodyId id) { return s.id < id; });
+    newborn += known == state.bodies.end() || known->id != b.id ? 1 : 0;
+  }
+  return newborn >= 2 && !state.bodies.empty() ? kParts : 1;
+}
+
+// Whether the next step should be taken in parts too.
+bool is_wild(const std::vector<Body>& bodies, const ContactSettings& settings, const ContactReport& report) {
+  int spinning = 0;
+  for (const Body& b : bodies) {
+    const bool turns = b.is_dynamic() && b.is_awake && b.shape->kind != body::ShapeKind::sphere;
+    spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
+  }
+  return kManySpin * spinning > report.awake_bodies && kManyHits * report.hits > report.awake_bodies;
+}
+
+void add_part(const ContactReport& part, ContactReport& report) {
+  report.contacts = part.contacts;
+  report.solver_contacts = std::max(report.solver_contacts, part.solver_contacts);
+  report.least_gap = std::min(report.least_gap, part.least_gap);
+  report.hits += part.hits;
+  report.rounds += part.rounds;
+  report.failsafe_steps += part.failsafe_steps;
+  report.longest_cut = std::max(report.longest_cut, part.longest_cut);
+  report.crossing_pairs = part.crossing_pairs;
+  report.new_crossing_pairs.insert(report.new_crossing_pairs.end(), part.new_crossing_pairs.begin(),
+                                   part.new_crossing_pairs.end());
+  report.frozen_share += part.frozen_share;
+  report.residual = std::max(report.residual, part.residual);
+  report.awake_bodies = part.awake_bodies;
+}
+
+}  // namespace
+
+ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
+                          body::ImpulseLog& log) {
+  wake_bodies(bodies, settings, state);
+  const int parts = count_parts(bodies, state);
+  ContactSettings part_settings = settings;
+  part_settings.time_step /= parts;
+  part_settings.substeps = std::max(1, settings.substeps / parts);
+  ContactReport report;
+  for (int part = 0; part < parts; ++part) {
+    const std::size_t first = log.size();
+    add_part(step_part(bodies, part_settings, state, log), report);
+    for (std::size_t i = first; i < log.size(); ++i) log[i].time += part * part_settings.time_step;
+  }
+  report.frozen_share /= parts;
+  state.is_wild = is_wild(bodies, settings, report);
   return report;
 }
 

@@ -8,6 +8,7 @@
 // make it arrive.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "engine/body/body.h"
@@ -18,13 +19,16 @@
 namespace shatterbox::dynamics {
 
 struct ContactReport {
-  int contacts = 0;          // with a gap below twice the kept gap at the step's end
-  int solver_contacts = 0;   // all that the solver was given, speculative ones included
-  double least_gap = 1e300;  // m, over these contacts at the step's start; 1e300 without contacts
-  int hits = 0;              // pairs in which the continuous pass had to act
-  int rounds = 0;            // rounds of the continuous pass
-  int failsafe_steps = 0;    // bodies whose step was cut short
-  int exempted_pairs = 0;  // pairs given up in this step: they may pass each other until they have come apart
+  int contacts = 0;         // with a gap below twice the kept gap at the step's end
+  int solver_contacts = 0;  // all that the solver was given, speculative ones included
+  double least_gap =
+      1e300;               // m, over all pairs that do not cross, at the step's start; 1e300 without any near
+  int hits = 0;            // pairs in which the continuous pass had to act
+  int rounds = 0;          // rounds of the continuous pass
+  int failsafe_steps = 0;  // bodies whose step was cut short
+  int longest_cut = 0;     // steps in a row, of the pair that was cut longest
+  int crossing_pairs = 0;  // crossed when they were first seen, and still do
+  std::vector<std::pair<body::BodyId, body::BodyId>> new_crossing_pairs;  // seen in this step
   double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
   double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
@@ -52,15 +56,20 @@ void find_candidate_pairs(const std::vector<body::Body>& bodies, const ContactSe
 /// end poses in `work`; `bodies` are not changed yet.
 void solve_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, MotionWork& work);
 
-/// Stage: pairs that only the impulses of this step brought together: bodies that end far from where they
-/// were predicted to. Appends to the pairs of `work`.
+/// The same anew, from the start of the step, for the islands with a body that is dirty; all their bodies are
+/// dirty then.
+void solve_islands(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                   std::vector<char>& is_dirty, MotionWork& work);
+
+/// Pairs that only the impulses of this step brought together: bodies that end far from where they were
+/// predicted to. Appends to the pairs of `work`.
 void find_missed_pairs(const std::vector<body::Body>& bodies, const ContactSettings& settings,
                        ContactState& state, MotionWork& work);
 
 /// Stage: no vertex path may cross another surface; hits are opened again in position and tested again, at
 /// last by cutting steps short.
-void guard_motion(const ContactSettings& settings, ContactState& state, MotionWork& work,
-                  ContactReport& report);
+void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
+                  MotionWork& work, ContactReport& report);
 
 /// Stage: writes end poses and velocities to `bodies`, impulses to `log`, warm start to `state`.
 void finish_motion(std::vector<body::Body>& bodies, ContactState& state, MotionWork& work,

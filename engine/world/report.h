@@ -64,7 +64,11 @@ long count_overlaps(const BreakRow& row);
 struct ContactFigures {
   int contacts = 0;  // with a gap below twice the kept one, last step
   int most_contacts = 0;
-  double least_gap = 0.0;  // m, over the run
+  double least_gap =
+      0.0;  // m, over the run and all pairs but those that crossed at their start; 0: none near
+  long crossing_pairs = 0;  // crossed when they were first seen: exempt until they have come apart
+  std::vector<std::string> crossing_names;  // "a / b", of the first hundred
+  int longest_cut = 0;                      // steps in a row in which the failsafe had to cut one pair short
   long failsafe_steps = 0;
   double frozen_share = 0.0;  // of body-steps
   double drift = 0.0;         // m, ContactScheme::paper: greatest distance of a surface from its rigid body

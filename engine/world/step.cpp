@@ -75,13 +75,21 @@ Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::Impul
   return sum;
 }
 
-void book_contact(const dynamics::ContactReport& contact, long steps, ContactFigures& figures) {
+void book_contact(const dynamics::ContactReport& contact, const std::vector<body::Body>& bodies, long steps,
+                  ContactFigures& figures) {
+  constexpr std::size_t kMostNames = 100;
   figures.contacts = contact.contacts;
   figures.most_contacts = std::max(figures.most_contacts, contact.contacts);
-  if (contact.contacts > 0)
-    figures.least_gap = figures.most_contacts == contact.contacts && figures.least_gap == 0.0
-                            ? contact.least_gap
-                            : std::min(figures.least_gap, contact.least_gap);
+  if (contact.least_gap < 1e300)
+    figures.least_gap =
+        figures.least_gap == 0.0 ? contact.least_gap : std::min(figures.least_gap, contact.least_gap);
+  for (const auto& [a, b] : contact.new_crossing_pairs) {
+    ++figures.crossing_pairs;
+    if (figures.crossing_names.size() < kMostNames)
+      figures.crossing_names.push_back(body::find_body(bodies, a)->name + " / " +
+                                       body::find_body(bodies, b)->name);
+  }
+  figures.longest_cut = std::max(figures.longest_cut, contact.longest_cut);
   figures.failsafe_steps += contact.failsafe_steps > 0 ? 1 : 0;
   const double n = static_cast<double>(steps);
   figures.frozen_share = (figures.frozen_share * n + contact.frozen_share) / (n + 1.0);
@@ -147,7 +155,7 @@ void World::step() {
   book_conservation(before);
   if (s.settings.contact == ContactScheme::standard)
     timer.time("sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
-  book_contact(contact, s.steps, s.report.contact);
+  book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
   ++s.steps;
   s.report.steps = s.steps;
   s.hash = timer.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });

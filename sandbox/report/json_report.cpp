@@ -171,6 +171,9 @@ Json make_json(const RunRecord& record) {
   json["contact"] = {{"most", w.contact.most_contacts},
                      {"failsafe_steps", w.contact.failsafe_steps},
                      {"frozen_share", number(w.contact.frozen_share)},
+                     {"longest_cut", w.contact.longest_cut},
+                     {"crossing_pairs_at_start", w.contact.crossing_pairs},
+                     {"crossing_names", w.contact.crossing_names},
                      {"least_gap", number(w.contact.least_gap)}};
   if (w.contact.drift > 0.0) json["contact"]["drift"] = number(w.contact.drift);
   json["conservation"] = {{"momentum", vector(w.conservation.momentum)},

@@ -100,6 +100,17 @@ std::string time_lines(const RunRecord& record) {
   return text;
 }
 
+std::string crossing_line(const RunRecord& record) {
+  const auto& contact = record.world.contact;
+  if (contact.crossing_pairs == 0) return {};
+  const std::size_t shown = std::min<std::size_t>(contact.crossing_names.size(), 3);
+  std::string names;
+  for (std::size_t i = 0; i < shown; ++i) names += (i > 0 ? ", " : "") + contact.crossing_names[i];
+  return fmt::format("{} pairs crossed when they were first seen and may pass until they are apart: {}{}\n",
+                     contact.crossing_pairs, names,
+                     contact.crossing_pairs > static_cast<long>(shown) ? ", ..." : "");
+}
+
 std::string error_line(const RunRecord& record) {
   double worst = 0.0;
   for (const world::BreakRow& row : record.world.breaks) {
@@ -146,7 +157,7 @@ std::string make_summary(const RunRecord& record) {
     text += fmt::format("interrupted at {:.2f} of {:g} s\n", record.simulated_seconds, record.asked_seconds);
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
-          error_line(record) + audit_line(record);
+          crossing_line(record) + error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,

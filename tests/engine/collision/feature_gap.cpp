@@ -58,7 +58,7 @@ TEST_CASE("a list holds every feature pair within the margin, each once") {
     const auto must_have = [&](FeatureKind kind, std::size_t count_a, std::size_t count_b) {
       for (int i = 0; i < static_cast<int>(count_a); ++i) {
         for (int j = 0; j < static_cast<int>(count_b); ++j) {
-          const FeaturePair pair{kind, i, j, 0.0};
+          const FeaturePair pair{kind, 0.0F, i, j};
           const double gap = measure(gather(pair, *a, pa.start, *b, pb.start), Vec3::UnitY()).gap;
           if (gap <= margin) CHECK(keys.count(pair.key()) == 1);
         }

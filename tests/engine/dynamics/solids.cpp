@@ -159,7 +159,7 @@ TEST_CASE("colliding bodies keep momentum and lose what Newton's rule says") {
       INFO("pair " << n << " step " << i);
       CHECK((scene.momentum() - momentum).norm() < 1e-12 * scale);
       // The continuous pass opens gaps in position, which keeps momentum but not quite angular momentum.
-      if (scene.report.hits > 0) {
+      if (scene.report.rounds > 0) {
         ++opened;
         break;
       }
@@ -178,7 +178,7 @@ TEST_CASE("colliding bodies keep momentum and lose what Newton's rule says") {
     }
   }
   CHECK(seen >= 20);
-  CHECK(opened <= 3);
+  CHECK(opened <= 5);
 }
 
 TEST_CASE("a stack of five boxes stands, and the ground carries its weight") {

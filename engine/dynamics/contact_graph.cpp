@@ -1,0 +1,98 @@
+#include "engine/dynamics/contact_graph.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace shatterbox::dynamics {
+namespace {
+
+using collision::Contact;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+SolverContact make_solver_contact(const PairState& memory, const MotionWork& work, int pair_number,
+                                  const Contact& found) {
+  const WorkPair& pair = work.pairs[at(pair_number)];
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  SolverContact c;
+  c.a = pair.a;
+  c.b = pair.b;
+  c.pair = pair_number;
+  c.key = found.key;
+  c.friction = pair.material.friction;
+  c.restitution = pair.material.restitution;
+  c.rolling = pair.material.rolling_friction;
+  c.kept_gap = pair.kept_gap;
+  c.threshold = pair.threshold;
+  c.normal = found.normal;
+  int axis = 0;
+  c.normal.cwiseAbs().minCoeff(&axis);
+  c.tangent_u = c.normal.cross(Vec3::Unit(axis)).normalized();
+  c.tangent_v = c.normal.cross(c.tangent_u);
+  c.arm_a_start = found.on_a - a.start.translation;
+  c.arm_b_start = found.on_b - b.start.translation;
+  c.gap_start = found.gap;
+  c.lean = found.lean;
+  const auto known =
+      std::lower_bound(memory.contacts.begin(), memory.contacts.end(), found.key,
+                       [](const RememberedContact& r, std::uint64_t key) { return r.feature_key < key; });
+  if (known != memory.contacts.end() && known->feature_key == found.key) {
+    c.was_loaded = known->was_loaded;
+    c.arrival_before = known->arrival_speed;
+    c.warm_start = {known->normal_impulse, c.tangent_u.dot(known->friction_impulse),
+                    c.tangent_v.dot(known->friction_impulse)};
+    c.warm_start *= work.warm_scale;
+  }
+  return c;
+}
+
+void build_contact_graph(const ContactState& state, MotionWork& work) {
+  for (std::size_t p = 0; p < work.pairs.size(); ++p) {
+    const WorkPair& pair = work.pairs[p];
+    if (work.bodies[at(pair.a)].inverse_mass == 0.0 && work.bodies[at(pair.b)].inverse_mass == 0.0) continue;
+    const PairState& memory = state.pairs[at(pair.state)];
+    for (const Contact& found : pair.contacts) {
+      work.contacts.push_back(make_solver_contact(memory, work, static_cast<int>(p), found));
+    }
+  }
+  build_islands(work);
+}
+
+void build_islands(MotionWork& work) {
+  work.islands.clear();
+  std::vector<int> parent(work.bodies.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
+    return i;
+  };
+  for (const SolverContact& c : work.contacts) {
+    WorkBody &a = work.bodies[at(c.a)], &b = work.bodies[at(c.b)];
+    if (a.inverse_mass > 0.0) a.is_free = false;
+    if (b.inverse_mass > 0.0) b.is_free = false;
+    if (a.is_free || b.is_free) continue;
+    const int ra = root(c.a), rb = root(c.b);
+    parent[at(std::max(ra, rb))] = std::min(ra, rb);
+  }
+  std::vector<int> number(work.bodies.size(), -1);
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    if (work.bodies[i].is_free) continue;
+    int& island = number[at(root(static_cast<int>(i)))];
+    if (island < 0) {
+      island = static_cast<int>(work.islands.size());
+      work.islands.emplace_back();
+    }
+    work.islands[at(island)].bodies.push_back(static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < work.contacts.size(); ++i) {
+    const SolverContact& c = work.contacts[i];
+    const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
+    work.islands[at(number[at(root(member))])].contacts.push_back(static_cast<int>(i));
+  }
+}
+
+}  // namespace shatterbox::dynamics

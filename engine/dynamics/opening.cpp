@@ -1,0 +1,138 @@
+#include "engine/dynamics/opening.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shatterbox::dynamics {
+namespace {
+
+using collision::Contact;
+
+constexpr int kIterations = 20;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Turns and shifts of end poses, while they are sought.
+struct Moves {
+  std::vector<Vec3> shifts, turns;
+
+  void push(const MotionWork& work, int i, const Vec3& impulse, const Vec3& arm) {
+    const WorkBody& w = work.bodies[at(i)];
+    if (w.inverse_mass <= 0.0) return;
+    shifts[at(i)] += w.inverse_mass * impulse;
+    turns[at(i)] += w.inverse_inertia * arm.cross(impulse);
+  }
+};
+
+void relax(const MotionWork& work, std::vector<Opening>& openings, Moves& moves) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    double greatest = 0.0;
+    for (Opening& o : openings) {
+      const Vec3 relative = moves.shifts[at(o.a)] + moves.turns[at(o.a)].cross(o.arm_a) -
+                            moves.shifts[at(o.b)] - moves.turns[at(o.b)].cross(o.arm_b);
+      const double missing = (o.wanted - o.gap) / o.share - o.normal.dot(relative);
+      const double change = std::max(-o.impulse, missing * o.weight);
+      if (change == 0.0) continue;
+      o.impulse += change;
+      greatest = std::max(greatest, std::abs(missing));
+      moves.push(work, o.a, change * o.normal, o.arm_a);
+      moves.push(work, o.b, -change * o.normal, o.arm_b);
+    }
+    if (greatest == 0.0) break;
+  }
+}
+
+void give(MotionWork& work, const Opening& o, double size, double closing, body::ImpulseKind kind) {
+  WorkBody &a = work.bodies[at(o.a)], &b = work.bodies[at(o.b)];
+  const Vec3 p = size * o.normal;
+  if (a.inverse_mass > 0.0) {
+    a.velocity += a.inverse_mass * p;
+    a.spin += a.inverse_inertia * o.arm_a.cross(p);
+  }
+  if (b.inverse_mass > 0.0) {
+    b.velocity -= b.inverse_mass * p;
+    b.spin -= b.inverse_inertia * o.arm_b.cross(p);
+  }
+  body::LoggedImpulse entry;
+  entry.kind = kind;
+  entry.body_a = work.ids[at(o.a)];
+  entry.body_b = work.ids[at(o.b)];
+  entry.point_world = a.end.translation + o.arm_a;
+  entry.normal_world = o.normal;
+  entry.impulse_world = p;
+  entry.point_a = a.end.rotation.conjugate() * o.arm_a;
+  entry.point_b = b.end.rotation.conjugate() * o.arm_b;
+  entry.impulse_a = a.end.rotation.conjugate() * p;
+  entry.impulse_b = b.end.rotation.conjugate() * Vec3(-p);
+  entry.closing_speed = closing;
+  entry.effective_mass = o.weight;
+  work.continuous_log.push_back(entry);
+}
+
+}  // namespace
+
+double gap_on_way(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  return contact.normal.dot(carry(a, contact.on_a, a.start, pose_on_way(a, knot)) -
+                            carry(b, contact.on_b, b.start, pose_on_way(b, knot)));
+}
+
+Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot,
+                     double wanted) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  const Pose pose_a = pose_on_way(a, knot), pose_b = pose_on_way(b, knot);
+  Opening o;
+  o.a = pair.a;
+  o.b = pair.b;
+  o.normal = contact.normal;
+  o.share = knot;
+  const Vec3 end_a = carry(a, contact.on_a, a.start, pose_a), end_b = carry(b, contact.on_b, b.start, pose_b);
+  o.gap = contact.normal.dot(end_a - end_b);
+  o.wanted = wanted;
+  const Vec3 middle = 0.5 * (end_a + end_b);
+  o.arm_a = middle - pose_a.translation;
+  o.arm_b = middle - pose_b.translation;
+  double response = a.inverse_mass + b.inverse_mass;
+  for (const auto& [w, arm] : {std::pair(&a, o.arm_a), std::pair(&b, o.arm_b)}) {
+    if (w->inverse_mass <= 0.0) continue;
+    const Vec3 moment = arm.cross(o.normal);
+    response += moment.dot(w->inverse_inertia * moment);
+  }
+  o.weight = response > 0.0 ? 1.0 / response : 0.0;
+  return o;
+}
+
+std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, MotionWork& work) {
+  Moves moves;
+  moves.shifts.assign(work.bodies.size(), Vec3::Zero());
+  moves.turns.assign(work.bodies.size(), Vec3::Zero());
+  relax(work, openings, moves);
+  std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
+  remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work);
+  std::vector<double> moved(work.bodies.size(), 0.0);
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    moved[i] = moves.shifts[i].norm() + moves.turns[i].norm() * work.bodies[i].reach;
+    if (moved[i] == 0.0) continue;
+    moved[i] = moved[i] * (1.0 + 1e-9) + 1e-300;
+    shift_end(work.bodies[i], moves.shifts[i], moves.turns[i]);
+  }
+  return moved;
+}
+
+void remove_approach(const std::vector<Opening>& openings, double time_step, body::ImpulseKind kind,
+                     int sweeps, MotionWork& work) {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (const Opening& o : openings) {
+      const WorkBody &a = work.bodies[at(o.a)], &b = work.bodies[at(o.b)];
+      const double closing =
+          -o.normal.dot(a.velocity + a.spin.cross(o.arm_a) - b.velocity - b.spin.cross(o.arm_b));
+      const double most = kind == body::ImpulseKind::continuous ? o.impulse / time_step : 1e300;
+      const double size = std::min(std::max(0.0, closing) * o.weight, most);
+      if (size > 0.0) give(work, o, size, closing, kind);
+    }
+  }
+}
+
+}  // namespace shatterbox::dynamics

@@ -1,0 +1,40 @@
+// Opens gaps again in position: what would touch on the way is pushed apart at the end poses, together with
+// the contacts of the bodies in it. Velocities only lose approach, so that no energy comes in.
+#pragma once
+
+#include <vector>
+
+#include "engine/collision/contact.h"
+#include "engine/dynamics/motion_work.h"
+
+namespace shatterbox::dynamics {
+
+/// One constraint of the local solve on end poses.
+struct Opening {
+  int a = 0, b = 0;           // numbers of the bodies
+  Vec3 normal, arm_a, arm_b;  // arms from the centres where it acts, m
+  double share = 1.0;         // of the step at which it acts: the end pose moves its place by so much less
+  double gap = 0.0;           // m, there
+  double wanted = 0.0;        // m
+  double weight = 0.0;        // kg
+  double impulse = 0.0;       // kg m, of the displacement
+};
+
+/// The constraint of a contact that was seen from the start, at the share `knot` of the step.
+Opening make_opening(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
+                     double knot, double wanted);
+
+/// The gap of a contact at the share `knot` of the step, along its normal, m.
+double gap_on_way(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
+                  double knot);
+
+/// Moves end poses until the gaps are as wanted, as far as that goes; takes away the approach of those that
+/// pushed and logs it. Returns by how much the points of each body were moved at most, m.
+std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, MotionWork& work);
+
+/// Removes what closes along these constraints by impulses between the pairs, `sweeps` times over, and logs
+/// them as `kind`. Of the continuous pass each is at most what the opening took over the step.
+void remove_approach(const std::vector<Opening>& openings, double time_step, body::ImpulseKind kind,
+                     int sweeps, MotionWork& work);
+
+}  // namespace shatterbox::dynamics

@@ -1,0 +1,306 @@
+#include "engine/dynamics/path_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/collision/analytic_contact.h"
+#include "engine/collision/feature_gap.h"
+#include "engine/core/parallel.h"
+#include "engine/dynamics/solid_touch.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using body::ShapeKind;
+
+constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
+constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
+constexpr std::size_t kMostHits = 6;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+void keep_first(std::vector<PathHit>& hits, double size) {
+  std::sort(hits.begin(), hits.end(), [](const PathHit& x, const PathHit& y) {
+    return x.time < y.time || (x.time == y.time && x.contact.key < y.contact.key);
+  });
+  std::vector<PathHit> kept;
+  for (const PathHit& hit : hits) {
+    const bool is_doubled = std::any_of(kept.begin(), kept.end(), [&](const PathHit& k) {
+      return k.contact.normal.dot(hit.contact.normal) > 0.97 &&
+             (k.contact.on_a - hit.contact.on_a).norm() < 0.02 * size;
+    });
+    if (!is_doubled) kept.push_back(hit);
+    if (kept.size() == kMostHits) break;
+  }
+  hits = std::move(kept);
+}
+
+// Where a body began is free.
+bool stays(const WorkBody& w) {
+  return w.end.translation == w.start.translation && w.end.rotation.coeffs() == w.start.rotation.coeffs() &&
+         w.knots.empty();
+}
+
+// The centres do not come closer than this on a straight part.
+double centre_distance(const Vec3& apart, const Vec3& way) {
+  const double length_squared = way.squaredNorm();
+  const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
+  return (apart + t * way).norm();
+}
+
+}  // namespace
+
+double least_separation(double gap, const WorkPair& pair) {
+  const double floor = kFloor * pair.kept_gap;
+  if (gap > floor) return std::max(floor, std::min(kSafe * pair.kept_gap, 0.8 * gap));
+  return pair.has_sides ? gap - 1e-9 * std::abs(gap) - pair.rounding : gap * (1.0 - 1e-9);
+}
+
+bool PathTest::turns_far(const WorkPair& pair) const {
+  return work_.bodies[at(pair.a)].turn_angle > kStraightTurn ||
+         work_.bodies[at(pair.b)].turn_angle > kStraightTurn;
+}
+
+bool PathTest::needs_search(const WorkPair& pair) const {
+  if (pair.is_plane || pair.is_analytic || turns_far(pair)) return false;
+  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+  if (!pair.search) return true;
+  return strays_from(*pair.search, a, a.end, b, b.end) + pair.kept_gap > pair.search->margin;
+}
+
+void PathTest::prepare(const std::vector<char>& is_due) {
+  std::vector<char> must_place(work_.bodies.size(), 0), must_sweep(work_.bodies.size(), 0);
+  std::vector<std::size_t> to_search, turning;
+  for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+    if (!is_due[p]) continue;
+    const WorkPair& pair = work_.pairs[p];
+    must_place[at(pair.a)] = must_place[at(pair.b)] = 1;
+    if (!pair.is_plane && !pair.is_analytic && turns_far(pair)) {
+      must_sweep[at(pair.a)] = must_sweep[at(pair.b)] = 1;
+      turning.push_back(p);
+    }
+    if (!needs_search(pair)) continue;
+    must_sweep[at(pair.a)] = must_sweep[at(pair.b)] = 1;
+    to_search.push_back(p);
+  }
+  paths_.resize(work_.bodies.size());
+  core::parallel_for(work_.bodies.size(), 8, [&](std::size_t i) {
+    WorkBody& w = work_.bodies[i];
+    if (!must_place[i] || w.shape->kind == ShapeKind::plane) return;
+    place(w);
+    place_at(w, w.end, paths_[i].end);
+    if (must_sweep[i]) sweep(w, w.end);
+  });
+  divide(turning);
+  core::parallel_for(to_search.size(), 2, [&](std::size_t k) {
+    WorkPair& pair = work_.pairs[to_search[k]];
+    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+    // Wider than needed: openings move the ends a little, and bodies stop on the way.
+    const double margin = 2.0 * pair.kept_gap + settings_.search_slack * pair.size;
+    pair.search = search_paths(a, a.end, b, b.end, margin);
+    pair.gaps.clear();
+    pair.start_gaps.clear();
+  });
+}
+
+// Pairs in which one turns far and that are not surely apart are followed in parts, both bodies in as many.
+void PathTest::divide(const std::vector<std::size_t>& turning) {
+  in_parts_.resize(work_.pairs.size());
+  core::parallel_for(turning.size(), 8, [&](std::size_t k) {
+    const WorkPair& pair = work_.pairs[turning[k]];
+    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+    in_parts_[turning[k]] = keep_apart_as_balls(a, a.end, b, b.end, 2.0 * pair.kept_gap) ? 0 : 1;
+  });
+  std::vector<int> parts(work_.bodies.size(), 0);
+  const auto raise = [&](int body, int count) {
+    const bool rises = parts[at(body)] < count;
+    if (rises) parts[at(body)] = count;
+    return rises;
+  };
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const std::size_t p : turning) {
+      if (!in_parts_[p]) continue;
+      const WorkPair& pair = work_.pairs[p];
+      const int count = std::max({parts_of(work_.bodies[at(pair.a)]), parts_of(work_.bodies[at(pair.b)]),
+                                  parts[at(pair.a)], parts[at(pair.b)]});
+      const bool a_rises = raise(pair.a, count), b_rises = raise(pair.b, count);
+      grows = grows || a_rises || b_rises;
+    }
+  }
+  core::parallel_for(work_.bodies.size(), 1, [&](std::size_t i) {
+    if (parts[i] > 0) fill_parts(work_.bodies[i], parts[i], paths_[i]);
+  });
+}
+
+void PathTest::fill_parts(const WorkBody& w, int count, Path& path) const {
+  path.parts.assign(static_cast<std::size_t>(count), {});
+  Pose begin = w.start;
+  std::vector<Vec3> turned;
+  for (int k = 0; k < count; ++k) {
+    Part& part = path.parts[at(k)];
+    const Pose end = pose_on_way(w, static_cast<double>(k + 1) / count);
+    place_at(w, end, part.to);
+    part.centre = begin.translation;
+    part.way = end.translation - begin.translation;
+    turned = part.to;
+    for (Vec3& p : turned) p -= part.way;
+    part.placed.collider = w.collider;
+    collision::refit_swept_boxes(part.placed, k == 0 ? w.placed.start : path.parts[at(k - 1)].to, turned);
+    begin = end;
+  }
+}
+
+std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare) {
+  WorkPair& pair = work_.pairs[pair_number];
+  std::vector<PathHit> hits;
+  spare = 0.0;
+  if (stays(work_.bodies[at(pair.a)]) && stays(work_.bodies[at(pair.b)])) return hits;
+  if (pair.is_plane) {
+    hits = test_plane(pair, spare);
+  } else if (pair.is_analytic) {
+    hits = test_solids(pair);
+  } else {
+    if (!turns_far(pair))
+      hits = test_straight(pair, spare);
+    else if (in_parts_[pair_number])
+      hits = test_in_parts(pair, spare);
+    else
+      spare = pair.kept_gap;
+  }
+  keep_first(hits, pair.size);
+  return hits;
+}
+
+std::vector<PathHit> PathTest::test_plane(const WorkPair& pair, double& spare) const {
+  const int other_number = pair.is_flipped ? pair.b : pair.a;
+  const WorkBody& plane = work_.bodies[at(pair.is_flipped ? pair.a : pair.b)];
+  const WorkBody& other = work_.bodies[at(other_number)];
+  const Vec3 normal = plane.start.rotation * Vec3::UnitY();
+  const double level = normal.dot(plane.start.translation) + other.collider->radius;
+  std::vector<PathHit> hits;
+  const int parts = parts_of(other);
+  std::vector<Vec3> knot;
+  spare = 1e300;
+  for (int part = 0; part < parts && hits.empty(); ++part) {
+    const double begin = static_cast<double>(part) / parts, share = 1.0 / parts;
+    const std::vector<Vec3> from = std::exchange(knot, {});
+    if (part + 1 < parts) place_at(other, pose_on_way(other, begin + share), knot);
+    const std::vector<Vec3>& to = part + 1 < parts ? knot : paths_[at(other_number)].end;
+    for (std::size_t v = 0; v < to.size(); ++v) {
+      const double end = normal.dot(to[v]) - level;
+      spare = std::min(spare, std::max(0.0, end - kSafe * pair.kept_gap));
+      if (end >= kSafe * pair.kept_gap) continue;
+      const double start = normal.dot(other.placed.start[v]) - level;
+      if (end >= least_separation(start, pair)) continue;
+      const double height = part == 0 ? start : normal.dot(from[v]) - level;
+      PathHit hit;
+      hit.time = begin + share * (height > end ? std::clamp(height / (height - end), 0.0, 1.0) : 0.0);
+      hit.knot = begin + share;
+      hit.contact.key = v;
+      hit.contact.gap = start;
+      hit.contact.is_time_of_impact = true;
+      const Vec3 on_other = other.placed.start[v] - other.collider->radius * normal;
+      hit.contact.on_a = pair.is_flipped ? Vec3(on_other - start * normal) : on_other;
+      hit.contact.on_b = pair.is_flipped ? on_other : Vec3(on_other - start * normal);
+      hit.contact.normal = pair.is_flipped ? Vec3(-normal) : normal;
+      hit.contact.lean = pair.is_flipped ? 0.0 : 1.0;
+      hits.push_back(hit);
+    }
+  }
+  return hits;
+}
+
+std::vector<PathHit> PathTest::test_solids(const WorkPair& pair) const {
+  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+  if (pair.least_gap - kSafe * pair.kept_gap > motion_bound(a, a.end, b, b.end)) return {};
+  const double least = least_separation(pair.least_gap, pair);
+  const int parts = std::max(parts_of(a), parts_of(b));
+  std::vector<PathHit> hits;
+  for (int part = 0; part < parts && hits.empty(); ++part) {
+    const double begin = static_cast<double>(part) / parts, end = static_cast<double>(part + 1) / parts;
+    const SolidTouch touch =
+        find_first_touch({a, pose_on_way(a, begin), pose_on_way(a, end)},
+                         {b, pose_on_way(b, begin), pose_on_way(b, end)}, least, pair.kept_gap);
+    if (!touch.has_touched) continue;
+    for (const auto& c : touch.contacts) hits.push_back({begin + touch.time / parts, end, c});
+  }
+  return hits;
+}
+
+std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) const {
+  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+  const FeatureSearch& search = *pair.search;
+  const double safe = kSafe * pair.kept_gap;
+  const double reach = motion_bound(a, a.end, b, b.end) + safe;
+  // What is beyond the search is at least so far from all that it may stray.
+  const double strays = strays_from(search, a, a.end, b, b.end);
+  spare = std::min(search.margin - strays - safe, pair.kept_gap);
+  const double listed =
+      spare + (search.is_swept ? safe + strays : reach + moved_since(search, a, a.start, b, b.start));
+  const auto &ends_a = paths_[at(pair.a)].end, &ends_b = paths_[at(pair.b)].end;
+  std::vector<PathHit> hits;
+  for (std::size_t i = 0; i < search.features.size(); ++i) {
+    const auto& features = search.features[i];
+    if (features.bound > listed) {
+      if (search.is_swept) continue;
+      break;
+    }
+    if (i < pair.gaps.size() && pair.gaps[i] > reach + spare) continue;
+    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    const Vec3 hint = direction_hint(a, b, start);
+    if (pair.start_gaps.size() <= i) pair.start_gaps.resize(search.features.size());
+    auto& gap = pair.start_gaps[i];
+    if (gap.distance < 0.0) gap = collision::measure(start, hint);
+    if (gap.gap > reach + spare) continue;
+    const auto end = collision::gather(features, *a.collider, ends_a, *b.collider, ends_b);
+    const double least = least_separation(gap.gap, pair);
+    const auto path = collision::follow_paths(start, end, least, hint, &gap);
+    spare = std::min(spare, path.spare);
+    if (path.has_hit)
+      hits.push_back({path.time, 1.0, collision::contact_at_impact(features, start, path.gap)});
+  }
+  return hits;
+}
+
+// A body that turns far is followed through several straight parts.
+std::vector<PathHit> PathTest::test_in_parts(const WorkPair& pair, double& spare) const {
+  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+  const auto &parts_a = paths_[at(pair.a)].parts, &parts_b = paths_[at(pair.b)].parts;
+  const double safe = kSafe * pair.kept_gap, margin = 2.0 * pair.kept_gap;
+  const double share = 1.0 / static_cast<double>(parts_a.size());
+  std::vector<PathHit> hits;
+  collision::FeatureList list;
+  spare = margin - safe;
+  for (std::size_t k = 0; k < parts_a.size() && hits.empty(); ++k) {
+    const Part &part_a = parts_a[k], &part_b = parts_b[k];
+    if (centre_distance(part_a.centre - part_b.centre, part_a.way - part_b.way) > a.reach + b.reach + margin)
+      continue;
+    collision::list_swept_features(part_a.placed, part_b.placed, part_b.way - part_a.way, margin, list);
+    const auto& from_a = k == 0 ? a.placed.start : parts_a[k - 1].to;
+    const auto& from_b = k == 0 ? b.placed.start : parts_b[k - 1].to;
+    const double begin = share * static_cast<double>(k);
+    for (const auto& features : list) {
+      const auto from = collision::gather(features, *a.collider, from_a, *b.collider, from_b);
+      const auto to = collision::gather(features, *a.collider, part_a.to, *b.collider, part_b.to);
+      const Vec3 hint = direction_hint(a, b, from);
+      auto path = collision::follow_paths(from, to, safe, hint);
+      if (path.has_hit) {  // unless they began closer than that
+        const auto start =
+            collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+        const double least = least_separation(collision::measure(start, hint).gap, pair);
+        if (least < safe) path = collision::follow_paths(from, to, least, hint);
+        if (path.has_hit)
+          hits.push_back({begin + share * path.time, begin + share,
+                          collision::contact_at_impact(features, start, path.gap)});
+      }
+      spare = std::min(spare, path.spare);
+    }
+  }
+  return hits;
+}
+
+}  // namespace shatterbox::dynamics

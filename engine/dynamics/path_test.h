@@ -1,0 +1,66 @@
+// Whether bodies may take the ways to their end poses: no path of a vertex or an edge may come closer to
+// another surface than the least separation. No false negatives: by separating directions. [BFA02], [BHTF07]
+// sec. III.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "engine/collision/contact.h"
+#include "engine/dynamics/contact_settings.h"
+#include "engine/dynamics/motion_work.h"
+
+namespace shatterbox::dynamics {
+
+struct PathHit {
+  double time = 1.0;           // share of the step that is certainly free
+  double knot = 1.0;           // share of the step at the end of the straight part in which they meet
+  collision::Contact contact;  // seen from the start
+};
+
+/// What a pair may come to within a step, m, that begins at `gap`: opening motion is always free, and what is
+/// closer than a direction can be told must not come closer at all; where the gap has a sign, but for
+/// rounding.
+double least_separation(double gap, const WorkPair& pair);
+
+class PathTest {
+ public:
+  explicit PathTest(const ContactSettings& settings, MotionWork& work) : settings_(settings), work_(work) {}
+
+  /// Places the bodies of the pairs that are due at their ends, and looks for features that may meet.
+  void prepare(const std::vector<char>& is_due);
+
+  /// Where the pair meets, earliest first; empty if its way is free. Then ways that stay within `spare` (m)
+  /// of it are free too. Different pairs may be tested at once.
+  std::vector<PathHit> find_hits(std::size_t pair_number, double& spare);
+
+ private:
+  // One body in one straight part of its way.
+  struct Part {
+    std::vector<Vec3> to;              // |V| x 3, at its end
+    Vec3 way = Vec3::Zero();           // of the centre, m
+    Vec3 centre = Vec3::Zero();        // where it begins
+    collision::PlacedCollider placed;  // its swept boxes
+  };
+  struct Path {
+    std::vector<Vec3> end;    // |V| x 3
+    std::vector<Part> parts;  // only for bodies that meet one that turns far
+  };
+
+  bool turns_far(const WorkPair& pair) const;
+  bool needs_search(const WorkPair& pair) const;
+  void divide(const std::vector<std::size_t>& turning);
+  void fill_parts(const WorkBody& body, int count, Path& path) const;
+  std::vector<PathHit> test_plane(const WorkPair& pair, double& spare) const;
+  std::vector<PathHit> test_solids(const WorkPair& pair) const;
+  std::vector<PathHit> test_straight(WorkPair& pair, double& spare) const;
+  std::vector<PathHit> test_in_parts(const WorkPair& pair, double& spare) const;
+
+  const ContactSettings& settings_;
+  MotionWork& work_;
+  std::vector<Path> paths_;     // per body
+  std::vector<char> in_parts_;  // per pair in which one turns far
+};
+
+}  // namespace shatterbox::dynamics

@@ -1,0 +1,104 @@
+// The promise: no pair crosses that did not cross at its start, and none is cut short for more than a few
+// steps.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/engine/dynamics/piles.h"
+
+namespace shatterbox {
+
+TEST_CASE("nothing crosses while a sphere comes apart on the floor") {
+  auto scene = test::shattered_scene(24, 4.4, 4e-6, 0.006);
+  REQUIRE(test::count_crossings(scene) == 0);
+  double frozen = 0.0;
+  constexpr int kSteps = 48;
+  for (int i = 0; i < kSteps; ++i) {
+    scene.step();
+    INFO("step " << i);
+    CHECK(test::count_crossings(scene) == 0);
+    CHECK(scene.report.least_gap > 0.0);
+    CHECK(scene.report.longest_cut <= 3);
+    CHECK(scene.report.crossing_pairs == 0);
+    frozen += scene.report.frozen_share / kSteps;
+  }
+  CHECK(frozen < 0.02);
+}
+
+TEST_CASE("boats that fall on each other do not cross") {
+  auto scene = test::boats_scene(8);
+  const double start = scene.energy();
+  for (int i = 0; i < 120; ++i) {
+    scene.step();
+    INFO("step " << i);
+    CHECK(scene.report.least_gap > 0.0);
+    CHECK(scene.report.longest_cut <= 3);
+    CHECK(scene.energy() <= start * (1.0 + 1e-9));
+    if (i % 3 == 0) CHECK(test::count_crossings(scene) == 0);
+  }
+}
+
+TEST_CASE("only pairs that cross when they are first seen may pass, and they are named") {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  auto upright = test::square_mesh(0.1, 3);
+  for (Vec3& p : upright.positions) p = Vec3(p.x() + 0.013, p.z() + 0.007, 0.011);
+  scene.add(test::make_shell(test::square_mesh(0.1, 3), false));
+  scene.add(test::make_shell(upright)).velocity.y() = 1.0;
+  auto above = test::make_shell(test::square_mesh(0.1, 2));
+  above.pose.translation.y() = 0.3;
+  scene.add(above);
+  scene.step();
+  REQUIRE(scene.report.new_crossing_pairs.size() == 1);
+  CHECK(scene.report.new_crossing_pairs[0] == std::pair<body::BodyId, body::BodyId>(1, 2));
+  for (int i = 0; i < 60; ++i) {
+    scene.step();
+    CHECK(scene.report.new_crossing_pairs.empty());
+  }
+  CHECK(scene.report.crossing_pairs == 0);
+  CHECK(scene.bodies[1].pose.translation.y() > 0.1);  // it has come out
+  std::vector<geometry::TriangleMesh> meshes;
+  for (const std::size_t k : {1, 2}) {
+    meshes.push_back(scene.bodies[k].shape->surface);
+    for (Vec3& p : meshes.back().positions) p = scene.bodies[k].pose.apply(p);
+  }
+  CHECK(geometry::count_crossing_pairs(meshes) == 0);  // and has met the other
+}
+
+TEST_CASE("what touches exactly falls away freely, and rests where it lies") {
+  test::Scene scene;
+  scene.add(test::make_box(Vec3(0.2, 0.1, 0.2), Vec3(0, 1, 0), false));
+  scene.add(test::make_box(Vec3::Constant(0.1), Vec3(0.05, 0.8, 0)));  // hangs under it
+  scene.add(test::make_box(Vec3::Constant(0.1), Vec3(0.05, 1.2, 0)));  // lies on it
+  auto plate = test::square_mesh(0.3, 3);
+  for (Vec3& p : plate.positions) p.x() += 2.0;
+  scene.add(test::make_shell(plate, false));
+  auto bowl = test::bowl_mesh(0.1, 4, 12);
+  for (Vec3& p : bowl.positions) p += Vec3(2.03, 0.1, 0.02);  // its lowest vertex is on the plate
+  scene.add(test::make_shell(bowl));
+  for (int i = 0; i < 96; ++i) {
+    scene.step();
+    CHECK(scene.report.failsafe_steps == 0);
+    CHECK(scene.report.crossing_pairs == 0);
+  }
+  CHECK(0.8 - scene.bodies[1].pose.translation.y() == Approx(0.5 * 9.81 * 0.16).epsilon(1e-3));
+  CHECK(scene.bodies[2].pose.translation.y() == Approx(1.2).margin(2e-4));
+  for (const Vec3& p : scene.bodies[4].shape->surface.positions)
+    CHECK(scene.bodies[4].pose.apply(p).y() > 0.0);
+}
+
+TEST_CASE("a plate that turns several radians a step meets what is in its way") {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  auto& plate = scene.add(test::make_shell(test::square_mesh(0.05, 2)));
+  plate.angular_velocity = Vec3(0, 0, 800.0);  // 3.3 rad a step
+  auto post = test::square_mesh(0.01, 1);
+  for (Vec3& p : post.positions) p += Vec3(0.012, 0.04, 0);
+  scene.add(test::make_shell(post, false));
+  const double before = scene.kinetic();
+  scene.step();
+  CHECK(test::count_crossings(scene) == 0);
+  CHECK(scene.kinetic() < before * (1.0 + 1e-9));
+  CHECK(scene.bodies[0].angular_velocity.z() < 700.0);
+}
+
+}  // namespace shatterbox
