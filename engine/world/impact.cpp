@@ -46,6 +46,27 @@ bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemor
          time <= other_memory->charged_until;
 }
 
+bool is_seated(const body::Body& struck, const body::Body& other, const Load& load) {
+  if (struck.family == 0 || struck.family != other.family) return false;
+  const Vec3 here = load.point_body + struck.shape->material_from_body;
+  const Vec3 there = load.other_point + other.shape->material_from_body;
+  const double thickness = struck.shape->thickness;
+  return (here - there).squaredNorm() < thickness * thickness;
+}
+
+void keep_own_share(std::vector<Load>& loads, const Vec3& passed_on) {
+  Vec3 sum = Vec3::Zero();
+  for (const Load& load : loads) sum += load.impulse_body;
+  const double all = sum.squaredNorm();
+  if (!(all > 0.0)) return;
+  const double share = std::clamp((sum + passed_on).dot(sum) / all, 0.0, 1.0);
+  for (Load& load : loads) {
+    load.impulse_body *= share;
+    load.other_impulse *= share;
+  }
+  std::erase_if(loads, [](const Load& load) { return !(load.impulse_body.squaredNorm() > 0.0); });
+}
+
 std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
                                double radius, double step_start, const PassOver& pass_over) {
   std::vector<Load> loads;
@@ -61,7 +82,7 @@ std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind ki
     load.point_world = entry.point_world;
     load.closing_speed = entry.closing_speed;
     load.time = step_start + entry.time;
-    if (pass_over && pass_over(load.other, load.time)) continue;
+    if (pass_over && pass_over(load)) continue;
     if (load.impulse_body.squaredNorm() > 0.0) loads.push_back(load);
   }
   // The greatest impulse founds its place first, so that places do not depend on the order of the log.

@@ -46,8 +46,18 @@ inline constexpr double kContactAverage = 1.0 / 60.0;
 /// piece.
 bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemory* other_memory, double time);
 
-/// Whether an impulse by a body at a time (s) is to be passed over.
-using PassOver = std::function<bool(body::BodyId other, double time)>;
+/// True if the load comes from a piece of the same body that still sits beside this one: the place where they
+/// press is the same one in their common material space, but for a thickness. Such pieces push with their
+/// whole crack faces, along the shell, where nothing bends; what passes through a piece to its neighbours in
+/// this way does not load it.
+bool is_seated(const body::Body& struck, const body::Body& other, const Load& load);
+
+/// Takes from `loads` (collisions of a step) what goes on to seated neighbours, which push with `passed_on`
+/// (N s, sum, body space): what is left is the piece's own share.
+void keep_own_share(std::vector<Load>& loads, const Vec3& passed_on);
+
+/// Whether an impulse is to be passed over.
+using PassOver = std::function<bool(const Load& load)>;
 
 /// Loads of one kind of one step on `struck`, which began at `step_start` (s), gathered: same other body,
 /// nearer than `radius` (m), similar direction.

@@ -115,6 +115,28 @@ void gather_paper_step(const body::ImpulseLog& log, const body::Body& body, doub
     add_to_event(loads, gather_loads(log, kind, body, radius, time), radius);
 }
 
+/// Collisions of this step, less what is charged already and what passes through to seated neighbours.
+std::vector<Load> gather_collisions(const Judge& judge, const body::ImpulseLog& log, const body::Body& body,
+                                    double radius, double time, const ImpactMemory& memory) {
+  Vec3 passed_on = Vec3::Zero();
+  const auto passes_on = [&](const Load& load) {
+    const body::Body* other = body::find_body(judge.bodies, load.other);
+    const bool is_neighbour = other && is_seated(body, *other, load);
+    if (is_neighbour) passed_on += load.impulse_body;
+    return is_neighbour;
+  };
+  gather_loads(log, body::ImpulseKind::contact, body, radius, time, passes_on);
+  std::vector<Load> hits =
+      gather_loads(log, body::ImpulseKind::collision, body, radius, time, [&](const Load& load) {
+        if (passes_on(load)) return true;
+        const auto other_memory = judge.memories.find(load.other);
+        return is_charged(memory, load.other,
+                          other_memory == judge.memories.end() ? nullptr : &other_memory->second, load.time);
+      });
+  keep_own_share(hits, passed_on);
+  return hits;
+}
+
 /// The impact of this step on one body, if there is anything to evaluate.
 bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::Body& body, double time,
                    ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
@@ -124,12 +146,7 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
   if (is_paper)
     gather_paper_step(log, body, radius, time, hits);
   else
-    hits = gather_loads(
-        log, body::ImpulseKind::collision, body, radius, time, [&](body::BodyId other, double at) {
-          const auto other_memory = judge.memories.find(other);
-          return is_charged(memory, other,
-                            other_memory == judge.memories.end() ? nullptr : &other_memory->second, at);
-        });
+    hits = gather_collisions(judge, log, body, radius, time, memory);
 
   forget_old_contact(memory, time);
   if (!is_paper)

@@ -100,3 +100,45 @@ TEST_CASE("effective mass: head-on, off-centre and against a fixed body") {
   b.inverse_mass = 0.0;
   CHECK(world::effective_mass(b, nullptr, point, Vec3::UnitX()) == 0.0);
 }
+
+TEST_CASE("a piece is seated beside another where they press at one place of their common material") {
+  body::Body a = make_sphere(3, 0.1, 1.0), b = make_sphere(4, 0.1, 2.0);
+  const auto move_origin = [](body::Body& body, const Vec3& origin) {
+    auto shape = std::make_shared<body::Shape>(*body.shape);
+    shape->material_from_body = origin;
+    shape->thickness = 0.001;
+    body.shape = shape;
+  };
+  move_origin(a, Vec3(1, 0, 0));
+  move_origin(b, Vec3(1.2, 0, 0));
+  a.family = b.family = 2;
+  Load load;
+  load.other = 4;
+  load.point_body = Vec3(0.1, 0, 0);
+  load.other_point = Vec3(-0.1, 0.0009, 0);
+  CHECK(world::is_seated(a, b, load));
+  load.other_point.y() = 0.0011;  // they have come apart by more than a thickness
+  CHECK_FALSE(world::is_seated(a, b, load));
+  load.other_point.y() = 0.0;
+  b.family = 7;  // a piece of another body
+  CHECK_FALSE(world::is_seated(a, b, load));
+  a.family = b.family = 0;
+  CHECK_FALSE(world::is_seated(a, b, load));
+}
+
+TEST_CASE("what passes through a piece to its seated neighbours does not load it") {
+  Load from_floor;
+  from_floor.impulse_body = Vec3(0, 10, 0);
+  from_floor.other_impulse = Vec3(0, -10, 0);
+  std::vector<Load> loads{from_floor};
+  world::keep_own_share(loads, Vec3(0, -7.5, 3));
+  REQUIRE(loads.size() == 1);
+  CHECK((loads[0].impulse_body - Vec3(0, 2.5, 0)).norm() < 1e-12);
+  CHECK((loads[0].other_impulse - Vec3(0, -2.5, 0)).norm() < 1e-12);
+  world::keep_own_share(loads, Vec3(0, 1, 0));  // pushed along: the load is what it was
+  CHECK((loads[0].impulse_body - Vec3(0, 2.5, 0)).norm() < 1e-12);
+  world::keep_own_share(loads, Vec3(0, -4, 0));  // all of it passes through
+  CHECK(loads.empty());
+  world::keep_own_share(loads, Vec3(0, -4, 0));
+  CHECK(loads.empty());
+}
