@@ -84,7 +84,7 @@ TEST_CASE("bowl: breaks into a few large pieces, a low drop is held") {
 TEST_CASE("how near a hit comes to breaking does not depend on the step") {
   const Folder folder;
   const std::vector<std::string> hits{
-      "ornament --seconds 0.2 --set ornament.position=[0,0.15,0]",
+      "ornament --seconds 0.2 --set ornament.position=[0,0.1,0]",
       "window --seconds 0.6 --set throw.from=[0.06,0.05,0.3] --set throw.speed=1.7",
       "bowl --seconds 0.25 --set bowl.position=[0,0.11,0]"};
   for (const std::string& hit : hits) {
