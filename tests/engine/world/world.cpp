@@ -105,8 +105,8 @@ TEST_CASE("a soft impact holds, and the report says by how much") {
 }
 
 TEST_CASE("pieces of one body collide with each other, whatever group they are in") {
-  world::World w = make_drop(4.4, 0.5e-3, 240, 2);
-  for (int i = 0; i < 30; ++i) w.step();
+  world::World w = make_drop(2.0, 0.5e-3, 240, 2);
+  for (int i = 0; i < 30 && w.report().breaks.empty(); ++i) w.step();
   REQUIRE_FALSE(w.report().breaks.empty());
   std::vector<const body::Body*> pieces;
   for (const body::Body& b : w.bodies())
@@ -126,14 +126,15 @@ TEST_CASE("the same scene gives the same bits on any number of threads") {
   const int threads[3] = {1, 2, 4};
   for (int i = 0; i < 3; ++i) {
     core::set_thread_count(threads[i]);
-    world::World w = make_drop(4.4);
-    for (int k = 0; k < 30; ++k) w.step();
+    world::World w = make_drop(2.0);
+    for (int k = 0; k < 20; ++k) w.step();
+    CHECK(w.bodies().size() > 5);
     hashes[i] = w.state_hash();
   }
   core::set_thread_count(0);
   // Pinned: any compiler and optimisation gives these bits. A change of the physics changes them; say so
   // where it does.
-  CHECK(hashes[0] == 0xb405546cfe717d05ULL);
+  CHECK(hashes[0] == 0xa83a9da88be7b26aULL);
   CHECK(hashes[0] == hashes[1]);
   CHECK(hashes[0] == hashes[2]);
 }
