@@ -28,16 +28,6 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// A point of an element in its facet frame, m from corner 0.
-Vec2 place_in_frame(const geometry::ShellElements& elements, int element, const Vec2& barycentric) {
-  const Mat3 frame = geometry::facet_frame(elements, element);
-  const geometry::Triangle& t = elements.mesh.triangles[at(element)];
-  const Vec3& origin = elements.mesh.positions[at(t[0])];
-  const Vec3 way = barycentric.x() * (elements.mesh.positions[at(t[1])] - origin) +
-                   barycentric.y() * (elements.mesh.positions[at(t[2])] - origin);
-  return {frame.col(0).dot(way), frame.col(1).dot(way)};
-}
-
 class Decider {
  public:
   Decider(const ShellSubject& subject, const ShellImpact& impact, const FractureSettings& settings)
@@ -120,11 +110,12 @@ class Decider {
     };
     for (Size c = 0; c < mesh.cells.size(); ++c) {
       const int element = mesh.cells[c].element;
+      const Mat3 frame = geometry::facet_frame(elements(), element);
       bool has_flaw = false;
       for (const Flaw& flaw : flaws.of_element(element)) {
         if (!cell_holds(mesh, mesh.cells[c], flaw.barycentric)) continue;
         has_flaw = true;
-        const Vec2 place = place_in_frame(elements(), element, flaw.barycentric);
+        const Vec2 place = stress::place_in_frame(elements(), element, frame, flaw.barycentric);
         const double tension = stress::worst_stress(fits_[c].at(place)).principal.first;
         consider(candidates, element, flaw.barycentric, tension, flaw.strength,
                  static_cast<int>(&flaw - flaws.flaws.data()));

@@ -72,16 +72,6 @@ Vec2 unfold(const Vec2& point, const FoldSide& from, const FoldSide& to, bool is
   return to.origin + way.dot(from.along) * to.along + across * left_of(to.along);
 }
 
-Vec2 centroid_in_frame(const geometry::ShellMesh& mesh, const geometry::ShellCell& cell, const Mat3& frame) {
-  const geometry::TriangleMesh& whole = mesh.elements->mesh;
-  const geometry::Triangle& t = whole.triangles[at(cell.element)];
-  const Vec3 weights = centroid_weights(mesh, cell);
-  const Vec3& origin = whole.positions[at(t[0])];
-  const Vec3 way =
-      weights(1) * (whole.positions[at(t[1])] - origin) + weights(2) * (whole.positions[at(t[2])] - origin);
-  return {frame.col(0).dot(way), frame.col(1).dot(way)};
-}
-
 /// Sums over a cell and its neighbours, for the least squares.
 struct Moments {
   double area = 0.0;
@@ -179,6 +169,15 @@ std::vector<CellStress> cell_stresses(const ShellStiffness& stiffness, const geo
   return stresses;
 }
 
+Vec2 place_in_frame(const geometry::ShellElements& elements, int element, const Mat3& frame,
+                    const Vec2& barycentric) {
+  const geometry::Triangle& t = elements.mesh.triangles[at(element)];
+  const Vec3& origin = elements.mesh.positions[at(t[0])];
+  const Vec3 way = barycentric.x() * (elements.mesh.positions[at(t[1])] - origin) +
+                   barycentric.y() * (elements.mesh.positions[at(t[2])] - origin);
+  return {frame.col(0).dot(way), frame.col(1).dot(way)};
+}
+
 CellStress LinearStress::at(const Vec2& place) const {
   const Vec2 way = place - centre;
   return {mean.membrane + way.x() * slope[0].membrane + way.y() * slope[1].membrane,
@@ -192,7 +191,8 @@ std::vector<LinearStress> fit_stresses(const geometry::ShellMesh& mesh,
   std::vector<Vec2> centroids(mesh.cells.size());
   core::parallel_for(mesh.cells.size(), 512, [&](Size c) {
     frames[c] = geometry::facet_frame(*mesh.elements, mesh.cells[c].element);
-    centroids[c] = centroid_in_frame(mesh, mesh.cells[c], frames[c]);
+    const Vec3 weights = centroid_weights(mesh, mesh.cells[c]);
+    centroids[c] = place_in_frame(*mesh.elements, mesh.cells[c].element, frames[c], weights.tail<2>());
   });
   std::vector<Moments> sums(stresses.size());
   for (Size c = 0; c < stresses.size(); ++c) sums[c].add(mesh.cells[c].area, centroids[c], stresses[c]);

@@ -61,6 +61,11 @@ struct LinearStress {
   CellStress at(const Vec2& place) const;  // m
 };
 
+/// A point of an element, by the weights of its corners 1 and 2, in the element's facet frame: m from corner
+/// 0.
+Vec2 place_in_frame(const geometry::ShellElements& elements, int element, const Mat3& frame,
+                    const Vec2& barycentric);
+
 /// Fits a plane through the stresses of each cell and of those that it has contact with, by least squares,
 /// areas as weights, neighbours unfolded into the cell's plane. Exact for a stress that varies linearly. The
 /// slope is zero where the neighbours do not span one.
