@@ -35,6 +35,12 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// Of a plate against bending, N m.
+double plate_stiffness(const stress::ShellProperties& p) {
+  return p.youngs_modulus * p.thickness * p.thickness * p.thickness /
+         (12.0 * (1.0 - p.poisson_ratio * p.poisson_ratio));
+}
+
 /// Share of a load's energy that the cracks have left.
 double energy_left(const Press& press, const Decision& decision) {
   return std::max(0.0, 1.0 - decision.fracture_energy / std::max(press.energy, 1e-300));
@@ -210,28 +216,20 @@ std::optional<Size> ImpactForce::find_lead() const {
   return lead;
 }
 
-/// Shorter than half the first period? The lead's own static displacement is a trial motion: by Rayleigh's
-/// quotient the first period is at least as long as the one it would have, which mostly settles the matter.
+/// Shorter than half the first period? The lead's own static displacement, as a trial motion, mostly settles
+/// the matter.
 bool ImpactForce::is_short() const {
-  const VecX& u = lead_.displacement;
-  const double inertia = (subject_.systems->figures().lumped_mass.array() * u.array().square()).sum();
-  const double trial_period =
-      2.0 * core::kPi * core::sqrt(inertia / std::max(answers_.front().elastic_compliance, 1e-300));
-  return duration_ < 0.5 * trial_period || system_->is_first_period_above(2.0 * duration_);
+  return duration_ < 0.5 * system_->trial_period(lead_) || system_->is_first_period_above(2.0 * duration_);
 }
 
-/// A screening that is most likely at or below the one of the duration: from an infinite plate, whose
-/// compliance under screening s is 1 / (8 s sqrt(D rho t)), half of it elastic, times the effect of a rim.
-int ImpactForce::guess_exponent(const Press& lead) const {
-  if (impact_.given_duration) return stress::quantise_screening(1.0 / duration_);
+/// A duration that is most likely at or above the true one: from an infinite plate, whose compliance under
+/// screening s is 1 / (8 s sqrt(D rho t)), half of it elastic, times the effect of a rim.
+double ImpactForce::guess_duration(const Press& lead) const {
   const stress::ShellProperties p = properties_of(subject_);
-  const double t = p.thickness;
-  const double stiffness = p.youngs_modulus * t * t * t / (12.0 * (1.0 - p.poisson_ratio * p.poisson_ratio));
   const double a = core::kPi * core::kPi * lead.load->effective_mass * kRimCompliance / 16.0 /
-                   core::sqrt(stiffness * p.density * t);
+                   core::sqrt(plate_stiffness(p) * p.density * p.thickness);
   const double b = core::kPi * core::kPi * lead.load->effective_mass * lead.contact.hertz_compliance;
-  const double duration = 0.5 * (a + core::sqrt(a * a + 4.0 * b));  // T^2 = a T + b
-  return std::max(stress::quantise_screening(1.0 / duration), stress::quantise_screening(1.0 / duration_));
+  return 0.5 * (a + core::sqrt(a * a + 4.0 * b));  // T^2 = a T + b
 }
 
 bool ImpactForce::screen(int exponent, Size lead, Decision& decision, std::string& problem) {
@@ -243,16 +241,9 @@ bool ImpactForce::screen(int exponent, Size lead, Decision& decision, std::strin
   return true;
 }
 
-/// The lowest screening that is the nearest power of two to one over its own duration. A higher screening
-/// never makes the duration longer, so the search from below ends there, wherever it begins.
-bool ImpactForce::find_screening(Size lead, Decision& decision, std::string& problem) {
-  const int lowest = stress::quantise_screening(1.0 / duration_);
-  exponent_ = guess_exponent(presses_[lead]);
-  if (exponent_ > lowest) {
-    if (!screen(exponent_, lead, decision, problem)) return false;
-    const int next = stress::quantise_screening(1.0 / duration_);
-    exponent_ = next > exponent_ ? next : lowest;  // else it began too high
-  }
+/// From a screening at or below the one that is sought to the nearest power of two to one over its own
+/// duration. A higher screening never makes the duration longer, so the search from below ends at the lowest.
+bool ImpactForce::climb(Size lead, Decision& decision, std::string& problem) {
   std::vector<int> tried;
   while (static_cast<int>(tried.size()) < kMostScreenings &&
          std::find(tried.begin(), tried.end(), exponent_) == tried.end()) {
@@ -264,25 +255,71 @@ bool ImpactForce::find_screening(Size lead, Decision& decision, std::string& pro
   return true;
 }
 
+/// The search from what the unscreened solve gave: it ends at the same screening wherever it begins.
+bool ImpactForce::find_screening(Size lead, Decision& decision, std::string& problem) {
+  const int lowest = stress::quantise_screening(1.0 / duration_);
+  exponent_ = impact_.given_duration
+                  ? lowest
+                  : std::max(stress::quantise_screening(1.0 / guess_duration(presses_[lead])), lowest);
+  if (exponent_ > lowest) {
+    if (!screen(exponent_, lead, decision, problem)) return false;
+    const int next = stress::quantise_screening(1.0 / duration_);
+    exponent_ = next > exponent_ ? next : lowest;  // else it began too high
+  }
+  return climb(lead, decision, problem);
+}
+
+/// An impact that is plainly short needs no unscreened solve: the search begins at the guess, and the
+/// displacement it ends with, as a trial motion, shows that the first period is more than twice the duration.
+/// False, and nothing is lost but time, if it began too high or the impact is not that short; then the
+/// unscreened solve has to tell.
+bool ImpactForce::is_plainly_short(Size lead, Decision& decision, std::string& problem) {
+  if (impact_.given_duration) return false;
+  const double guess = guess_duration(presses_[lead]);
+  const stress::ShellProperties p = properties_of(subject_);
+  const geometry::MassProperties& mass = subject_.systems->figures().mass;
+  // Of a slender free plate of the same moment of inertia, m l^2 / 12.
+  const double length_squared = 12.0 * mass.inertia.trace() / (2.0 * mass.mass);
+  const double plate_period =
+      2.0 * core::kPi / 22.37 * length_squared * core::sqrt(p.density * p.thickness / plate_stiffness(p));
+  if (guess > 0.5 * plate_period) return false;
+  const int begin = exponent_ = stress::quantise_screening(1.0 / guess);
+  if (!screen(begin, lead, decision, problem)) return false;
+  const int next = stress::quantise_screening(1.0 / duration_);
+  if (next < begin) return false;
+  exponent_ = next;
+  if (next > begin && !climb(lead, decision, problem)) return false;
+  return duration_ < 0.5 * system_->trial_period(lead_);
+}
+
+/// The lead's duration, in the system that it is long enough, or too short, for.
+bool ImpactForce::settle_lead(Size lead, Decision& decision, std::string& problem) {
+  has_lead_ = true;
+  is_screened_ = is_plainly_short(lead, decision, problem);
+  if (is_screened_) return true;
+  problem.clear();
+  if (!use_unscreened(decision, problem) || !answer_lead(lead, decision, problem)) return false;
+  duration_ = duration_of(presses_[lead], answers_.front());
+  exponent_ = stress::quantise_screening(1.0 / duration_);
+  is_screened_ = is_short();
+  return !is_screened_ || find_screening(lead, decision, problem);
+}
+
+bool ImpactForce::use_unscreened(Decision& decision, std::string& problem) {
+  const auto start = Clock::now();
+  const System& unscreened = subject_.systems->unscreened();
+  decision.factor_ms += milliseconds_since(start);
+  return use(unscreened, problem);
+}
+
 bool ImpactForce::settle(Decision& decision, std::string& problem) {
   const stress::ShellFigures& figures = subject_.systems->figures();
   for (const Press& press : presses_)
     groups_.push_back(find_press_groups(*subject_.mesh, figures.contacts, press.contact));
-  const auto start = Clock::now();
   const int made_before = subject_.systems->count();
-  const System& unscreened = subject_.systems->unscreened();
-  decision.factor_ms += milliseconds_since(start);
-  if (!use(unscreened, problem)) return false;
   duration_ = impact_.contact_average;
   const std::optional<Size> lead = find_lead();
-  if (lead) {
-    has_lead_ = true;
-    if (!answer_lead(*lead, decision, problem)) return false;
-    duration_ = duration_of(presses_[*lead], answers_.front());
-    exponent_ = stress::quantise_screening(1.0 / duration_);
-    is_screened_ = is_short();
-    if (is_screened_ && !find_screening(*lead, decision, problem)) return false;
-  }
+  if (!(lead ? settle_lead(*lead, decision, problem) : use_unscreened(decision, problem))) return false;
   if (!has_lead_ || presses_.size() > 1) answer_all(lead.value_or(0), decision);
   decision.factorisations += subject_.systems->count() - made_before;
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);

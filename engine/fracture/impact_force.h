@@ -74,7 +74,11 @@ class ImpactForce {
   double felt_compliance(const ContactAnswer& answer) const;
   double duration_of(const Press& press, const ContactAnswer& answer) const;
   bool is_short() const;
-  int guess_exponent(const Press& lead) const;
+  double guess_duration(const Press& lead) const;
+  bool use_unscreened(Decision& decision, std::string& problem);
+  bool settle_lead(std::size_t lead, Decision& decision, std::string& problem);
+  bool is_plainly_short(std::size_t lead, Decision& decision, std::string& problem);
+  bool climb(std::size_t lead, Decision& decision, std::string& problem);
   bool find_screening(std::size_t lead, Decision& decision, std::string& problem);
   bool screen(int exponent, std::size_t lead, Decision& decision, std::string& problem);
   void settle_force(Press& press, const ContactAnswer& answer);

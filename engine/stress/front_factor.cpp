@@ -144,7 +144,7 @@ class Factorisation {
     for (int c = front.first_child; c < front.first_child + front.child_count; ++c)
       add_child(tree_.children[at(c)], front, view);
 
-    if (!tiles::factor_panel(panel, front.pivots, front.rows, least_pivots_.data() + front.first_pivot)) {
+    if (!tiles::kernels().factor_panel(panel, front.pivots, front.rows, least_pivots_.data() + front.first_pivot)) {
       has_failed_ = true;
       return;
     }
@@ -152,10 +152,10 @@ class Factorisation {
     const Size strips = tiles::strip_count(front.rows);
     if (is_top && work > kParallelWork)
       core::parallel_chunks(strips, 4, [&](Size begin, Size end) {
-        tiles::subtract_products(panel, front.pivots, front.rows, rest, begin, end);
+        tiles::kernels().subtract_products(panel, front.pivots, front.rows, rest, begin, end);
       });
     else
-      tiles::subtract_products(panel, front.pivots, front.rows, rest, 0, strips);
+      tiles::kernels().subtract_products(panel, front.pivots, front.rows, rest, 0, strips);
   }
 
   void add_element(int e, const FrontView& view) const {

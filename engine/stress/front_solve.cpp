@@ -56,22 +56,11 @@ class LaneSolver {
   /// sums[i] = row i of a strip times the first `columns` pivots.
   void multiply_strip(const double* strip, const double* pivots, int columns,
                       std::array<Lanes, 4>& sums) const {
-    sums = {};
     if constexpr (kLanes == 4) {
-      tiles::Pair wide[4][2] = {};
-      for (int p = 0; p < columns; ++p, strip += tiles::kRows, pivots += kLanes) {
-        const tiles::Pair low = *reinterpret_cast<const tiles::Pair*>(pivots);
-        const tiles::Pair high = *reinterpret_cast<const tiles::Pair*>(pivots + 2);
-        for (Size i = 0; i < 4; ++i) {
-          const tiles::Pair factor = {strip[i], strip[i]};
-          wide[i][0] += factor * low;
-          wide[i][1] += factor * high;
-        }
-      }
-      for (Size i = 0; i < 4; ++i)
-        for (Size l = 0; l < 4; ++l) sums[i][l] = wide[i][l / 2][l % 2];
+      tiles::kernels().multiply_lanes(strip, pivots, columns, sums.front().data());
       return;
     }
+    sums = {};
     for (int p = 0; p < columns; ++p, strip += tiles::kRows, pivots += kLanes)
       for (Size i = 0; i < 4; ++i)
         for (Size l = 0; l < at(kLanes); ++l) sums[i][l] += strip[i] * pivots[l];
@@ -103,16 +92,7 @@ class LaneSolver {
   void subtract_strip(const double* strip, const std::array<Lanes, 4>& rows, int columns,
                       double* pivots) const {
     if constexpr (kLanes == 4) {
-      tiles::Pair r[4][2];
-      for (Size i = 0; i < 4; ++i)
-        for (Size h = 0; h < 2; ++h) r[i][h] = tiles::Pair{rows[i][2 * h], rows[i][2 * h + 1]};
-      for (int p = 0; p < columns; ++p, strip += tiles::kRows, pivots += kLanes) {
-        const tiles::Pair s0 = {strip[0], strip[0]}, s1 = {strip[1], strip[1]}, s2 = {strip[2], strip[2]},
-                          s3 = {strip[3], strip[3]};
-        for (Size h = 0; h < 2; ++h)
-          *reinterpret_cast<tiles::Pair*>(pivots + 2 * h) -=
-              ((s0 * r[0][h] + s1 * r[1][h]) + s2 * r[2][h]) + s3 * r[3][h];
-      }
+      tiles::kernels().subtract_lanes(strip, rows.front().data(), columns, pivots);
       return;
     }
     for (int p = 0; p < columns; ++p, strip += tiles::kRows, pivots += kLanes)

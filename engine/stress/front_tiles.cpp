@@ -5,10 +5,7 @@
 #include "engine/core/elementary.h"
 
 namespace shatterbox::stress::tiles {
-namespace {
 
-/// Cholesky of the lower triangle of a tile's first `size` columns, in place, the diagonal inverted, the
-/// upper triangle set to zero.
 bool factor_diagonal(double* tile, int size, const double* least_pivots) {
   for (int j = 0; j < size; ++j) {
     double pivot = tile[kRows * j + j];
@@ -25,6 +22,8 @@ bool factor_diagonal(double* tile, int size, const double* least_pivots) {
   }
   return true;
 }
+
+namespace {
 
 /// c <- c L^-T for `columns` columns of a strip, L a factored diagonal tile.
 void solve_strip(double* c, const double* diagonal, int columns) {
@@ -45,8 +44,6 @@ void solve_strip(double* c, const double* diagonal, int columns) {
     *reinterpret_cast<Pair*>(c + kRows * j + 2) = high[j];
   }
 }
-
-}  // namespace
 
 bool factor_panel(double* panel, int pivots, int rows, const double* least_pivots) {
   const Size strip_size = static_cast<Size>(kRows) * static_cast<Size>(pivots);
@@ -79,6 +76,43 @@ void subtract_products(const double* panel, int pivots, int rows, double* rest, 
     for (Size column = 0; column <= strip; ++column)
       subtract(multiply(below + strip * strip_size, below + column * strip_size, pivots),
                rest + rest_strip(strip) + column * kRows * kRows, kRows);
+}
+
+void multiply_lanes(const double* strip, const double* pivots, int columns, double* sums) {
+  Pair wide[4][2] = {};
+  for (int p = 0; p < columns; ++p, strip += kRows, pivots += kRows) {
+    const Pair low = *reinterpret_cast<const Pair*>(pivots);
+    const Pair high = *reinterpret_cast<const Pair*>(pivots + 2);
+    for (Size i = 0; i < 4; ++i) {
+      const Pair factor = {strip[i], strip[i]};
+      wide[i][0] += factor * low;
+      wide[i][1] += factor * high;
+    }
+  }
+  for (Size i = 0; i < 4; ++i)
+    for (Size half = 0; half < 2; ++half)
+      *reinterpret_cast<Pair*>(sums + kRows * i + 2 * half) = wide[i][half];
+}
+
+void subtract_lanes(const double* strip, const double* rows, int columns, double* pivots) {
+  Pair r[4][2];
+  for (Size i = 0; i < 4; ++i)
+    for (Size half = 0; half < 2; ++half)
+      r[i][half] = *reinterpret_cast<const Pair*>(rows + kRows * i + 2 * half);
+  for (int p = 0; p < columns; ++p, strip += kRows, pivots += kRows) {
+    const Pair s0 = {strip[0], strip[0]}, s1 = {strip[1], strip[1]}, s2 = {strip[2], strip[2]},
+               s3 = {strip[3], strip[3]};
+    for (Size half = 0; half < 2; ++half)
+      *reinterpret_cast<Pair*>(pivots + 2 * half) -=
+          ((s0 * r[0][half] + s1 * r[1][half]) + s2 * r[2][half]) + s3 * r[3][half];
+  }
+}
+
+}  // namespace
+
+const Kernels& narrow_kernels() {
+  static const Kernels kernels{factor_panel, subtract_products, multiply_lanes, subtract_lanes};
+  return kernels;
 }
 
 }  // namespace shatterbox::stress::tiles

@@ -62,11 +62,32 @@ inline void subtract(const Tile& t, double* c, int columns) {
   }
 }
 
-/// Factors the pivots of a panel and finishes its rows below; the diagonal becomes its inverse. False if a
-/// pivot is at most its entry of `least_pivots` (|pivots|).
-bool factor_panel(double* panel, int pivots, int rows, const double* least_pivots);
+/// Cholesky of the lower triangle of a tile's first `size` columns, in place, the diagonal inverted, the
+/// upper triangle set to zero. False if a pivot is at most its entry of `least_pivots`.
+bool factor_diagonal(double* tile, int size, const double* least_pivots);
 
-/// rest -= L L^T for the strips [begin, end) of the rest matrix, L the rows below of a finished panel.
-void subtract_products(const double* panel, int pivots, int rows, double* rest, Size begin, Size end);
+/// The loops that the time goes into, for one width of the processor's registers.
+struct Kernels {
+  /// Factors the pivots of a panel and finishes its rows below; the diagonal becomes its inverse. False if a
+  /// pivot is at most its entry of `least_pivots` (|pivots|).
+  bool (*factor_panel)(double* panel, int pivots, int rows, const double* least_pivots);
+  /// rest -= L L^T for the strips [begin, end) of the rest matrix, L the rows below of a finished panel.
+  void (*subtract_products)(const double* panel, int pivots, int rows, double* rest, Size begin, Size end);
+  /// sums (4 rows x 4 lanes) = four rows of a strip times the first `columns` pivots of four lanes.
+  void (*multiply_lanes)(const double* strip, const double* pivots, int columns, double* sums);
+  /// pivots -= the first `columns` columns of a strip, transposed, times its four rows (4 rows x 4 lanes).
+  void (*subtract_lanes)(const double* strip, const double* rows, int columns, double* pivots);
+};
+
+/// Two doubles an instruction, on any processor.
+const Kernels& narrow_kernels();
+/// Four doubles an instruction; null where the processor cannot. The same bits as the narrow ones.
+const Kernels* wide_kernels();
+
+/// The widest there are.
+inline const Kernels& kernels() {
+  static const Kernels* const widest = wide_kernels() ? wide_kernels() : &narrow_kernels();
+  return *widest;
+}
 
 }  // namespace shatterbox::stress::tiles

@@ -216,6 +216,17 @@ double ShellSystem::first_period() const {
   return state_->period;
 }
 
+double ShellSystem::trial_period(const ShellSolution& solution) const {
+  const ShellStructure& structure = *state_->structure;
+  const double length = structure.stiffness->length;
+  VecX x = solution.displacement;
+  x.head(structure.vertex_dofs) /= length;
+  structure.rigid.remove_motion(x);
+  const double inertia = (structure.mass.array() * x.array().square()).sum();
+  const double elastic = solution.elastic_compliance / (structure.stiffness->force_unit() * length);
+  return 2.0 * core::kPi * core::sqrt(inertia / std::max(elastic, 1e-300)) * structure.seconds();
+}
+
 bool ShellSystem::is_first_period_above(double limit) const {
   std::call_once(state_->has_rough_frequency,
                  [this] { state_->rough_frequency = state_->estimate_frequency(kRoughPeriodSteps); });

@@ -63,6 +63,9 @@ class ShellSystem {
   /// Longest period of free (or supported) vibration, s, to about 1 %; computed at the first call, then kept.
   /// Only of use with s = 0.
   double first_period() const;
+  /// Period (s) of the vibration that a solution's displacement would be: by Rayleigh's quotient the first
+  /// period of the shell, free or supported, is at least that long. Rigid motion does not count.
+  double trial_period(const ShellSolution& solution) const;
   /// first_period() > limit (s), mostly at half the price.
   bool is_first_period_above(double limit) const;
 

@@ -31,6 +31,9 @@ struct ImpactMemory {
   double tested_contact = 0.0;  // N: total contact force at which the body was last found to hold
   int generation = 0;           // breaks since the event began from which this piece comes
 
+  /// s, when a break made this piece: what presses on it is known on average only kContactAverage later.
+  double born = -1e9;
+
   // The impact that made this piece was charged with its whole impulse when it was judged. Until it is over,
   // what comes from the same body, or from another piece of the same break, is part of it and not charged
   // again.

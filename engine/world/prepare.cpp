@@ -1,6 +1,7 @@
 // Factors made before the run: likely impacts are tried on every breakable form, so that the factors which a
 // first hit would need are there. The answers are thrown away; the kept factors change no result.
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include <Eigen/Eigenvalues>
@@ -14,9 +15,19 @@ namespace {
 
 constexpr double kLikelySpeed = 3.0;  // m/s
 
+/// Masses of bodies that may come flying later, as shares of the struck body's own.
+constexpr std::array<double, 3> kLikelyMasses{0.01, 0.1, 1.0};
+
 struct Trial {
   const Fragile* fragile = nullptr;
   fracture::ShellLoad load;
+};
+
+/// What a trial meets; without mass, a floor.
+struct Partner {
+  double mass = 0.0;   // kg
+  double speed = 0.0;  // m/s
+  stress::ContactSurface surface;
 };
 
 /// The vertex farthest along `direction`.
@@ -30,48 +41,48 @@ Vec3 nearest_to_centre(const std::vector<Vec3>& points) {
                            [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
 }
 
-fracture::ShellLoad make_load(const body::Body& struck, const body::Body* partner, const Vec3& point,
+fracture::ShellLoad make_load(const body::Body& struck, const Partner& partner, const Vec3& point,
                               const Vec3& direction) {
   fracture::ShellLoad load;
   load.point_material = point + struck.shape->material_from_body;
   load.direction = direction;
-  const double partner_mass = partner ? partner->shape->mass : 0.0;
-  load.other_inverse_mass = partner ? 1.0 / partner_mass : 0.0;
-  double inverse = load.other_inverse_mass;
-  if (struck.is_dynamic()) {
-    const Vec3 turn = point.cross(direction);
-    inverse += struck.inverse_mass + turn.dot(struck.inverse_inertia * turn);
-  }
-  load.effective_mass = 1.0 / inverse;
-  load.closing_speed = std::max(kLikelySpeed, partner ? (partner->velocity - struck.velocity).norm() : 0.0);
+  load.other_inverse_mass = partner.mass > 0.0 ? 1.0 / partner.mass : 0.0;
+  load.effective_mass = 1.0 / (load.other_inverse_mass + mobility(struck, point, direction));
+  load.closing_speed = std::max(kLikelySpeed, partner.speed);
   load.impulse = load.effective_mass * load.closing_speed;
   const double size = struck.shape->bounding_radius;
   const stress::HertzContact contact = stress::make_hertz_contact(
-      {struck.young, struck.poisson, size},
-      partner ? stress::ContactSurface{partner->young, partner->poisson, partner->shape->radius}
-              : stress::ContactSurface{},
-      struck.shape->thickness, size);
+      {struck.young, struck.poisson, size}, partner.surface, struck.shape->thickness, size);
   const double force = stress::peak_force(contact, load.effective_mass, load.closing_speed);
   load.hertz_compliance = stress::hertz_compliance(contact, force);
   load.hertz_radius = stress::hertz_patch_radius(contact, force);
   return load;
 }
 
-/// Free bodies meet a floor with each of their six sides; held ones are hit in the middle by what moves.
-void add_trials(const body::Body& struck, const Fragile& fragile, std::span<const body::Body* const> partners,
+/// Free bodies meet a floor with each of their six sides; held ones are hit in the middle by what moves, or
+/// by what may come.
+void add_trials(const body::Body& struck, const Fragile& fragile, std::span<const body::Body* const> movers,
                 std::vector<Trial>& trials) {
   const std::vector<Vec3>& points = struck.shape->surface.positions;
   if (struck.is_dynamic()) {
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {-1.0, 1.0}) {
         const Vec3 outward = sign * Vec3::Unit(axis);
-        trials.push_back({&fragile, make_load(struck, nullptr, farthest(points, outward), -outward)});
+        trials.push_back({&fragile, make_load(struck, {}, farthest(points, outward), -outward)});
       }
     return;
   }
+  std::vector<Partner> partners;
+  for (const body::Body* mover : movers)
+    partners.push_back({mover->shape->mass,
+                        (mover->velocity - struck.velocity).norm(),
+                        {mover->young, mover->poisson, mover->shape->radius}});
+  if (partners.empty())
+    for (const double share : kLikelyMasses)
+      partners.push_back({share * struck.shape->mass, 0.0, stress::ContactSurface{}});
   const Eigen::SelfAdjointEigenSolver<Mat3> inertia(struck.shape->inertia);
   const Vec3 across = inertia.eigenvectors().col(2);
-  for (const body::Body* partner : partners)
+  for (const Partner& partner : partners)
     trials.push_back({&fragile, make_load(struck, partner, nearest_to_centre(points), across)});
 }
 
@@ -79,15 +90,15 @@ void add_trials(const body::Body& struck, const Fragile& fragile, std::span<cons
 
 void World::prepare() {
   State& s = *state_;
-  std::vector<const body::Body*> partners;
+  std::vector<const body::Body*> movers;
   for (const body::Body& body : s.moving.bodies)
-    if (body.is_dynamic() && !s.moving.fragiles.count(body.id)) partners.push_back(&body);
+    if (body.is_dynamic() && !s.moving.fragiles.count(body.id)) movers.push_back(&body);
 
   std::set<const stress::ShellSystemCache*> seen;
   std::vector<Trial> trials;
   for (const auto& [id, fragile] : s.moving.fragiles) {
     if (!seen.insert(fragile->subject.systems.get()).second) continue;
-    add_trials(*body::find_body(s.moving.bodies, id), *fragile, partners, trials);
+    add_trials(*body::find_body(s.moving.bodies, id), *fragile, movers, trials);
   }
   fracture::FractureSettings once;
   once.most_generations = 1;

@@ -163,6 +163,8 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
 
   const double contact_force = total_force(memory.contact);
   bool is_pressed = contact_force > kContactGrowth * memory.tested_contact;
+  // Contact is an average over a time that a newborn piece has not lived yet.
+  if (!is_paper && time < memory.born + kContactAverage) is_pressed = false;
   if (is_pressed && bending_bound(body, contact_force) < candidate.fragile->subject.material.strength) {
     is_pressed = false;
     if (hits.empty()) ++figures.skipped;

@@ -178,6 +178,24 @@ TEST_CASE("a bauble dropped on its side shatters, with or without grains, and it
   }
 }
 
+TEST_CASE("a plainly short impact needs no unscreened factor, and having one changes nothing") {
+  const auto subject = test::make_window(1);
+  auto pebble = test::steel_ball(1.0);
+  pebble.loads.front().effective_mass = 0.05;
+  pebble.loads.front().other_inverse_mass = 20.0;
+  const auto decision = fracture::decide_shell(subject, pebble);
+  REQUIRE(decision.generations > 0);
+  const int made = subject.systems->count();
+  CHECK(decision.factorisations == made);
+  REQUIRE(subject.systems->unscreened());
+  CHECK(subject.systems->count() == made + 1);
+  const auto again = fracture::decide_shell(subject, pebble);
+  CHECK(again.verdict.duration == decision.verdict.duration);
+  CHECK(again.verdict.ratio == decision.verdict.ratio);
+  CHECK(again.factorisations == 0);
+  CHECK(subject.systems->unscreened().value()->first_period() > 2.0 * decision.verdict.duration);
+}
+
 TEST_CASE("several loads at once break the pane about each of them") {
   const auto subject = test::make_window(3);
   auto impact = test::steel_ball(8.0, Vec3(-0.25, 0.2, 0.0));

@@ -330,6 +330,29 @@ TEST_CASE("first period: free square plate and clamped square plate") {
   REQUIRE(clamped->first_period() == Approx(2.0 * core::kPi * unit / 35.985).epsilon(0.06));
 }
 
+TEST_CASE("a trial motion's period is never above the first one, and that of the first motion itself") {
+  const ShellProperties properties = properties_of(0.01);
+  for (const Elements& elements : {grid(14, 11, 1.0, 0.7, 0.3), disc(6), icosphere(2)}) {
+    const auto stiffness = make_shell_stiffness(elements, properties);
+    const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+    const auto balanced = make_system(stiffness, mesh);
+    const double period = balanced->first_period();
+    VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+    load.segment<3>(3) = Vec3(0.3, -0.2, 1.0);
+    for (const double screening : {0.0, 0.3 / period, 3.0 / period, 60.0 / period}) {
+      const auto system = make_system(stiffness, mesh, screening);
+      CHECK(system->trial_period(system->solve(load)) < 1.001 * period);
+    }
+    // Solving again and again under its own inertia turns any motion into the first one.
+    ShellSolution solution = balanced->solve(load);
+    const VecX mass = lumped_mass(*stiffness, mesh);
+    for (int i = 0; i < 25; ++i)
+      solution =
+          balanced->solve(VecX(mass.cwiseProduct(solution.displacement) / solution.displacement.norm()));
+    CHECK(balanced->trial_period(solution) == Approx(period).epsilon(0.03));
+  }
+}
+
 TEST_CASE("whether the first period is above a limit is what the period says") {
   const ShellProperties properties = properties_of(0.01);
   const Elements plate = grid(14, 11, 1.0, 0.7, 0.3);
