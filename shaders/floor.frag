@@ -7,7 +7,7 @@
 #else
 #include "common/dimming.glsl"
 #endif
-in vec4 corner;
+noperspective in vec4 corner;
 layout(location = 0) out vec4 colour;
 void main() {
   vec2 pixel = gl_FragCoord.xy;

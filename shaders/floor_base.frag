@@ -1,7 +1,7 @@
 // The empty floor before its backdrop.
 #include "common/floor.glsl"
 #include "common/paint.glsl"
-in vec4 corner;
+noperspective in vec4 corner;
 layout(location = 0) out vec4 colour;
 void main() {
   vec4 parts = floor_at(corner, ray_at(gl_FragCoord.xy));

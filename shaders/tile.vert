@@ -2,7 +2,6 @@
 // square of 16 x 16 pixels does not need what the program draws vanish.
 #include "common/frame.glsl"
 layout(std430, binding = 2) readonly buffer Tiles { uvec4 tiles[]; };  // left, bottom, right, top
-layout(location = 0) uniform int first_tile;
 layout(location = 1) uniform float tile_depth;
 #ifdef IF_OCCLUDED
 layout(binding = 9) uniform sampler2D sky_tiles;
@@ -15,10 +14,11 @@ layout(binding = 12) uniform usampler2D need_map;  // as dimming_tiles.frag writ
 #ifdef FLOOR
 #include "common/floor.glsl"
 #include "common/paint.glsl"
-out vec4 corner;
+noperspective out vec4 corner;
 #endif
 void main() {
-  uvec4 t = tiles[first_tile + gl_InstanceID];
+  int vertex = gl_VertexID % 6;  // of two triangles; instances would cost llvmpipe more
+  uvec4 t = tiles[gl_VertexID / 6];
 #ifdef IF_OCCLUDED
   if (texelFetch(sky_tiles, ivec2(t.xy) / 16, 0).x > 0.994) t = uvec4(0u);
 #endif
@@ -26,7 +26,8 @@ void main() {
   int need = int(texelFetch(need_map, ivec2(t.xy) / 16, 0).x);
   if (need < least_need || need > most_need) t = uvec4(0u);
 #endif
-  vec2 p = vec2((gl_VertexID & 1) == 0 ? t.x : t.z, (gl_VertexID & 2) == 0 ? t.y : t.w);
+  bool is_left = vertex == 0 || vertex == 2 || vertex == 3, is_low = vertex < 2 || vertex == 4;
+  vec2 p = vec2(is_left ? t.x : t.z, is_low ? t.y : t.w);
 #ifdef FLOOR
   corner = floor_corner(p, ray_at(p));
 #endif

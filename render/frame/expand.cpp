@@ -153,22 +153,6 @@ class Builder {
   std::vector<std::int64_t> newest_, older_;  // chains of drawn vertices of one source
 };
 
-void check(const Mesh& mesh) {
-  const auto fail = [&](const std::string& what) {
-    throw std::invalid_argument("mesh " + std::to_string(mesh.id) + ": " + what);
-  };
-  for (const glm::uvec3& t : mesh.triangles) {
-    if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
-      fail("a triangle names a vertex that is not there");
-  }
-  const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
-  if (!fits(mesh.parts.size(), mesh.triangles.size())) fail("parts must be one a triangle");
-  if (!fits(mesh.cracks.size(), mesh.triangles.size())) fail("cracks must be one a triangle");
-  if (!fits(mesh.normals.size(), mesh.triangles.size() * 3)) fail("normals must be three a triangle");
-  if (!fits(mesh.pattern_positions.size(), mesh.positions.size()))
-    fail("pattern positions must be one a vertex");
-}
-
 void find_bounds(DrawnMesh& out) {
   if (out.vertices.empty()) return;
   out.box_least = out.box_most = out.vertices.front().position;
@@ -231,6 +215,22 @@ void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::
 
 std::vector<glm::vec3> find_corner_normals(const Mesh& mesh) {
   return crease_normals(mesh, find_fans(mesh), find_face_normals(mesh));
+}
+
+void check(const Mesh& mesh) {
+  const auto fail = [&](const std::string& what) {
+    throw std::invalid_argument("mesh " + std::to_string(mesh.id) + ": " + what);
+  };
+  for (const glm::uvec3& t : mesh.triangles) {
+    if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
+      fail("a triangle names a vertex that is not there");
+  }
+  const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
+  if (!fits(mesh.parts.size(), mesh.triangles.size())) fail("parts must be one a triangle");
+  if (!fits(mesh.cracks.size(), mesh.triangles.size())) fail("cracks must be one a triangle");
+  if (!fits(mesh.normals.size(), mesh.triangles.size() * 3)) fail("normals must be three a triangle");
+  if (!fits(mesh.pattern_positions.size(), mesh.positions.size()))
+    fail("pattern positions must be one a vertex");
 }
 
 DrawnMesh expand(const Mesh& mesh) {

@@ -42,6 +42,9 @@ std::vector<glm::vec3> find_corner_normals(const Mesh& mesh);
 
 // Throws std::invalid_argument when an index is out of range or an array has a length its comment does not
 // allow.
+void check(const Mesh& mesh);
+
+// Throws as check() does.
 DrawnMesh expand(const Mesh& mesh);
 
 }  // namespace shatterbox::render

@@ -10,6 +10,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "render/frame/simplify.h"
+
 namespace shatterbox::render::pass {
 
 void delete_vertex_array(unsigned name) {
@@ -33,7 +35,10 @@ struct PaintRow {
 };
 constexpr float kHeatMap = 8.0F;  // a pattern kind of its own
 constexpr int kRowsAbreast = 256;
-constexpr float kLeastPixels = 0.25F;  // bodies of a smaller radius are not drawn
+constexpr float kLeastPixels = 0.25F;     // bodies of a smaller radius are not drawn
+constexpr float kSeenPixels = 0.4F;       // a surface may be off by so much
+constexpr float kLeastTolerance = 1e-7F;  // m; nothing is simplified for eyes so near
+constexpr int kAsGiven = -1000;           // a level of its own: not simplified
 constexpr GLuint kRowAttribute = 5;
 
 PaintRow to_paint(const Look& look, Face face) {
@@ -122,20 +127,47 @@ std::array<glm::vec4, 4> find_sides(const glm::mat4& clip_from_world) {
   return sides;
 }
 
+// Shells are drawn as coarsely as the eye does not see: in steps, so that it rarely changes.
+int level_of(const Draw& draw, glm::vec3 centre_body, float radius, glm::vec3 eye, float pixel_slope) {
+  if (draw.mesh->surface != Surface::shell) return kAsGiven;
+  const float scale = glm::length(glm::vec3(draw.world_from_body[0]));
+  const glm::vec3 centre(draw.world_from_body * glm::vec4(centre_body, 1.0F));
+  const float nearest = glm::distance(centre, eye) - radius * scale;
+  const float tolerance = kSeenPixels * pixel_slope * nearest / scale;
+  return tolerance > kLeastTolerance ? static_cast<int>(std::floor(std::log2(tolerance))) : kAsGiven;
+}
+
 }  // namespace
 
 MeshStore::MeshStore() : vertex_array_(create_vertex_array()) {}
 
-MeshStore::Stored& MeshStore::find_or_upload(const Mesh& mesh) {
+MeshStore::Levels& MeshStore::find_or_measure(const Mesh& mesh) {
   const auto known = meshes_.find(mesh.id);
   if (known != meshes_.end()) return known->second;
-  Stored stored;
-  stored.shape = expand(mesh);
+  check(mesh);
+  Levels& levels = meshes_[mesh.id];
+  if (mesh.positions.empty()) return levels;
+  glm::vec3 least = mesh.positions.front(), most = least;
+  for (const glm::vec3& p : mesh.positions) {
+    least = glm::min(least, p);
+    most = glm::max(most, p);
+  }
+  levels.centre = 0.5F * (least + most);
+  levels.radius = 0.5F * glm::distance(least, most) + mesh.thickness;
+  return levels;
+}
+
+const StoredMesh& MeshStore::find_or_upload(const Mesh& mesh, int level, Levels& levels) {
+  const auto known = levels.meshes.find(level);
+  if (known != levels.meshes.end()) return known->second;
+  StoredMesh stored;
+  stored.id = next_id_++;
+  stored.shape = expand(level == kAsGiven ? mesh : simplify(mesh, std::exp2(static_cast<float>(level))));
   stored.vertices = gpu::Buffer::of(std::span<const DrawnVertex>(stored.shape.vertices));
   stored.indices = gpu::Buffer::of(std::span<const std::uint32_t>(stored.shape.indices));
   stored.shape.vertices = {};
   stored.shape.indices = {};
-  return meshes_.emplace(mesh.id, std::move(stored)).first->second;
+  return levels.meshes.emplace(level, std::move(stored)).first->second;
 }
 
 void MeshStore::drop_unseen() {
@@ -184,8 +216,8 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, fl
     if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
       throw std::invalid_argument("mesh " + std::to_string(draw.mesh->id) + ": scalars must be one a vertex");
     }
-    Stored& stored = find_or_upload(*draw.mesh);
-    stored.last_frame = frame_;
+    Levels& levels = find_or_measure(*draw.mesh);
+    levels.last_frame = frame_;
     const bool has_scalars = frame.overlay.kind == OverlayKind::stress && draw.scalars != nullptr;
     draws.push_back({draw.world_from_body,
                      {add_paints(draw, frame.overlay), std::max<std::size_t>(draw.looks.size(), 1),
@@ -193,11 +225,15 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, fl
     if (has_scalars) scalars.insert(scalars.end(), draw.scalars->begin(), draw.scalars->end());
 
     Item item;
-    item.mesh = draw.mesh->id;
+    const int level = has_scalars
+                          ? kAsGiven
+                          : level_of(draw, levels.centre, levels.radius, frame.camera.position, pixel_slope);
+    item.stored = &find_or_upload(*draw.mesh, level, levels);
+    const DrawnMesh& shape = item.stored->shape;
     item.row = static_cast<int>(draws.size()) - 1;
     item.world_from_body = draw.world_from_body;
-    item.centre_world = glm::vec3(draw.world_from_body * glm::vec4(stored.shape.centre, 1.0F));
-    item.radius = stored.shape.radius * glm::length(glm::vec3(draw.world_from_body[0]));
+    item.centre_world = glm::vec3(draw.world_from_body * glm::vec4(shape.centre, 1.0F));
+    item.radius = shape.radius * glm::length(glm::vec3(draw.world_from_body[0]));
     item.eye_distance = glm::distance(item.centre_world, frame.camera.position);
     item.is_glass = frame.overlay.kind != OverlayKind::pieces &&
                     std::any_of(draw.looks.begin(), draw.looks.end(),
@@ -228,7 +264,7 @@ void MeshStore::bind_vertices() const {
 }
 
 void MeshStore::draw(const Item& item, Part part) const {
-  const Stored& stored = meshes_.at(item.mesh);
+  const StoredMesh& stored = *item.stored;
   const DrawnMesh& shape = stored.shape;
   glVertexArrayVertexBuffer(vertex_array_.get(), 0, stored.vertices.name(), 0, sizeof(DrawnVertex));
   glVertexArrayElementBuffer(vertex_array_.get(), stored.indices.name());
@@ -254,7 +290,7 @@ void MeshStore::draw(const Item& item, Part part) const {
 }
 
 Part MeshStore::shadow_part(const Item& item) const {
-  return meshes_.at(item.mesh).shape.inner.count > 0 ? Part::outer : Part::all;
+  return item.stored->shape.inner.count > 0 ? Part::outer : Part::all;
 }
 
 }  // namespace shatterbox::render::pass

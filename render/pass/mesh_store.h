@@ -14,10 +14,17 @@ namespace shatterbox::render::pass {
 
 void delete_vertex_array(unsigned name);
 
+// A mesh on the GPU, as given or simplified.
+struct StoredMesh {
+  std::uint64_t id = 0;  // no other ever has it
+  gpu::Buffer vertices, indices;
+  DrawnMesh shape;  // ranges and bounds; its arrays are on the GPU only
+};
+
 // One draw of the frame, ready for the passes.
 struct Item {
-  std::uint64_t mesh = 0;
-  int row = 0;  // of the draw rows
+  const StoredMesh* stored = nullptr;  // never null; the same for as long as it is drawn
+  int row = 0;                         // of the draw rows
   glm::mat4 world_from_body{1.0F};
   glm::vec3 centre_world{0.0F};
   float radius = 0.0F;        // m, world
@@ -46,27 +53,29 @@ class MeshStore {
     return pattern_kinds_;
   }  // on any draw of the frame: bits by kind, as in a PaintRow
   int mesh_count() const { return static_cast<int>(meshes_.size()); }
-  const DrawnMesh& shape(const Item& item) const { return meshes_.at(item.mesh).shape; }
 
  private:
-  struct Stored {
-    gpu::Buffer vertices, indices;
-    DrawnMesh shape;  // ranges and bounds; its arrays are on the GPU only
+  // Levels: simplified within 2^level metres; kAsGiven is the mesh itself.
+  struct Levels {
+    std::map<int, StoredMesh> meshes;
+    glm::vec3 centre{0.0F};  // of the mesh's box; body space
+    float radius = 0.0F;
     std::uint64_t last_frame = 0;
   };
-  Stored& find_or_upload(const Mesh& mesh);
+  Levels& find_or_measure(const Mesh& mesh);
+  const StoredMesh& find_or_upload(const Mesh& mesh, int level, Levels& levels);
   void drop_unseen();
   std::uint32_t add_paints(const Draw& draw, const Overlay& overlay);  // the first row
   void upload_paints();
 
-  std::map<std::uint64_t, Stored> meshes_;
+  std::map<std::uint64_t, Levels> meshes_;
   std::vector<Item> items_;
   gpu::Buffer draw_rows_, rows_, scalars_;  // rows: 0, 1, 2, ..
   gpu::Texture paints_;                     // one row a look and face; grows
   std::vector<float> paint_rows_;
   unsigned pattern_kinds_ = 0;
   gpu::Handle<delete_vertex_array> vertex_array_;
-  std::uint64_t frame_ = 0;
+  std::uint64_t frame_ = 0, next_id_ = 1;
 };
 
 }  // namespace shatterbox::render::pass

@@ -131,7 +131,7 @@ void ShadowPass::draw_casters(const MeshStore& meshes, const gpu::Framebuffer& m
 void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
   std::vector<Caster> casters;
   for (const Item& item : meshes.items()) {
-    if (item.casts_shadow) casters.push_back({item.mesh, item.world_from_body, item.is_glass});
+    if (item.casts_shadow) casters.push_back({item.stored->id, item.world_from_body, item.is_glass});
   }
   if (block.shadow_from_world == drawn_place_ && casters == drawn_casters_) return;
   drawn_place_ = block.shadow_from_world;

@@ -33,7 +33,7 @@ class ShadowPass {
   int map_size_;
 
   struct Caster {
-    std::uint64_t mesh;
+    std::uint64_t mesh;  // StoredMesh::id
     glm::mat4 world_from_body;
     bool is_glass;
     bool operator==(const Caster&) const = default;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <span>
 
-#include "render/gpu/program.h"
-
 namespace shatterbox::render::pass {
 namespace {
 
@@ -88,7 +86,7 @@ void Tiles::mark_bodies(const MeshStore& meshes, const FrameBlock& block) {
   glass_marks_.assign(marks_.size(), kPlain);
   const float pixels_a_slope = 0.5F * static_cast<float>(height_) / block.view_ray.y;
   for (const Item& item : meshes.items()) {
-    const DrawnMesh& shape = meshes.shape(item);
+    const DrawnMesh& shape = item.stored->shape;
     Corners body, shadow;
     for (int i = 0; i < 8; ++i) {
       const glm::vec3 corner((i & 1) ? shape.box_most.x : shape.box_least.x,
@@ -167,8 +165,7 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
 
 void Tiles::draw(Range range) {
   if (range.count == 0) return;
-  gpu::Program::set(0, range.first);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, range.count);
+  glDrawArrays(GL_TRIANGLES, 6 * range.first, 6 * range.count);
 }
 
 }  // namespace shatterbox::render::pass
