@@ -8,7 +8,7 @@ namespace shatterbox::render::pass {
 
 OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across, int scale)
     : depth_((width + scale - 1) / scale, (height + scale - 1) / scale, GL_R32F, gpu::Filter::nearest),
-      raw_(depth_.width(), depth_.height(), GL_RG32F, gpu::Filter::nearest),
+      raw_(depth_.width(), depth_.height(), GL_R32UI, gpu::Filter::nearest),
       blurred_(depth_.width(), depth_.height(), GL_R32UI, gpu::Filter::nearest),
       tiles_((width + 15) / 16, (height + 15) / 16, GL_R32F, gpu::Filter::nearest),
       depth_target_({&depth_}, nullptr),
