@@ -26,13 +26,13 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
   float n_dot_v = clamp(abs(dot(s.normal, v)), 0.05, 1.0);
   vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
-  float once = schlick(0.042, n_dot_v);
+  float once = schlick(0.06, n_dot_v);  // a little more than glass: few surroundings are bright
   float mirror = 2.0 * once / (1.0 + once);  // both faces
   vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 3.2 * room_windows(r));
   vec3 h = normalize(sun.xyz + v);
   float n_dot_l = max(dot(s.normal, sun.xyz), 0.0);
   vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(s.normal, h), 0.0), max(s.roughness, 0.12)) * 0.04;
-  vec3 haze = s.colour * ambient(s.normal) * (0.012 + (1.0 - s.transmission));
+  vec3 haze = s.colour * ambient(s.normal) * (0.04 + (1.0 - s.transmission));
   add += weight * (mirror * light + glance + haze);
   // The way through is longer at a slant; as an exponent of the tint that is 1 to 4, by squaring.
   float slant = min(1.0 / n_dot_v, 4.0) - 1.0;

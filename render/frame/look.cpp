@@ -22,9 +22,9 @@ Look ornament(glm::vec3 paint) {
   look.outside = paint;
   look.metalness = 0.55F;
   look.roughness = 0.32F;
-  look.inside = {0.86F, 0.87F, 0.88F};
-  look.inside_metalness = 0.8F;
-  look.inside_roughness = 0.28F;
+  look.inside = {0.82F, 0.83F, 0.84F};
+  look.inside_metalness = 1.0F;
+  look.inside_roughness = 0.16F;
   look.crack = {0.93F, 0.95F, 0.94F};
   look.crack_roughness = 0.25F;
   look.clear_coat = 1.0F;

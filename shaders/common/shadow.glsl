@@ -36,7 +36,7 @@ float sun_seen_at(vec3 p, vec2 slope, float bias, bool faces_away) {
   float gap = max(p.z - caster.x / max(caster.y, 1e-4), 0.0) * shadow_texel.z;  // m
   float reach = gap * sun.w;                                                    // m, radius of the disc
   vec2 texel = 1.0 / map_size;
-  vec2 radius = clamp(reach / shadow_texel.xy, vec2(SHADOW_TAPS < 8 ? 2.0 : 1.2), vec2(0.94 * shadow_texel.w)) * texel;
+  vec2 radius = clamp(reach / shadow_texel.xy, vec2(SHADOW_TAPS < 8 ? 1.4 : 1.2), vec2(0.94 * shadow_texel.w)) * texel;
   float spread = dot(abs(slope), radius);
   bool lit = bounds.x >= 1.0 || p.z - bias - spread <= bounds.x;
   bool dark = faces_away || (bounds.y < 1.0 && p.z - bias - spread > bounds.y);
