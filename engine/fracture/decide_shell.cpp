@@ -49,9 +49,11 @@ class Decider {
     if (!force_.settle(decision_, verdict.reason)) return std::move(decision_);
     verdict.duration = force_.duration();
     verdict.force = force_.hardest().first_force;
-    decision_.elastic_energy = force_.elastic_energy();
     mesh_ = subject_.mesh;
-    if (is_overloaded()) run_generations();
+    if (is_overloaded()) {
+      force_.complete(decision_);
+      run_generations();
+    }
     return std::move(decision_);
   }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/core/elementary.h"
+#include "engine/core/parallel.h"
 #include "engine/fracture/cell_flaws.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/shell_load.h"
@@ -157,16 +158,48 @@ bool ImpactForce::answer_lead(Size lead, Decision& decision, std::string& proble
   return is_solved;
 }
 
-/// The other loads too, without theirs.
-void ImpactForce::answer_all(Size lead, Decision& decision) {
+/// Resting contact presses as hard as it does however the body gives way: its compliance is asked for only
+/// once the body cracks.
+bool ImpactForce::can_wait(Size i) const {
+  return !impact_.given_duration && !is_collision(*presses_[i].load) && groups_[i].forces.size() == 1;
+}
+
+/// The other loads that satisfy `is_wanted(i)` too, without their displacements.
+template <class IsWanted>
+void ImpactForce::answer(const IsWanted& is_wanted, Decision& decision) {
   const auto start = Clock::now();
-  std::vector<PressGroups> others;
-  for (Size i = 0; i < groups_.size(); ++i)
-    if (!has_lead_ || i != lead) others.push_back(groups_[i]);
-  std::vector<ContactAnswer> answers = press(*system_, others, true);
-  if (has_lead_) answers.insert(answers.begin() + static_cast<std::ptrdiff_t>(lead), answers_.front());
-  answers_ = std::move(answers);
+  std::vector<Size> wanted;
+  std::vector<PressGroups> groups;
+  for (Size i = 0; i < groups_.size(); ++i) {
+    if (!is_wanted(i)) continue;
+    wanted.push_back(i);
+    groups.push_back(groups_[i]);
+  }
+  std::vector<ContactAnswer> answers = press(*system_, groups, true);
+  for (Size k = 0; k < wanted.size(); ++k) answers_[wanted[k]] = std::move(answers[k]);
   decision.solve_ms += milliseconds_since(start);
+}
+
+/// All loads but the lead, whose answer is the only one there is.
+void ImpactForce::answer_others(Size lead, Decision& decision) {
+  std::vector<ContactAnswer> all(groups_.size());
+  if (has_lead_) all[lead] = std::move(answers_.front());
+  answers_ = std::move(all);
+  for (Size i = 0; i < groups_.size(); ++i)
+    if (can_wait(i)) answers_[i].load = groups_[i].forces.front();
+  answer([&](Size i) { return !can_wait(i) && !(has_lead_ && i == lead); }, decision);
+}
+
+void ImpactForce::complete(Decision& decision) {
+  answer([&](Size i) { return can_wait(i); }, decision);
+  for (Size i = 0; i < presses_.size(); ++i) {
+    Press& press = presses_[i];
+    press.first_compliance = answers_[i].compliance;
+    const double elastic =
+        0.5 * press.force * press.force * (press.contact.hertz_compliance + answers_[i].elastic_compliance);
+    if (press.energy == 0.0) press.energy = elastic;
+    decision.elastic_energy += std::min(elastic, press.energy);
+  }
 }
 
 /// The displacement under all forces and the spin at once.
@@ -312,15 +345,26 @@ bool ImpactForce::use_unscreened(Decision& decision, std::string& problem) {
   return use(unscreened, problem);
 }
 
+void ImpactForce::find_groups(const geometry::ShellMesh& mesh,
+                              const std::vector<geometry::CellContact>& contacts) {
+  groups_.assign(presses_.size(), {});
+  core::parallel_for(presses_.size(), 1,
+                     [&](Size i) { groups_[i] = find_press_groups(mesh, contacts, presses_[i].contact); });
+}
+
 bool ImpactForce::settle(Decision& decision, std::string& problem) {
   const stress::ShellFigures& figures = subject_.systems->figures();
-  for (const Press& press : presses_)
-    groups_.push_back(find_press_groups(*subject_.mesh, figures.contacts, press.contact));
+  core::parallel_for(2, 1, [&](Size part) {
+    if (part == 0)
+      subject_.systems->structure();  // made in the meantime
+    else
+      find_groups(*subject_.mesh, figures.contacts);
+  });
   const int made_before = subject_.systems->count();
   duration_ = impact_.contact_average;
   const std::optional<Size> lead = find_lead();
   if (!(lead ? settle_lead(*lead, decision, problem) : use_unscreened(decision, problem))) return false;
-  if (!has_lead_ || presses_.size() > 1) answer_all(lead.value_or(0), decision);
+  answer_others(lead.value_or(0), decision);
   decision.factorisations += subject_.systems->count() - made_before;
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
   return solve_together(*subject_.mesh, decision, problem);
@@ -341,11 +385,6 @@ void ImpactForce::settle_force(Press& press, const ContactAnswer& answer) {
     press.first_force = load.impulse / press.duration;
   }
   press.force = press.first_force;
-  press.first_compliance = answer.compliance;
-  const double elastic =
-      0.5 * press.force * press.force * (press.contact.hertz_compliance + answer.elastic_compliance);
-  if (press.energy == 0.0) press.energy = elastic;
-  elastic_energy_ += std::min(elastic, press.energy);
 }
 
 /// Later generations are screened. Below the first frequency that adds the body's own inertia, as one rigid
@@ -378,15 +417,18 @@ bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
                                std::string& problem) {
   prepare_cracked();
   const auto start = Clock::now();
-  const auto& stiffness = subject_.systems->shared_stiffness();
-  const System system =
-      stress::ShellSystem::make(stiffness, mesh, stress::screening_of(exponent_), support_of(subject_, mesh));
+  System system = core::Error{""};
+  core::parallel_for(2, 1, [&](Size part) {
+    if (part == 0)
+      system = stress::ShellSystem::make(subject_.systems->shared_stiffness(), mesh,
+                                         stress::screening_of(exponent_), support_of(subject_, mesh));
+    else
+      find_groups(mesh, contacts);
+  });
   decision.factor_ms += milliseconds_since(start);
   ++decision.factorisations;
   if (!use(system, problem)) return false;
   const auto solve_start = Clock::now();
-  groups_.clear();
-  for (const Press& press : presses_) groups_.push_back(find_press_groups(mesh, contacts, press.contact));
   answers_ = press(*system_, groups_, false);
   residual_ = 0.0;
   const double s = system_->screening();

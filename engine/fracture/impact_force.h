@@ -50,6 +50,9 @@ class ImpactForce {
   /// times are booked in `decision`. False, and `problem` says why, if there is no answer.
   bool settle(Decision& decision, std::string& problem);
 
+  /// Before the body cracks: what the verdict did not have to know of the loads. Books the elastic energy.
+  void complete(Decision& decision);
+
   /// The cracked body under the force that its compliance and the energy left allow.
   bool settle_again(const geometry::ShellMesh& mesh, const std::vector<geometry::CellContact>& contacts,
                     Decision& decision, std::string& problem);
@@ -59,22 +62,25 @@ class ImpactForce {
 
   const std::vector<Press>& presses() const { return presses_; }
   const Press& hardest() const { return presses_[hardest_]; }
-  double duration() const { return duration_; }              // s
-  double elastic_energy() const { return elastic_energy_; }  // J
-  double residual() const { return residual_; }              // worst of the solves on the mesh last solved
+  double duration() const { return duration_; }  // s
+  double residual() const { return residual_; }  // worst of the solves on the mesh last solved
 
  private:
   using System = stress::ShellSystemCache::System;
   std::optional<std::size_t> find_lead() const;
   bool use(const System& system, std::string& problem);
   bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);
-  void answer_all(std::size_t lead, Decision& decision);
+  bool can_wait(std::size_t i) const;
+  template <class IsWanted>
+  void answer(const IsWanted& is_wanted, Decision& decision);
+  void answer_others(std::size_t lead, Decision& decision);
   bool solve_together(const geometry::ShellMesh& mesh, Decision& decision, std::string& problem);
   bool solve(const VecX& load, stress::ShellSolution& solution, std::string& problem);
   double felt_compliance(const ContactAnswer& answer) const;
   double duration_of(const Press& press, const ContactAnswer& answer) const;
   bool is_short() const;
   double guess_duration(const Press& lead) const;
+  void find_groups(const geometry::ShellMesh& mesh, const std::vector<geometry::CellContact>& contacts);
   bool use_unscreened(Decision& decision, std::string& problem);
   bool settle_lead(std::size_t lead, Decision& decision, std::string& problem);
   bool is_plainly_short(std::size_t lead, Decision& decision, std::string& problem);
@@ -97,8 +103,7 @@ class ImpactForce {
   double residual_ = 0.0;
   std::shared_ptr<const stress::ShellSystem> system_;
   std::size_t hardest_ = 0;
-  double duration_ = 0.0;        // s, of the lead; contact_average without one
-  double elastic_energy_ = 0.0;  // J
+  double duration_ = 0.0;  // s, of the lead; contact_average without one
   bool has_lead_ = false;
   bool is_screened_ = false;
   bool is_cracked_ = false;

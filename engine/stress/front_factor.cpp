@@ -51,13 +51,6 @@ class FrontView {
   double* rest_row(int i) const {
     return rest_ + tiles::rest_strip(at(i / tiles::kRows)) + at(i % tiles::kRows);
   }
-  void add(int i, int j, double value) const {
-    if (i < j) std::swap(i, j);
-    if (j < front_.pivots)
-      panel_row(i)[tiles::kRows * j] += value;
-    else
-      rest_row(i - front_.pivots)[tiles::kRows * (j - front_.pivots)] += value;
-  }
 
  private:
   const Front& front_;
@@ -70,7 +63,7 @@ class Factorisation {
  public:
   Factorisation(const FrontTree& tree, const std::vector<double>& diagonal,
                 const std::function<ElementEntries(int)>& element, const std::vector<Size>& first,
-                std::vector<double>& entries)
+                double* entries)
       : tree_(tree),
         diagonal_(diagonal),
         element_(element),
@@ -81,18 +74,18 @@ class Factorisation {
   }
 
   bool run() {
-    // Disjoint subtrees at once, each in order by one thread; then what is above them. Which subtrees depends
-    // on the tree alone, and nothing is summed across them but in the order of the children.
+    // Disjoint subtrees at once, each in order by one thread; then what is above them, level by level. What
+    // runs when depends on the tree alone, and nothing is summed across fronts but in the order of the
+    // children.
     const std::vector<int> roots = split();
     core::parallel_for(roots.size(), 1, [&](Size i) {
       const int root = roots[i];
       for (int f = tree_.fronts[at(root)].subtree_first; f <= root && !has_failed_; ++f) factor(f, false);
     });
-    std::vector<char> is_done(tree_.fronts.size(), 0);
-    for (const int root : roots)
-      for (int f = tree_.fronts[at(root)].subtree_first; f <= root; ++f) is_done[at(f)] = 1;
-    for (int f = 0; f < static_cast<int>(tree_.fronts.size()) && !has_failed_; ++f)
-      if (is_done[at(f)] == 0) factor(f, true);
+    for (const std::vector<int>& level : levels_above(roots)) {
+      if (has_failed_) break;
+      core::parallel_for(level.size(), 1, [&](Size i) { factor(level[i], true); });
+    }
     return !has_failed_;
   }
 
@@ -131,20 +124,40 @@ class Factorisation {
     return roots;
   }
 
+  /// The fronts that are in none of the subtrees, by the length of the longest way down to one that is.
+  std::vector<std::vector<int>> levels_above(const std::vector<int>& roots) const {
+    std::vector<char> is_done(tree_.fronts.size(), 0);
+    for (const int root : roots)
+      for (int f = tree_.fronts[at(root)].subtree_first; f <= root; ++f) is_done[at(f)] = 1;
+    std::vector<Size> height(tree_.fronts.size(), 0);
+    std::vector<std::vector<int>> levels;
+    for (int f = 0; f < static_cast<int>(tree_.fronts.size()); ++f) {
+      if (is_done[at(f)] != 0) continue;
+      if (levels.size() <= height[at(f)]) levels.resize(height[at(f)] + 1);
+      levels[height[at(f)]].push_back(f);
+      if (const int parent = tree_.fronts[at(f)].parent; parent >= 0)
+        height[at(parent)] = std::max(height[at(parent)], height[at(f)] + 1);
+    }
+    return levels;
+  }
+
   void factor(int f, bool is_top) {
     const Front& front = tree_.fronts[at(f)];
-    double* const panel = entries_.data() + first_[at(f)];
+    double* const panel = entries_ + first_[at(f)];
+    std::fill(panel, entries_ + first_[at(f) + 1], 0.0);
     const Size rest_size = tiles::rest_size(front.rows);
     rests_[at(f)] = std::unique_ptr<double[]>(new double[std::max<Size>(rest_size, 1)]());
     double* const rest = rests_[at(f)].get();
     const FrontView view(front, panel, rest);
-    for (int j = 0; j < front.pivots; ++j) view.add(j, j, diagonal_[at(front.first_pivot + j)]);
+    for (int j = 0; j < front.pivots; ++j)
+      view.panel_row(j)[tiles::kRows * j] += diagonal_[at(front.first_pivot + j)];
     for (int e = front.first_element; e < front.first_element + front.element_count; ++e)
-      add_element(e, view);
+      add_element(e, front, view);
     for (int c = front.first_child; c < front.first_child + front.child_count; ++c)
       add_child(tree_.children[at(c)], front, view);
 
-    if (!tiles::kernels().factor_panel(panel, front.pivots, front.rows, least_pivots_.data() + front.first_pivot)) {
+    if (!tiles::kernels().factor_panel(panel, front.pivots, front.rows,
+                                       least_pivots_.data() + front.first_pivot)) {
       has_failed_ = true;
       return;
     }
@@ -158,31 +171,64 @@ class Factorisation {
       tiles::kernels().subtract_products(panel, front.pivots, front.rows, rest, 0, strips);
   }
 
-  void add_element(int e, const FrontView& view) const {
+  void add_element(int e, const Front& front, const FrontView& view) const {
     const ElementEntries entries = element_(tree_.elements[at(e)]);
     const auto places = expand(tree_.element_local[at(e)]);
+    std::array<double*, kElementUnknowns> panel_rows{}, rest_rows{};
+    for (Size i = 0; i < kElementUnknowns; ++i) {
+      if (places[i] < 0) continue;
+      panel_rows[i] = view.panel_row(places[i]);
+      if (places[i] >= front.pivots) rest_rows[i] = view.rest_row(places[i] - front.pivots);
+    }
     Size entry = 0;
     for (Size j = 0; j < kElementUnknowns; ++j)
-      for (Size i = j; i < kElementUnknowns; ++i, ++entry)
-        if (places[i] >= 0 && places[j] >= 0)
-          view.add(places[i], places[j], entries.factor * entries.lower[entry]);
+      for (Size i = j; i < kElementUnknowns; ++i, ++entry) {
+        if (places[i] < 0 || places[j] < 0) continue;
+        const bool is_below = places[i] >= places[j];
+        const Size row = is_below ? i : j;
+        const int column = is_below ? places[j] : places[i];
+        double* const to = column < front.pivots ? panel_rows[row] + tiles::kRows * column
+                                                 : rest_rows[row] + tiles::kRows * (column - front.pivots);
+        *to += entries.factor * entries.lower[entry];
+      }
+  }
+
+  /// Four entries of a column of a strip to the same column of four rows.
+  static void add_column(const double* entries, const std::array<double*, tiles::kRows>& rows, int column) {
+    const std::ptrdiff_t offset = tiles::kRows * std::ptrdiff_t{column};
+    rows[0][offset] += entries[0];
+    rows[1][offset] += entries[1];
+    rows[2][offset] += entries[2];
+    rows[3][offset] += entries[3];
   }
 
   void add_child(int c, const Front& parent, const FrontView& view) {
     const Front& child = tree_.fronts[at(c)];
     const int* const place = tree_.row_in_parent.data() + child.first_row;
     const int in_panel = static_cast<int>(std::lower_bound(place, place + child.rows, parent.pivots) - place);
-    double* const rest = rests_[at(c)].get();
-    const FrontView source(child, nullptr, rest);
-    for (int i = 0; i < child.rows; ++i) {
-      const double* const from = source.rest_row(i);
-      double* const panel_row = view.panel_row(place[i]);
-      const int columns = std::min(i + 1, in_panel);
-      for (int j = 0; j < columns; ++j) panel_row[tiles::kRows * place[j]] += from[tiles::kRows * j];
-      if (i < in_panel) continue;
-      double* const rest_row = view.rest_row(place[i] - parent.pivots);
-      for (int j = in_panel; j <= i; ++j)
-        rest_row[tiles::kRows * (place[j] - parent.pivots)] += from[tiles::kRows * j];
+    const double* const rest = rests_[at(c)].get();
+    // Strip by strip: its four rows mostly go to four successive ones.
+    for (int first = 0; first < child.rows; first += tiles::kRows) {
+      const int count = std::min(tiles::kRows, child.rows - first);
+      const double* const strip = rest + tiles::rest_strip(at(first / tiles::kRows));
+      std::array<double*, tiles::kRows> panel_rows{}, rest_rows{};
+      for (int r = 0; r < count; ++r) {
+        panel_rows[at(r)] = view.panel_row(place[first + r]);
+        if (first + r >= in_panel) rest_rows[at(r)] = view.rest_row(place[first + r] - parent.pivots);
+      }
+      // Columns that all rows of the strip have, then the triangle at its end.
+      const int whole = count == tiles::kRows ? first + 1 : 0;
+      const int whole_in_panel = std::min(whole, in_panel);
+      for (int j = 0; j < whole_in_panel; ++j) add_column(strip + tiles::kRows * j, panel_rows, place[j]);
+      const int whole_in_rest = first >= in_panel ? whole : whole_in_panel;
+      for (int j = whole_in_panel; j < whole_in_rest; ++j)
+        add_column(strip + tiles::kRows * j, rest_rows, place[j] - parent.pivots);
+      for (int r = 0; r < count; ++r)
+        for (int j = whole_in_rest; j <= first + r; ++j)
+          if (j < in_panel)
+            panel_rows[at(r)][tiles::kRows * place[j]] += strip[tiles::kRows * j + r];
+          else
+            rest_rows[at(r)][tiles::kRows * (place[j] - parent.pivots)] += strip[tiles::kRows * j + r];
     }
     rests_[at(c)].reset();
   }
@@ -191,7 +237,7 @@ class Factorisation {
   const std::vector<double>& diagonal_;
   const std::function<ElementEntries(int)>& element_;
   const std::vector<Size>& first_;
-  std::vector<double>& entries_;
+  double* entries_;
   std::vector<std::unique_ptr<double[]>> rests_;
   std::vector<double> least_pivots_;
   std::atomic<bool> has_failed_ = false;
@@ -205,8 +251,8 @@ std::optional<FrontFactor> FrontFactor::make(const FrontTree& tree, const std::v
   factor.first_.resize(tree.fronts.size() + 1, 0);
   for (Size f = 0; f < tree.fronts.size(); ++f)
     factor.first_[f + 1] = factor.first_[f] + tiles::panel_size(tree.fronts[f].pivots, tree.fronts[f].rows);
-  factor.entries_.assign(factor.first_.back(), 0.0);
-  Factorisation work(tree, diagonal, element, factor.first_, factor.entries_);
+  factor.entries_.reset(new double[factor.first_.back()]);  // each front zeroes its own
+  Factorisation work(tree, diagonal, element, factor.first_, factor.entries_.get());
   if (!work.run()) return std::nullopt;
   return factor;
 }

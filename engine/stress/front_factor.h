@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -29,11 +30,11 @@ class FrontFactor {
 
   /// A front's panel: strips of four rows, pivot rows then rows below (front_tiles.h); the diagonal is
   /// inverted.
-  const double* panel(std::size_t front) const { return entries_.data() + first_[front]; }
+  const double* panel(std::size_t front) const { return entries_.get() + first_[front]; }
 
  private:
-  std::vector<std::size_t> first_;  // begin of each front's panel in entries_
-  std::vector<double> entries_;     // panels
+  std::vector<std::size_t> first_;     // begin of each front's panel in entries_
+  std::unique_ptr<double[]> entries_;  // panels
 };
 
 }  // namespace shatterbox::stress

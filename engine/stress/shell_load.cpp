@@ -199,11 +199,12 @@ std::vector<int> group_patch(const LoadPatch& patch, const std::vector<geometry:
     while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
     return i;
   };
+  const int first = count > 0 ? patch.shares.front().cell : 0;
+  const int last = count > 0 ? patch.shares.back().cell : -1;
+  std::vector<int> share_of_cell(at(last - first + 1), -1);
+  for (Size i = 0; i < count; ++i) share_of_cell[at(patch.shares[i].cell - first)] = static_cast<int>(i);
   const auto share_of = [&](int cell) {
-    const auto found = std::lower_bound(patch.shares.begin(), patch.shares.end(), cell,
-                                        [](const PatchShare& share, int c) { return share.cell < c; });
-    return found != patch.shares.end() && found->cell == cell ? static_cast<int>(found - patch.shares.begin())
-                                                              : -1;
+    return cell < first || cell > last ? -1 : share_of_cell[at(cell - first)];
   };
   for (const geometry::CellContact& contact : contacts) {
     int a = share_of(contact.cell_a);

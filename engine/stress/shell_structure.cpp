@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/elementary.h"
+#include "engine/core/parallel.h"
 #include "engine/stress/elimination_order.h"
 #include "engine/stress/front_tiles.h"
 
@@ -75,8 +76,12 @@ std::shared_ptr<const ShellStructure> ShellStructure::make(std::shared_ptr<const
   structure->stiffness = std::move(stiffness);
   structure->build_cells(mesh);
   structure->build_mass(mesh);
-  structure->build_rigid_modes(mesh, support);
-  structure->build_tree(mesh, support);
+  core::parallel_for(2, 1, [&](Size part) {
+    if (part == 0)
+      structure->build_tree(mesh, support);
+    else
+      structure->build_rigid_modes(mesh, support);
+  });
   return structure;
 }
 
