@@ -31,7 +31,7 @@ struct Level {
   int occlusion_taps, occlusion_scale;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 14, 9, 3} : Level{1, 640, 5, 6, 4};
+  return quality == Quality::full ? Level{2, 1024, 14, 9, 3} : Level{1, 512, 5, 6, 4};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
