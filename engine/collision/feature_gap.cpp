@@ -1,6 +1,7 @@
 #include "engine/collision/feature_gap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/geometry/closest_points.h"
@@ -57,15 +58,6 @@ bool leads_away_at_triangle(const Collider& c, const std::vector<Vec3>& position
     return leads_away_at_edge(c, positions, edge, direction, slack);
   }
   return leads_away_at_vertex(c, positions, corners[at(last_positive)], direction, slack);
-}
-
-double reach(const FeaturePoints& start, const FeaturePoints& end, int first, int last,
-             const Vec3& direction) {
-  double greatest = -1e300;
-  for (int i = first; i < last; ++i) {
-    greatest = std::max(greatest, direction.dot(end.points[at(i)] - start.points[at(i)]));
-  }
-  return greatest;
 }
 
 }  // namespace
@@ -156,16 +148,27 @@ PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, do
                         const FeatureGap* start_gap) {
   constexpr int kMostSteps = 200;
   constexpr double kAdvance = 0.95;
-  const int split = start.is_edge_edge ? 2 : 1;  // points [0, split) are one body's
+  const std::size_t split = start.is_edge_edge ? 2 : 1;  // points [0, split) are one body's
+  std::array<Vec3, 4> ways;
+  for (std::size_t i = 0; i < 4; ++i) ways[i] = end.points[i] - start.points[i];
   PathResult result;
   result.time = 0.0;
-  FeaturePoints now = start;
+  FeaturePoints now;
+  FeatureGap measured;
+  const FeatureGap* gap = start_gap;
+  if (!gap) {
+    measured = measure(start, hint);
+    gap = &measured;
+  }
   for (int step = 0; step < kMostSteps; ++step) {
-    result.gap = step == 0 && start_gap ? *start_gap : measure(now, hint);
     // From the second group of points to the first.
-    const Vec3 n = start.is_flipped ? Vec3(-result.gap.normal) : result.gap.normal;
-    const double closing = reach(start, end, 0, split, -n) + reach(start, end, split, 4, n);
-    const double room = result.gap.gap - least;
+    const double sign = start.is_flipped ? -1.0 : 1.0;
+    std::array<double, 4> along;
+    for (std::size_t i = 0; i < 4; ++i) along[i] = sign * gap->normal.dot(ways[i]);
+    const double first = split == 2 ? std::min(along[0], along[1]) : along[0];
+    const double second = std::max(split == 2 ? along[2] : std::max(along[1], along[2]), along[3]);
+    const double closing = second - first;
+    const double room = gap->gap - least;
     // n separates the pair at both ends of what is left, hence all along the straight paths.
     const double left = room - std::max(0.0, closing) * (1.0 - result.time);
     if (closing <= 0.0 || left > 0.0) {
@@ -173,14 +176,16 @@ PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, do
       result.time = 1.0;
       return result;
     }
-    if (room <= 0.1 * std::abs(least) || room <= 1e-14 * std::abs(result.gap.distance)) break;
+    if (room <= 0.1 * std::abs(least) || room <= 1e-14 * std::abs(gap->distance)) break;
     result.spare = std::min(result.spare, (1.0 - kAdvance) * room);
     result.time = std::min(1.0, result.time + kAdvance * room / closing);
-    for (std::size_t i = 0; i < 4; ++i) {
-      now.points[i] = start.points[i] + result.time * (end.points[i] - start.points[i]);
-    }
+    if (step == 0) now = start;
+    for (std::size_t i = 0; i < 4; ++i) now.points[i] = start.points[i] + result.time * ways[i];
+    measured = measure(now, hint);
+    gap = &measured;
   }
   result.has_hit = true;
+  result.gap = *gap;
   return result;
 }
 

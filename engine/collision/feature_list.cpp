@@ -43,7 +43,8 @@ void refit(const Collider& c, FeatureBoxes& boxes) {
 }
 
 float extent(const TightBox& box) {
-  return (box.high[0] - box.low[0]) + (box.high[1] - box.low[1]) + (box.high[2] - box.low[2]);
+  const BoxLanes sides = box.high - box.low;
+  return (sides[0] + sides[1]) + sides[2];
 }
 
 // Descends two trees together; visit(leaf_a, leaf_b) for leaves that come within the margin.

@@ -1,23 +1,30 @@
-// Boxes in single precision, rounded outwards: half the memory of exact ones, and never too small.
+// Boxes in single precision, rounded outwards: half the memory of exact ones, and never too small. Four lanes
+// (x, y, z and a nought) are worked on at once.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/core/vec.h"
 
 namespace shatterbox::collision {
 
+typedef float BoxLanes __attribute__((vector_size(16)));
+
+inline BoxLanes lesser(BoxLanes a, BoxLanes b) {
+  return a < b ? a : b;
+}
+inline BoxLanes greater(BoxLanes a, BoxLanes b) {
+  return a > b ? a : b;
+}
+
 /// An axis-aligned box that surely holds what was put in; empty as made.
 struct TightBox {
-  float low[3] = {1e37F, 1e37F, 1e37F};  // m
-  float high[3] = {-1e37F, -1e37F, -1e37F};
+  BoxLanes low = {1e18F, 1e18F, 1e18F, 0.0F};  // m
+  BoxLanes high = {-1e18F, -1e18F, -1e18F, 0.0F};
 
   void include(const TightBox& other) {
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], other.low[i]);
-      high[i] = std::max(high[i], other.high[i]);
-    }
+    low = lesser(low, other.low);
+    high = greater(high, other.high);
   }
 };
 
@@ -37,48 +44,42 @@ inline float round_up(double x) {
 /// The box of a ball about `p`.
 inline TightBox box_of_point(const Vec3& p, double radius) {
   TightBox box;
-  for (int i = 0; i < 3; ++i) {
-    box.low[i] = round_down(p[i] - radius);
-    box.high[i] = round_up(p[i] + radius);
-  }
+  box.low = BoxLanes{round_down(p[0] - radius), round_down(p[1] - radius), round_down(p[2] - radius), 0.0F};
+  box.high = BoxLanes{round_up(p[0] + radius), round_up(p[1] + radius), round_up(p[2] + radius), 0.0F};
   return box;
 }
 
 /// The box of a ball that goes straight from p to q.
 inline TightBox box_of_path(const Vec3& p, const Vec3& q, double radius) {
-  TightBox box = box_of_point(p, radius);
-  box.include(box_of_point(q, radius));
+  TightBox box = box_of_point(p.cwiseMin(q), radius);
+  box.high = box_of_point(p.cwiseMax(q), radius).high;
   return box;
 }
 
 /// A way along which boxes are stretched.
 struct TightWay {
-  float low[3] = {0.0F, 0.0F, 0.0F}, high[3] = {0.0F, 0.0F, 0.0F};
+  BoxLanes low = {0.0F, 0.0F, 0.0F, 0.0F}, high = {0.0F, 0.0F, 0.0F, 0.0F};
 
   TightWay() = default;
   explicit TightWay(const Vec3& way) {
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(0.0F, round_down(way[i]));
-      high[i] = std::max(0.0F, round_up(way[i]));
-    }
+    low = lesser(low, BoxLanes{round_down(way[0]), round_down(way[1]), round_down(way[2]), 0.0F});
+    high = greater(high, BoxLanes{round_up(way[0]), round_up(way[1]), round_up(way[2]), 0.0F});
   }
 };
 
 inline TightBox stretched(const TightBox& box, const TightWay& way) {
   TightBox result;
-  for (int i = 0; i < 3; ++i) {
-    result.low[i] = box.low[i] + way.low[i];
-    result.high[i] = box.high[i] + way.high[i];
-  }
+  result.low = box.low + way.low;
+  result.high = box.high + way.high;
   return result;
 }
 
 /// Square of the distance of two boxes, m2; 0 where they overlap. Up to a rounding of 1e-6 never too great.
 inline float distance_squared(const TightBox& a, const TightBox& b) {
-  const float x = std::max(0.0F, std::max(a.low[0] - b.high[0], b.low[0] - a.high[0]));
-  const float y = std::max(0.0F, std::max(a.low[1] - b.high[1], b.low[1] - a.high[1]));
-  const float z = std::max(0.0F, std::max(a.low[2] - b.high[2], b.low[2] - a.high[2]));
-  return x * x + y * y + z * z;
+  const BoxLanes nought = {0.0F, 0.0F, 0.0F, 0.0F};
+  const BoxLanes apart = greater(greater(a.low - b.high, b.low - a.high), nought);
+  const BoxLanes squares = apart * apart;
+  return (squares[0] + squares[1]) + squares[2];
 }
 
 }  // namespace shatterbox::collision

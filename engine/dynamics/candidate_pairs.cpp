@@ -191,15 +191,6 @@ void take_from_shelf(ContactState& state, MotionWork& work) {
   }
 }
 
-void put_on_shelf(const ContactState& state, const MotionWork& work) {
-  auto& rows = state.shelf->pairs;
-  rows.clear();
-  for (const WorkPair& pair : work.pairs) {
-    const PairState& memory = state.pairs[at(pair.state)];
-    if (memory.search) rows.push_back({memory.body_a, memory.body_b, memory.search});
-  }
-}
-
 // The memory of pairs: of those found, of those of two bodies that both do not move (asleep), and of no
 // others.
 void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::IndexPair>& found,
@@ -368,9 +359,17 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
     find_pair_contacts(settings, work, state.pairs[at(work.pairs[p].state)], work.pairs[p]);
   });
-  put_on_shelf(state, work);
   find_sleepers_to_wake(bodies, settings, work);
   build_contact_graph(state, work);
+}
+
+void put_on_shelf(const MotionWork& work, ContactState& state) {
+  auto& rows = state.shelf->pairs;
+  rows.clear();
+  for (const WorkPair& pair : work.pairs) {
+    const PairState& memory = state.pairs[at(pair.state)];
+    if (memory.search) rows.push_back({memory.body_a, memory.body_b, memory.search});
+  }
 }
 
 void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,

@@ -52,6 +52,7 @@ class IslandSolver {
  private:
   // The solver may be run again with more contacts: all begins at the start of the step.
   void begin() {
+    seen_.assign(island_.contacts.size(), 0.0);
     for (const int i : island_.bodies) {
       WorkBody& b = body(i);
       b.velocity = b.velocity_start;
@@ -60,6 +61,7 @@ class IslandSolver {
       b.rotation = b.start.rotation;
       b.turn.setIdentity();
       b.turn_angle = 0.0;
+      b.stirred = 0.0;
       b.substep_rotations.clear();
       place_inertia(b);
     }
@@ -148,18 +150,19 @@ class IslandSolver {
     return {c.normal.dot(u), c.tangent_u.dot(u), c.tangent_v.dot(u)};
   }
 
+  static void push(WorkBody& b, const Vec3& impulse, const Vec3& arm) {
+    const Vec3 change = b.inverse_mass * impulse, turn = b.inverse_inertia * arm.cross(impulse);
+    b.velocity += change;
+    b.spin += turn;
+    b.stirred += change.lpNorm<1>() + b.reach * turn.lpNorm<1>();
+  }
+
   // `impulse` in the contact's axes; books its work, from the relative velocity before it.
   void apply(SolverContact& c, const Vec3& impulse, const Vec3& velocity_before) {
     const Vec3 p = impulse[0] * c.normal + impulse[1] * c.tangent_u + impulse[2] * c.tangent_v;
     WorkBody &a = body(c.a), &b = body(c.b);
-    if (a.inverse_mass > 0.0) {
-      a.velocity += a.inverse_mass * p;
-      a.spin += a.inverse_inertia * c.arm_a.cross(p);
-    }
-    if (b.inverse_mass > 0.0) {
-      b.velocity -= b.inverse_mass * p;
-      b.spin -= b.inverse_inertia * c.arm_b.cross(p);
-    }
+    if (a.inverse_mass > 0.0) push(a, p, c.arm_a);
+    if (b.inverse_mass > 0.0) push(b, -p, c.arm_b);
     c.impulse += impulse;
     c.total += p;
     double& work = work_.pairs[at(c.pair)].work;
@@ -242,22 +245,42 @@ class IslandSolver {
     if (wanted.norm() > bound) wanted *= bound / wanted.norm();
     const Vec2 change = wanted - c.rolling_impulse;
     const Vec3 couple = change[0] * axes[0] + change[1] * axes[1];
-    if (a.inverse_mass > 0.0) a.spin += a.inverse_inertia * couple;
-    if (b.inverse_mass > 0.0) b.spin -= b.inverse_inertia * couple;
+    for (WorkBody* w : {&a, &b}) {
+      if (w->inverse_mass <= 0.0) continue;
+      const Vec3 turn = w->inverse_inertia * couple;
+      w->spin += w == &a ? turn : Vec3(-turn);
+      w->stirred += w->reach * turn.lpNorm<1>();
+    }
     c.rolling_impulse = wanted;
   }
+
+  // A contact whose bodies have hardly changed since it was last seen would hardly change them: sweeps pass
+  // it by, so that what is still in one place does not pay for what is not in another.
+  double stirred(const SolverContact& c) { return body(c.a).stirred + body(c.b).stirred; }
+  bool is_still(std::size_t k, const SolverContact& c, double speed) {
+    return stirred(c) - seen_[k] <= kStill * speed;
+  }
+  void see(std::size_t k, const SolverContact& c) { seen_[k] = stirred(c) - c.left_over; }
+  void forget_seen() { std::fill(seen_.begin(), seen_.end(), -1e300); }
 
   // One visit: at least `target` along the normal, then friction. Returns how much closing it found, m/s.
   double visit(SolverContact& c, double target) {
     const Vec3 before = relative_velocity(c);
+    c.left_over = 0.0;
     if (before[0] >= target && c.impulse[0] <= 0.0) return 0.0;
     Vec3 change = Vec3::Zero(), u = before;
     change[0] = std::max(-c.impulse[0], (target - u[0]) * c.weights[0]);
     u += c.response.col(0) * change[0];
     rub(c, u, change);
+    note_left_over(c, change);
     apply(c, change, before);
     resist_rolling(c);
     return change[0] > 0.0 ? target - before[0] : -change[0] * c.response(0, 0);
+  }
+
+  // Friction moves along the normal too: what a further visit would find.
+  static void note_left_over(SolverContact& c, const Vec3& change) {
+    c.left_over = std::abs(c.response(0, 1) * change[1] + c.response(0, 2) * change[2]);
   }
 
   double target_before_drift(const SolverContact& c) const {
@@ -271,12 +294,16 @@ class IslandSolver {
   // One sweep is enough at rest; what arrives must not overshoot the gap.
   void sweep_before_drift() {
     const int most = has_arrivals_ ? 16 : 1;
+    forget_seen();
     for (int sweep = 0; sweep < most; ++sweep) {
       double excess = 0.0;
-      for (const int i : island_.contacts) {
-        SolverContact& c = work_.contacts[at(i)];
+      for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
+        SolverContact& c = work_.contacts[at(island_.contacts[k])];
+        const double tolerance = kTouching * c.kept_gap / step_;
+        if (is_still(k, c, tolerance)) continue;
         const double found = visit(c, target_before_drift(c));
-        excess = std::max(excess, found * step_ / (kTouching * c.kept_gap));
+        see(k, c);
+        excess = std::max(excess, found / tolerance);
       }
       if (excess < 1.0) break;
     }
@@ -287,13 +314,16 @@ class IslandSolver {
   }
 
   void sweep_after_drift() {
+    forget_seen();
     for (int sweep = 0; sweep < 8; ++sweep) {
       double excess = 0.0;
-      for (const int i : island_.contacts) {
-        SolverContact& c = work_.contacts[at(i)];
-        if (is_touching(c)) excess = std::max(excess, visit(c, 0.0) / c.threshold);
+      for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
+        SolverContact& c = work_.contacts[at(island_.contacts[k])];
+        if (is_still(k, c, kResting * c.threshold) || !is_touching(c)) continue;
+        excess = std::max(excess, visit(c, 0.0) / c.threshold);
+        see(k, c);
       }
-      if (sweep > 0 && excess < 1e-3) break;
+      if (sweep > 0 && excess < kResting) break;
     }
   }
 
@@ -315,13 +345,16 @@ class IslandSolver {
     if (!is_due) return;
     for (int sweep = 0; sweep < 40; ++sweep) {
       double excess = 0.0;
-      for (const int i : island_.contacts) {
-        SolverContact& c = work_.contacts[at(i)];
-        if (!is_touching(c)) continue;
+      for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
+        SolverContact& c = work_.contacts[at(island_.contacts[k])];
+        const double speed = std::max(c.target, c.threshold);
+        const bool must_bounce = sweep == 0 && c.target > 0.0;
+        if ((!must_bounce && is_still(k, c, kBounced * speed)) || !is_touching(c)) continue;
         const double found = c.target > 0.0 ? visit_bounce(c) : visit(c, 0.0);
-        excess = std::max(excess, found / std::max(c.target, c.threshold));
+        see(k, c);
+        excess = std::max(excess, found / speed);
       }
-      if (excess < 1e-9) break;
+      if (excess < kBounced) break;
     }
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
@@ -341,6 +374,7 @@ class IslandSolver {
     }
     Vec3 u = before + c.response.col(0) * change[0];
     rub(c, u, change);
+    note_left_over(c, change);
     apply(c, change, before);
     resist_rolling(c);
     return std::abs(change[0]) * c.response(0, 0);
@@ -368,12 +402,17 @@ class IslandSolver {
   }
 
   static constexpr double kTouching = 0.05;   // of the kept gap
+  static constexpr double kResting = 1e-3;    // of the threshold: closing that is left at rest
+  static constexpr double kBounced = 1e-9;    // of the speed: error of a bounce
+  static constexpr double kStill = 0.25;      // of what a sweep may leave
   static constexpr double kFastSpin = 0.005;  // rad a substep
 
   const ContactSettings& settings_;
   const Island& island_;
   MotionWork& work_;
   const double step_;
+  std::vector<double>
+      seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
   double substep_start_ = 0.0;  // s since the step's start
   bool has_arrivals_ = false;
   bool is_before_drift_ = false;

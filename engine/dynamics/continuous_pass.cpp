@@ -20,7 +20,6 @@ namespace {
 using collision::Contact;
 
 constexpr double kSafe = 1e-3;  // share of the kept gap
-constexpr int kMostSolves = 3;  // solver runs with what was found on the way
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 constexpr int kPatience = 2;         // rounds without fewer hits
@@ -55,7 +54,7 @@ class Guard {
         must_test_[p] = 0;
     }
     bool has_hits = test();
-    for (int run = 0; has_hits && run < kMostSolves && solve_again(); ++run) has_hits = test();
+    if (has_hits && solve_again()) has_hits = test();
     int hits_before = 1 << 30;
     for (int round = 0; has_hits && round < settings_.continuous_rounds; ++round) {
       const int hits = count_hits();

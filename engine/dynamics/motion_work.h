@@ -31,6 +31,7 @@ struct WorkBody {
   Vec3 velocity_start = Vec3::Zero(), spin_start = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();         // m/s, now
   Vec3 spin = Vec3::Zero();             // rad/s, now
+  double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
   double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
   std::vector<Quat> substep_rotations;  // after each substep of the solver
   std::vector<Quat> knots;           // rotations at equal times, start and end included; empty: a short turn
@@ -80,6 +81,7 @@ struct SolverContact {
   double arrival_speed = 0.0;      // m/s, of an impact that has not bounced
   double arrival_before = 0.0;     // m/s, the same at the start of the step
   double target = 0.0;             // m/s, of the bounce
+  double left_over = 0.0;          // m/s, along the normal, that the last visit's friction brought
   bool is_arriving = false;
 
   // Of the whole step.

@@ -67,7 +67,18 @@ std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBo
   search->margin = margin;
   search->start_a = a.start;
   search->start_b = b.start;
-  collision::list_near_features(a.placed, b.placed, margin, search->features);
+  collision::FeatureList& features = search->features;
+  collision::list_near_features(a.placed, b.placed, margin, features);
+  // Boxes are rough: what is not in truth that near need not be looked at again and again.
+  for (auto& f : features) {
+    const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    const double gap = collision::measure(points, direction_hint(a, b, points)).gap;
+    f.bound = std::max(f.bound, collision::round_down(gap * (1.0 - 1e-9)));
+  }
+  std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
+  std::sort(features.begin(), features.end(), [](const auto& x, const auto& y) {
+    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
+  });
   return search;
 }
 

@@ -195,8 +195,8 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
 namespace {
 
 // The step, or one of the parts into which it is divided.
-ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
-                        body::ImpulseLog& log) {
+ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settings, bool is_first,
+                        ContactState& state, body::ImpulseLog& log) {
   ContactReport report;
   MotionWork work;
   find_candidate_pairs(bodies, settings, state, work);
@@ -209,6 +209,7 @@ ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settin
     }
     find_candidate_pairs(bodies, settings, state, work);
   }
+  if (is_first) put_on_shelf(work, state);
   solve_motion(bodies, settings, work);
   guard_motion(bodies, settings, state, work, report);
   finish_motion(bodies, state, work, log, report);
@@ -267,7 +268,7 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
   ContactReport report;
   for (int part = 0; part < parts; ++part) {
     const std::size_t first = log.size();
-    add_part(step_part(bodies, part_settings, state, log), report);
+    add_part(step_part(bodies, part_settings, part == 0, state, log), report);
     for (std::size_t i = first; i < log.size(); ++i) log[i].time += part * part_settings.time_step;
   }
   report.frozen_share /= parts;

@@ -52,6 +52,9 @@ ContactReport step_motion(std::vector<body::Body>& bodies, const ContactSettings
 void find_candidate_pairs(const std::vector<body::Body>& bodies, const ContactSettings& settings,
                           ContactState& state, MotionWork& work);
 
+/// Keeps what was searched for a step that is taken again from here.
+void put_on_shelf(const MotionWork& work, ContactState& state);
+
 /// Stage: collisions, velocities, contacts and positions by substeps (see the head of this file). Ends with
 /// end poses in `work`; `bodies` are not changed yet.
 void solve_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, MotionWork& work);
