@@ -20,6 +20,7 @@ namespace {
 using collision::Contact;
 
 constexpr double kSafe = 1e-3;  // share of the kept gap
+constexpr int kLastRounds = 6;  // in which bodies only keep what they have
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 constexpr int kPatience = 2;         // rounds without fewer hits
@@ -64,7 +65,14 @@ class Guard {
       // What only leans a little is not thrown up; what does not give way is opened further.
       const double wanted =
           round + 1 == settings_.continuous_rounds ? 0.05 : std::min(0.5, 0.05 * (1 << round));
-      open(wanted);
+      open(wanted, Yielding::by_mass);
+      has_hits = test();
+    }
+    // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
+    // great shards cannot hold them apart by its mass.
+    for (int round = 0; has_hits && round < kLastRounds; ++round) {
+      ++report_.rounds;
+      open(0.0, Yielding::alike);
       has_hits = test();
     }
     note_trouble();
@@ -149,7 +157,7 @@ class Guard {
 
   // Opens all hits again in position, to at least this share of the kept gap, together with the contacts of
   // the bodies in them.
-  void open(double least_wanted) {
+  void open(double least_wanted, Yielding yielding) {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       if (!must_test_[p] || hits_[p].empty()) continue;
@@ -173,7 +181,7 @@ class Guard {
         openings.push_back(make_opening(pair, work_, c, 1.0, wanted_separation(c.gap, pair.kept_gap)));
     }
     // Pairs whose last test leaves more than both bodies moved are free still.
-    const std::vector<double> moves = open_gaps(openings, settings_.time_step, work_);
+    const std::vector<double> moves = open_gaps(openings, settings_.time_step, yielding, work_);
     mark_due([&](const WorkPair& pair, double& spare) {
       const double moved = moves[at(pair.a)] + moves[at(pair.b)];
       spare -= moved;
@@ -232,7 +240,7 @@ class Guard {
       ++work_.failsafe_bodies;
       if (w.inverse_mass > 0.0) hold_back(i, w);
     }
-    remove_approach(zone, settings_.time_step, body::ImpulseKind::failsafe, 30, work_);
+    remove_approach(zone, std::nullopt, body::ImpulseKind::failsafe, 30, work_);
   }
 
   // A pose that gravity did not move gets no speed from it.

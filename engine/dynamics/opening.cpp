@@ -9,6 +9,8 @@ namespace {
 using collision::Contact;
 
 constexpr int kIterations = 20;
+constexpr int kIterationsAlike = 60;
+constexpr int kSweepsAlike = 30;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -17,23 +19,45 @@ std::size_t at(int i) {
 // Turns and shifts of end poses, while they are sought.
 struct Moves {
   std::vector<Vec3> shifts, turns;
+  Yielding yielding = Yielding::by_mass;
 
   void push(const MotionWork& work, int i, const Vec3& impulse, const Vec3& arm) {
     const WorkBody& w = work.bodies[at(i)];
     if (w.inverse_mass <= 0.0) return;
-    shifts[at(i)] += w.inverse_mass * impulse;
-    turns[at(i)] += w.inverse_inertia * arm.cross(impulse);
+    const double unit = yielding == Yielding::alike ? 1.0 / w.inverse_mass : 1.0;
+    shifts[at(i)] += unit * w.inverse_mass * impulse;
+    turns[at(i)] += unit * (w.inverse_inertia * arm.cross(impulse));
   }
 };
 
+// Response of the pair's gap to an impulse on it.
+double response(const MotionWork& work, const Opening& o, Yielding yielding) {
+  double sum = 0.0;
+  for (const auto& [i, arm] : {std::pair(o.a, &o.arm_a), std::pair(o.b, &o.arm_b)}) {
+    const WorkBody& w = work.bodies[at(i)];
+    if (w.inverse_mass <= 0.0) continue;
+    const Vec3 moment = arm->cross(o.normal);
+    const double own = w.inverse_mass + moment.dot(w.inverse_inertia * moment);
+    sum += yielding == Yielding::alike ? own / w.inverse_mass : own;
+  }
+  return sum;
+}
+
 void relax(const MotionWork& work, std::vector<Opening>& openings, Moves& moves) {
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  std::vector<double> weights;
+  for (const Opening& o : openings) {
+    const double sum = response(work, o, moves.yielding);
+    weights.push_back(sum > 0.0 ? 1.0 / sum : 0.0);
+  }
+  const int iterations = moves.yielding == Yielding::alike ? kIterationsAlike : kIterations;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
     double greatest = 0.0;
-    for (Opening& o : openings) {
+    for (std::size_t k = 0; k < openings.size(); ++k) {
+      Opening& o = openings[k];
       const Vec3 relative = moves.shifts[at(o.a)] + moves.turns[at(o.a)].cross(o.arm_a) -
                             moves.shifts[at(o.b)] - moves.turns[at(o.b)].cross(o.arm_b);
       const double missing = (o.wanted - o.gap) / o.share - o.normal.dot(relative);
-      const double change = std::max(-o.impulse, missing * o.weight);
+      const double change = std::max(-o.impulse, missing * weights[k]);
       if (change == 0.0) continue;
       o.impulse += change;
       greatest = std::max(greatest, std::abs(missing));
@@ -94,23 +118,23 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   const Vec3 middle = 0.5 * (end_a + end_b);
   o.arm_a = middle - pose_a.translation;
   o.arm_b = middle - pose_b.translation;
-  double response = a.inverse_mass + b.inverse_mass;
-  for (const auto& [w, arm] : {std::pair(&a, o.arm_a), std::pair(&b, o.arm_b)}) {
-    if (w->inverse_mass <= 0.0) continue;
-    const Vec3 moment = arm.cross(o.normal);
-    response += moment.dot(w->inverse_inertia * moment);
-  }
-  o.weight = response > 0.0 ? 1.0 / response : 0.0;
+  const double sum = response(work, o, Yielding::by_mass);
+  o.weight = sum > 0.0 ? 1.0 / sum : 0.0;
   return o;
 }
 
-std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, MotionWork& work) {
+std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
+                              MotionWork& work) {
   Moves moves;
+  moves.yielding = yielding;
   moves.shifts.assign(work.bodies.size(), Vec3::Zero());
   moves.turns.assign(work.bodies.size(), Vec3::Zero());
   relax(work, openings, moves);
   std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
-  remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work);
+  if (yielding == Yielding::by_mass)
+    remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work);
+  else
+    remove_approach(openings, std::nullopt, body::ImpulseKind::continuous, kSweepsAlike, work);
   std::vector<double> moved(work.bodies.size(), 0.0);
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     moved[i] = moves.shifts[i].norm() + moves.turns[i].norm() * work.bodies[i].reach;
@@ -121,14 +145,14 @@ std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, 
   return moved;
 }
 
-void remove_approach(const std::vector<Opening>& openings, double time_step, body::ImpulseKind kind,
-                     int sweeps, MotionWork& work) {
+void remove_approach(const std::vector<Opening>& openings, std::optional<double> time_step,
+                     body::ImpulseKind kind, int sweeps, MotionWork& work) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (const Opening& o : openings) {
       const WorkBody &a = work.bodies[at(o.a)], &b = work.bodies[at(o.b)];
       const double closing =
           -o.normal.dot(a.velocity + a.spin.cross(o.arm_a) - b.velocity - b.spin.cross(o.arm_b));
-      const double most = kind == body::ImpulseKind::continuous ? o.impulse / time_step : 1e300;
+      const double most = time_step ? o.impulse / *time_step : 1e300;
       const double size = std::min(std::max(0.0, closing) * o.weight, most);
       if (size > 0.0) give(work, o, size, closing, kind);
     }

@@ -2,6 +2,7 @@
 // the contacts of the bodies in it. Velocities only lose approach, so that no energy comes in.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/collision/contact.h"
@@ -20,6 +21,9 @@ struct Opening {
   double impulse = 0.0;       // kg m, of the displacement
 };
 
+/// Who gives way: the lighter by its mass, or all as if their masses were one.
+enum class Yielding { by_mass, alike };
+
 /// The constraint of a contact that was seen from the start, at the share `knot` of the step.
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
                      double knot, double wanted);
@@ -29,12 +33,14 @@ double gap_on_way(const WorkPair& pair, const MotionWork& work, const collision:
                   double knot);
 
 /// Moves end poses until the gaps are as wanted, as far as that goes; takes away the approach of those that
-/// pushed and logs it. Returns by how much the points of each body were moved at most, m.
-std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, MotionWork& work);
+/// pushed and logs it: by no more than what opened them if they yield by mass. Returns by how much the points
+/// of each body were moved at most, m.
+std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
+                              MotionWork& work);
 
 /// Removes what closes along these constraints by impulses between the pairs, `sweeps` times over, and logs
-/// them as `kind`. Of the continuous pass each is at most what the opening took over the step.
-void remove_approach(const std::vector<Opening>& openings, double time_step, body::ImpulseKind kind,
-                     int sweeps, MotionWork& work);
+/// them as `kind`. With a time step (s) each is at most what the opening took over it.
+void remove_approach(const std::vector<Opening>& openings, std::optional<double> time_step,
+                     body::ImpulseKind kind, int sweeps, MotionWork& work);
 
 }  // namespace shatterbox::dynamics
