@@ -106,18 +106,20 @@ TEST_CASE("a soft impact holds, and the report says by how much") {
 }
 
 TEST_CASE("what presses on a newborn piece is judged when it has lasted as long as it is averaged over") {
-  world::World w = make_drop(2.0);
-  for (int i = 0; i < 60; ++i) w.step();
-  std::map<body::BodyId, double> born;
-  for (const world::BreakRow& row : w.report().breaks)
-    for (const body::BodyId id : row.born) born[id] = row.time;
-  REQUIRE_FALSE(born.empty());
   int pressed = 0;
-  for (const world::ImpactRow& row : w.report().impacts) {
-    // Contact alone has the time of its average as its duration; the row's time is the end of the step.
-    if (row.duration < 1.0 / 60.0 || !born.count(row.id)) continue;
-    ++pressed;
-    CHECK(row.time > born[row.id] + 1.0 / 60.0);
+  for (const double speed : {2.0, 2.2, 2.6}) {
+    world::World w = make_drop(speed);
+    for (int i = 0; i < 60; ++i) w.step();
+    std::map<body::BodyId, double> born;
+    for (const world::BreakRow& row : w.report().breaks)
+      for (const body::BodyId id : row.born) born[id] = row.time;
+    REQUIRE_FALSE(born.empty());
+    for (const world::ImpactRow& row : w.report().impacts) {
+      // Contact alone has the time of its average as its duration; the row's time is the end of the step.
+      if (row.duration < 1.0 / 60.0 || !born.count(row.id)) continue;
+      ++pressed;
+      CHECK(row.time > born[row.id] + 1.0 / 60.0);
+    }
   }
   CHECK(pressed > 0);
 }
@@ -152,7 +154,7 @@ TEST_CASE("the same scene gives the same bits on any number of threads") {
   core::set_thread_count(0);
   // Pinned: any compiler and optimisation gives these bits. A change of the physics changes them; say so
   // where it does.
-  CHECK(hashes[0] == 0x9b6748ffbe7815c3ULL);
+  CHECK(hashes[0] == 0xf10145ba7c56c6e2ULL);
   CHECK(hashes[0] == hashes[1]);
   CHECK(hashes[0] == hashes[2]);
 }
