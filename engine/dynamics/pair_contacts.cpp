@@ -17,13 +17,13 @@ using body::ShapeKind;
 using collision::Contact;
 
 constexpr double kLocalSlack = 0.1;  // sine: neighbouring features may lead closer by this
-// Contacts of a pair: how far apart, as a share of its size, and how many. What rolls on something flat needs
+// Contacts of a pair: how far apart, as a share of its size, and how many. What rolls on something solid needs
 // more feet than surfaces that lie on each other.
 struct Manifold {
   double radius;
   std::size_t cap;
 };
-constexpr Manifold kOnFlat = {0.04, 16}, kOnSurface = {0.08, 8};
+constexpr Manifold kOnSolid = {0.04, 16}, kOnSurface = {0.08, 8};
 constexpr double kAlwaysNear = 3.0;    // of the usual gap
 constexpr double kRaiseTime = 0.5;     // s
 constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks less only touches
@@ -59,7 +59,7 @@ void keep_first_hits(std::vector<Hit>& hits, double size, std::vector<Contact>& 
     kept.push_back(hit.contact);
   }
   for (const Contact& c : out) std::erase_if(kept, [&](const Contact& k) { return k.key == c.key; });
-  collision::reduce_manifold(kept, {}, 0.0, kOnSurface.radius * size, kOnSurface.cap);
+  collision::reduce_manifold(kept, {}, 0.0, kOnSolid.radius * size, kOnSurface.cap);
   out.insert(out.end(), kept.begin(), kept.end());
 }
 
@@ -253,7 +253,7 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
   for (const auto& c : memory.contacts) {
     if (c.was_loaded) loaded.push_back(c.feature_key);
   }
-  const Manifold manifold = pair.is_plane || pair.is_analytic ? kOnFlat : kOnSurface;
+  const Manifold manifold = pair.has_sides ? kOnSolid : kOnSurface;
   const bool is_in_trouble = memory.trouble_age < 30;
   collision::reduce_manifold(pair.contacts, loaded, 2.0 * pair.kept_gap,
                              manifold.radius * pair.size * (is_in_trouble ? 0.5 : 1.0),
