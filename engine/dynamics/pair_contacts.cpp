@@ -17,8 +17,8 @@ using body::ShapeKind;
 using collision::Contact;
 
 constexpr double kLocalSlack = 0.1;  // sine: neighbouring features may lead closer by this
-// Contacts of a pair: how far apart, as a share of its size, and how many. What rolls on something solid needs
-// more feet than surfaces that lie on each other.
+// Contacts of a pair: how far apart, as a share of its size, and how many. What rolls on something solid
+// needs more feet than surfaces that lie on each other.
 struct Manifold {
   double radius;
   std::size_t cap;
@@ -67,15 +67,17 @@ double least_on_path(double gap, double kept_gap) {
   return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
 }
 
-// All features that are near now, for as many steps as the pair stays about here.
-std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBody& b, double margin) {
+// All features that are near now, for as many steps as the pair stays about here. Boxes are rough: of a pair
+// that stays, what is not in truth so near need not be looked at again and again.
+std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBody& b, double margin,
+                                                 bool stays) {
   auto search = std::make_shared<FeatureSearch>();
   search->margin = margin;
   search->start_a = a.start;
   search->start_b = b.start;
   collision::FeatureList& features = search->features;
   collision::list_near_features(a.placed, b.placed, margin, features);
-  // Boxes are rough: what is not in truth that near need not be looked at again and again.
+  if (!stays) return search;
   for (auto& f : features) {
     const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
     const double gap = collision::measure(points, direction_hint(a, b, points)).gap;
@@ -125,10 +127,10 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   }
   double moved = 0.0;
   if (pair.is_fast) {
-    pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + slack);
+    pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + 0.25 * slack);
     memory.search.reset();
   } else {
-    if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack);
+    if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack, !pair.is_first_seen);
     pair.search = memory.search;
     moved = moved_since(*pair.search, a, a.start, b, b.start);
   }
