@@ -1,6 +1,7 @@
 #include "engine/audit/audit.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "engine/audit/pair_audit.h"
 #include "engine/core/parallel.h"
@@ -50,9 +51,41 @@ struct Audit::Actor {
   double radius = 0.0;  // of a sphere, m
   Pose start, end;
   std::shared_ptr<const Surface> surface;
-  MovingSurface moving;
-  Bounds bounds;  // of the way; without end for planes
+  std::vector<double> times;                // shares of the step, from 0 to 1
+  std::vector<Pose> poses;                  // at these times
+  std::vector<std::vector<Vec3>> stations;  // vertices, or the sphere's centre, at these times
+  std::vector<MovingSurface> legs;          // between them
+  MovingSurface moving;                     // the whole way
+  Bounds bounds;                            // of the way; without end for planes
+
+  std::vector<Vec3> points_at(double time) const {
+    const auto next =
+        static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) - times.begin());
+    if (times[next] == time) return stations[next];
+    const double share = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    std::vector<Vec3> points = stations[next - 1];
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] += share * (stations[next][v] - points[v]);
+    return points;
+  }
+
+  /// Its straight way from one time to another between which it has no station.
+  MovingSurface leg(double from, double to) const {
+    const auto place =
+        static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), from) - times.begin());
+    if (times[place] == from && place + 1 < times.size() && times[place + 1] == to) return legs[place];
+    if (!surface) return {points_at(from), points_at(to), {}, {}};
+    return move_surface(*surface, points_at(from), points_at(to));
+  }
 };
+
+/// Calls visit(leg of a, leg of b, whether it is the last) for the straight legs that both go together.
+template <class Actor, class Visit>
+void follow(const Actor& a, const Actor& b, const Visit& visit) {
+  std::vector<double> times;
+  std::set_union(a.times.begin(), a.times.end(), b.times.begin(), b.times.end(), std::back_inserter(times));
+  for (std::size_t k = 0; k + 1 < times.size(); ++k)
+    visit(a.leg(times[k], times[k + 1]), b.leg(times[k], times[k + 1]), k + 2 == times.size());
+}
 
 struct Audit::PairResult {
   PairFindings findings;
@@ -92,7 +125,7 @@ std::shared_ptr<const Surface> Audit::surface_of(const std::shared_ptr<const bod
 }
 
 std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
-                                             std::span<const Birth> births) {
+                                             std::span<const Birth> births, std::span<const body::Way> ways) {
   std::vector<Actor> actors(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const body::Body& body = bodies[i];
@@ -105,7 +138,17 @@ std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
     actor.radius = actor.kind == ShapeKind::sphere ? body.shape->radius : 0.0;
     actor.start = start_of(body, births).pose;
     actor.end = body.pose;
-    actor.is_moving = !is_same(actor.start, actor.end);
+    actor.times = {0.0, 1.0};
+    actor.poses = {actor.start, actor.end};
+    const auto way = std::lower_bound(ways.begin(), ways.end(), body.id,
+                                      [](const body::Way& w, BodyId id) { return w.id < id; });
+    if (way != ways.end() && way->id == body.id) {
+      for (const body::Waypoint& point : way->points) {
+        actor.times.insert(actor.times.end() - 1, point.time);
+        actor.poses.insert(actor.poses.end() - 1, point.pose);
+      }
+    }
+    actor.is_moving = actor.times.size() > 2 || !is_same(actor.start, actor.end);
     const auto known = known_.find(body.id);
     actor.is_new = known == known_.end() || known->second != body.shape;
     actor.surface = surface_of(body.shape);
@@ -114,15 +157,23 @@ std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
     Actor& actor = actors[i];
     if (actor.kind == ShapeKind::plane) return;
     if (actor.kind == ShapeKind::sphere) {
-      actor.moving.start = {actor.start.translation};
-      actor.moving.end = {actor.end.translation};
-      actor.bounds.include(actor.start.translation);
-      actor.bounds.include(actor.end.translation);
+      for (const Pose& pose : actor.poses) {
+        actor.stations.push_back({pose.translation});
+        actor.bounds.include(pose.translation);
+      }
+      for (std::size_t k = 0; k + 1 < actor.stations.size(); ++k)
+        actor.legs.push_back({actor.stations[k], actor.stations[k + 1], {}, {}});
+      actor.moving = {actor.stations.front(), actor.stations.back(), {}, {}};
       actor.bounds.low.array() -= actor.radius;
       actor.bounds.high.array() += actor.radius;
       return;
     }
-    actor.moving = move_surface(*actor.surface, actor.start, actor.end);
+    for (const Pose& pose : actor.poses) actor.stations.push_back(place_surface(*actor.surface, pose));
+    for (std::size_t k = 0; k + 1 < actor.stations.size(); ++k)
+      actor.legs.push_back(move_surface(*actor.surface, actor.stations[k], actor.stations[k + 1]));
+    actor.moving = actor.legs.front();
+    for (const MovingSurface& leg : actor.legs) include_way(leg, actor.moving);
+    actor.moving.end = actor.stations.back();
     if (!actor.moving.nodes.empty()) actor.bounds = actor.moving.nodes.front();
   });
   return actors;
@@ -166,9 +217,10 @@ std::vector<std::pair<int, int>> Audit::find_pairs(const std::vector<Actor>& act
   return pairs;
 }
 
-void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> births, double time) {
+void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> births,
+                     std::span<const body::Way> ways, double time) {
   ++report_.steps;
-  const std::vector<Actor> actors = make_actors(bodies, births);
+  const std::vector<Actor> actors = make_actors(bodies, births, ways);
   const auto pairs = find_pairs(actors);
   std::vector<PairResult> results(pairs.size());
   core::parallel_for(pairs.size(), 4, [&](std::size_t i) {
@@ -195,13 +247,17 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
       if (is_new)
         result.crossed_at_start =
             crosses_sphere_at_start(*a->surface, a->moving, b->start.translation, b->radius);
-      audit_sphere(*a->surface, a->moving, b->start.translation, b->end.translation, b->radius,
-                   result.findings);
+      follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+        audit_sphere(*a->surface, leg_a, leg_b.start.front(), leg_b.end.front(), b->radius, is_end,
+                     result.findings);
+      });
     } else {
       if (is_new)
         result.crossed_at_start =
             do_cross(*a->surface, a->moving, *b->surface, b->moving, &MovingSurface::start);
-      audit_surfaces(*a->surface, a->moving, *b->surface, b->moving, result.findings);
+      follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+        audit_surfaces(*a->surface, leg_a, *b->surface, leg_b, is_end, result.findings);
+      });
     }
     for (Finding& finding : result.findings.list) {
       finding.a = a->id;

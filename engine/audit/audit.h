@@ -15,6 +15,7 @@
 
 #include "engine/audit/surface.h"
 #include "engine/body/body.h"
+#include "engine/body/way.h"
 
 namespace shatterbox::audit {
 
@@ -65,8 +66,9 @@ class Audit {
   void begin_step(std::span<const body::Body> bodies);
 
   /// Checks the step that has ended at `time` (s). Bodies that were not there when it began start where their
-  /// parents in `births` did, or else where they are now.
-  void end_step(std::span<const body::Body> bodies, std::span<const Birth> births, double time);
+  /// parents in `births` did, or else where they are now. `ways` (ascending id) tell who did not go straight.
+  void end_step(std::span<const body::Body> bodies, std::span<const Birth> births,
+                std::span<const body::Way> ways, double time);
 
   const AuditReport& report() const { return report_; }
 
@@ -78,7 +80,8 @@ class Audit {
     Pose pose;
   };
 
-  std::vector<Actor> make_actors(std::span<const body::Body> bodies, std::span<const Birth> births);
+  std::vector<Actor> make_actors(std::span<const body::Body> bodies, std::span<const Birth> births,
+                                 std::span<const body::Way> ways);
   Start start_of(const body::Body& body, std::span<const Birth> births) const;
   std::shared_ptr<const Surface> surface_of(const std::shared_ptr<const body::Shape>& shape);
   std::vector<std::pair<int, int>> find_pairs(const std::vector<Actor>& actors) const;

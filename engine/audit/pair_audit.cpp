@@ -203,9 +203,9 @@ void PairFindings::add(FindingKind kind, int feature_a, int feature_b) {
 }
 
 void audit_surfaces(const Surface& a, const MovingSurface& moving_a, const Surface& b,
-                    const MovingSurface& moving_b, PairFindings& findings) {
+                    const MovingSurface& moving_b, bool is_end, PairFindings& findings) {
   for_each_near_pair(a, moving_a, b, moving_b, [&](int s, int t) {
-    if (cross(a, moving_a.end, s, b, moving_b.end, t)) {
+    if (is_end && cross(a, moving_a.end, s, b, moving_b.end, t)) {
       findings.add(FindingKind::crossing, s, t);
       findings.has_crossing = true;
     }
@@ -242,7 +242,7 @@ void audit_plane(const MovingSurface& moving, double radius, const Pose& plane, 
 }
 
 void audit_sphere(const Surface& a, const MovingSurface& moving_a, const Vec3& centre_start,
-                  const Vec3& centre_end, double radius, PairFindings& findings) {
+                  const Vec3& centre_end, double radius, bool is_end, PairFindings& findings) {
   Bounds way;
   way.include(centre_start);
   way.include(centre_end);
@@ -252,15 +252,15 @@ void audit_sphere(const Surface& a, const MovingSurface& moving_a, const Vec3& c
     if (!moving_a.triangles[at(t)].meets(way)) continue;
     const Corners start = corners_of(a, moving_a.start, t), end = corners_of(a, moving_a.end, t);
     const Corners from_start = seen_from(start, centre_start), from_end = seen_from(end, centre_end);
-    if (distance_to_origin(from_end) < radius * (1.0 - kTouch)) {
+    const bool is_inside = distance_to_origin(from_end) < radius * (1.0 - kTouch);
+    if (is_inside && is_end) {
       findings.add(FindingKind::sunk_in_sphere, t, 0);
       findings.has_crossing = true;
     }
     const Passage passage = vertex_through_triangle({centre_start, start[0], start[1], start[2]},
                                                     {centre_end, end[0], end[1], end[2]});
     const bool was_inside = distance_to_origin(from_start) < radius * (1.0 - kTouch);
-    const bool dipped = !was_inside && distance_to_origin(from_end) >= radius * (1.0 - kTouch) &&
-                        dips_into(from_start, from_end, radius);
+    const bool dipped = !was_inside && (is_inside ? !is_end : dips_into(from_start, from_end, radius));
     if (passage == Passage::passed || dipped) findings.add(FindingKind::sphere_passage, t, 0);
   }
 }

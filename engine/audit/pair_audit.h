@@ -16,9 +16,9 @@ struct PairFindings {
   void add(FindingKind kind, int feature_a, int feature_b);
 };
 
-/// Two bodies made of triangles.
+/// Two bodies made of triangles. Crossings are told at the end of the step alone.
 void audit_surfaces(const Surface& a, const MovingSurface& moving_a, const Surface& b,
-                    const MovingSurface& moving_b, PairFindings& findings);
+                    const MovingSurface& moving_b, bool is_end, PairFindings& findings);
 
 /// True if they cross at the start or at the end of the step (`when`).
 bool do_cross(const Surface& a, const MovingSurface& moving_a, const Surface& b,
@@ -30,7 +30,7 @@ bool is_below_plane(const std::vector<Vec3>& points, double radius, const Pose& 
 
 /// Triangles against a ball of `radius` whose centre moves along a straight line. The sphere is b.
 void audit_sphere(const Surface& a, const MovingSurface& moving_a, const Vec3& centre_start,
-                  const Vec3& centre_end, double radius, PairFindings& findings);
+                  const Vec3& centre_end, double radius, bool is_end, PairFindings& findings);
 bool crosses_sphere_at_start(const Surface& a, const MovingSurface& moving_a, const Vec3& centre,
                              double radius);
 

@@ -92,14 +92,22 @@ std::shared_ptr<const Surface> make_surface(const std::shared_ptr<const body::Sh
   return surface;
 }
 
-MovingSurface move_surface(const Surface& surface, const Pose& start, const Pose& end) {
+std::vector<Vec3> place_surface(const Surface& surface, const Pose& pose) {
+  std::vector<Vec3> positions;
+  positions.reserve(surface.vertices.size());
+  for (const Vec3& v : surface.vertices) positions.push_back(pose.apply(v));
+  return positions;
+}
+
+void include_way(const MovingSurface& other, MovingSurface& way) {
+  for (std::size_t t = 0; t < way.triangles.size(); ++t) way.triangles[t].include(other.triangles[t]);
+  for (std::size_t i = 0; i < way.nodes.size(); ++i) way.nodes[i].include(other.nodes[i]);
+}
+
+MovingSurface move_surface(const Surface& surface, std::vector<Vec3> start, std::vector<Vec3> end) {
   MovingSurface moving;
-  moving.start.reserve(surface.vertices.size());
-  moving.end.reserve(surface.vertices.size());
-  for (const Vec3& v : surface.vertices) {
-    moving.start.push_back(start.apply(v));
-    moving.end.push_back(end.apply(v));
-  }
+  moving.start = std::move(start);
+  moving.end = std::move(end);
   moving.triangles.resize(surface.triangles.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (const int v : surface.triangles[t]) {

@@ -56,6 +56,13 @@ struct MovingSurface {
   std::vector<Bounds> nodes;      // of the nodes' ways
 };
 
-MovingSurface move_surface(const Surface& surface, const Pose& start, const Pose& end);
+/// From positions of its vertices (|V| x 3, world, m) to others.
+MovingSurface move_surface(const Surface& surface, std::vector<Vec3> start, std::vector<Vec3> end);
+
+/// Positions of the vertices at a pose.
+std::vector<Vec3> place_surface(const Surface& surface, const Pose& pose);
+
+/// Stretches the boxes of `way` over `other`, which are of the same surface.
+void include_way(const MovingSurface& other, MovingSurface& way);
 
 }  // namespace shatterbox::audit

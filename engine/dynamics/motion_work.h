@@ -34,6 +34,7 @@ struct WorkBody {
   double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
   double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
   std::vector<Quat> substep_rotations;  // after each substep of the solver
+  int straight_parts = 1;            // in which its way was tested
   std::vector<Quat> knots;           // rotations at equal times, start and end included; empty: a short turn
   Vec3 way = Vec3::Zero();           // m, of the centre since the start
   Quat rotation = Quat::Identity();  // now

@@ -154,6 +154,10 @@ void PathTest::fill_parts(const WorkBody& w, int count, Path& path) const {
   }
 }
 
+int PathTest::count_parts(std::size_t body_number) const {
+  return body_number < paths_.size() ? std::max(1, static_cast<int>(paths_[body_number].parts.size())) : 1;
+}
+
 std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare) {
   WorkPair& pair = work_.pairs[pair_number];
   std::vector<PathHit> hits;

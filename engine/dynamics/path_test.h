@@ -35,6 +35,9 @@ class PathTest {
   /// of it are free too. Different pairs may be tested at once.
   std::vector<PathHit> find_hits(std::size_t pair_number, double& spare);
 
+  /// Straight parts in which the way of a body was followed last.
+  int count_parts(std::size_t body_number) const;
+
  private:
   // One body in one straight part of its way.
   struct Part {

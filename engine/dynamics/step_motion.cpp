@@ -194,8 +194,31 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
 
 namespace {
 
+// One of the equal parts into which a step is divided.
+struct Part {
+  int number = 0, count = 1;
+};
+
+// Where bodies were within the step: at the ends of the parts, and of the straight pieces of a turn.
+std::vector<body::Way> find_ways(const MotionWork& work, const Part& part) {
+  std::vector<body::Way> ways;
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    const WorkBody& w = work.bodies[i];
+    if (!w.is_active) continue;
+    body::Way way;
+    way.id = work.ids[i];
+    const int pieces = w.straight_parts, last = part.number + 1 < part.count ? pieces : pieces - 1;
+    for (int k = 1; k <= last; ++k) {
+      const double time = (part.number + static_cast<double>(k) / pieces) / part.count;
+      way.points.push_back({time, pose_on_way(w, static_cast<double>(k) / pieces)});
+    }
+    if (!way.points.empty()) ways.push_back(std::move(way));
+  }
+  return ways;
+}
+
 // The step, or one of the parts into which it is divided.
-ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settings, bool is_first,
+ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settings, const Part& part,
                         ContactState& state, body::ImpulseLog& log) {
   ContactReport report;
   MotionWork work;
@@ -209,10 +232,11 @@ ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settin
     }
     find_candidate_pairs(bodies, settings, state, work);
   }
-  if (is_first) put_on_shelf(work, state);
+  if (part.number == 0) put_on_shelf(work, state);
   solve_motion(bodies, settings, work);
   guard_motion(bodies, settings, state, work, report);
   finish_motion(bodies, state, work, log, report);
+  report.ways = find_ways(work, part);
   return report;
 }
 
@@ -240,7 +264,7 @@ bool is_wild(const std::vector<Body>& bodies, const ContactSettings& settings, c
   return kManySpin * spinning > report.awake_bodies && kManyHits * report.hits > report.awake_bodies;
 }
 
-void add_part(const ContactReport& part, ContactReport& report) {
+void add_part(ContactReport&& part, ContactReport& report) {
   report.contacts = part.contacts;
   report.solver_contacts = std::max(report.solver_contacts, part.solver_contacts);
   report.least_gap = std::min(report.least_gap, part.least_gap);
@@ -252,6 +276,15 @@ void add_part(const ContactReport& part, ContactReport& report) {
   report.new_crossing_pairs.insert(report.new_crossing_pairs.end(), part.new_crossing_pairs.begin(),
                                    part.new_crossing_pairs.end());
   report.frozen_share += part.frozen_share;
+  for (body::Way& way : part.ways) {
+    const auto place =
+        std::lower_bound(report.ways.begin(), report.ways.end(), way.id,
+                         [](const body::Way& known, body::BodyId id) { return known.id < id; });
+    if (place == report.ways.end() || place->id != way.id)
+      report.ways.insert(place, std::move(way));
+    else
+      place->points.insert(place->points.end(), way.points.begin(), way.points.end());
+  }
   report.residual = std::max(report.residual, part.residual);
   report.awake_bodies = part.awake_bodies;
 }
@@ -266,10 +299,10 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
   part_settings.time_step /= parts;
   part_settings.substeps = std::max(1, settings.substeps / parts);
   ContactReport report;
-  for (int part = 0; part < parts; ++part) {
+  for (int number = 0; number < parts; ++number) {
     const std::size_t first = log.size();
-    add_part(step_part(bodies, part_settings, part == 0, state, log), report);
-    for (std::size_t i = first; i < log.size(); ++i) log[i].time += part * part_settings.time_step;
+    add_part(step_part(bodies, part_settings, {number, parts}, state, log), report);
+    for (std::size_t i = first; i < log.size(); ++i) log[i].time += number * part_settings.time_step;
   }
   report.frozen_share /= parts;
   state.is_wild = is_wild(bodies, settings, report);

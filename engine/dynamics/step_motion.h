@@ -13,6 +13,7 @@
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/body/way.h"
 #include "engine/dynamics/contact_settings.h"
 #include "engine/dynamics/contact_state.h"
 
@@ -32,7 +33,8 @@ struct ContactReport {
   double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
   double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
-  double drift = 0.0;  // m, of surfaces from their bodies; of the paper's scheme alone
+  std::vector<body::Way> ways;  // ascending id; of bodies that did not go straight through the step
+  double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone
 };
 
 /// Scratch of one step, handed from stage to stage. Holds no state: a new one gives the same results.

@@ -40,7 +40,8 @@ struct World::State {
   std::vector<SharedForm> forms;
 
   MovingState moving;
-  body::ImpulseLog log;  // of the last step
+  body::ImpulseLog log;         // of the last step
+  std::vector<body::Way> ways;  // of the last step
   std::map<body::BodyId, Ancestry> ancestry;
   std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;
   WorldReport report;

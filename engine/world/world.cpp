@@ -89,6 +89,10 @@ StressPicture World::stress_picture(body::BodyId id) const {
 const WorldReport& World::report() const {
   return state_->report;
 }
+
+std::span<const body::Way> World::ways() const {
+  return state_->ways;
+}
 const body::ImpulseLog& World::impulse_log() const {
   return state_->log;
 }

@@ -9,6 +9,7 @@
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/body/way.h"
 #include "engine/core/result.h"
 #include "engine/material/material.h"
 #include "engine/world/description.h"
@@ -67,6 +68,8 @@ class World {
   Ancestry ancestry(body::BodyId id) const;
   StressPicture stress_picture(body::BodyId id) const;
   const WorldReport& report() const;
+  /// Of bodies that did not go straight through the last step, ascending by id.
+  std::span<const body::Way> ways() const;
   /// Impulses of the last step, of the pass that was kept.
   const body::ImpulseLog& impulse_log() const;
   const WorldSettings& settings() const;

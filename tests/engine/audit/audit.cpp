@@ -29,10 +29,10 @@ AuditReport move(Body moving, const Body& other, const Vec3& from, const Vec3& t
   moving.pose.translation = from;
   std::vector<Body> bodies{moving, other};
   audit.begin_step(bodies);
-  audit.end_step(bodies, {}, 0.1);
+  audit.end_step(bodies, {}, {}, 0.1);
   audit.begin_step(bodies);
   bodies[0].pose.translation = to;
-  audit.end_step(bodies, {}, 0.2);
+  audit.end_step(bodies, {}, {}, 0.2);
   return audit.report();
 }
 
@@ -113,16 +113,47 @@ TEST_CASE("audit: a piece starts where its parent did, and what crosses at the b
     piece.pose.translation = Vec3(0, -3, 0);  // wholly beyond
     bodies = {bodies[1], piece};
     const std::vector<Birth> births{{3, 1}, {4, 3}};
-    audit.end_step(bodies, births, 0.1);
+    audit.end_step(bodies, births, {}, 0.1);
     CHECK(audit.report().passages == (crosses_at_birth ? 0 : 3));
     CHECK(audit.report().exempt_pairs == (crosses_at_birth ? 1 : 0));
     CHECK(audit.report().exempt_passages == (crosses_at_birth ? 2 : 0));
     // What has come apart is no longer exempt.
     audit.begin_step(bodies);
     bodies[1].pose.translation = Vec3(0, 3, 0);
-    audit.end_step(bodies, births, 0.2);
+    audit.end_step(bodies, births, {}, 0.2);
     CHECK(audit.report().passages >= 3);
   }
+}
+
+TEST_CASE("audit: a body is followed along its way, not only from where it was to where it is") {
+  const Body plate = test::make_plate(2, kPlate), ball = make_solid(1, body::ShapeKind::sphere, 0.5),
+             shard = test::make_plate(1, {Vec3(0, 0, 0), Vec3(0.5, 1, 0), Vec3(0, 1, 1)});
+  const auto go = [&](const Body& moving, const std::vector<Vec3>& stations) {
+    Audit audit;
+    std::vector<Body> bodies{moving, plate};
+    bodies[0].pose.translation = stations.front();
+    audit.begin_step(bodies);
+    audit.end_step(bodies, {}, {}, 0.1);
+    audit.begin_step(bodies);
+    bodies[0].pose.translation = stations.back();
+    std::vector<body::Way> ways{{1, {}}};
+    for (std::size_t k = 1; k + 1 < stations.size(); ++k) {
+      const double time = static_cast<double>(k) / static_cast<double>(stations.size() - 1);
+      ways[0].points.push_back({time, {Quat::Identity(), stations[k]}});
+    }
+    audit.end_step(bodies, {}, ways, 0.2);
+    return audit.report();
+  };
+  const Vec3 above(0, 2, 0), below(0, -2, 0), beside(9, 2, 0), beneath(9, -2, 0);
+  for (const Body& moving : {shard, ball}) {
+    CHECK(go(moving, {above, below}).passages > 0);
+    CHECK(go(moving, {above, beside, beneath, below}).passages == 0);
+    CHECK(go(moving, {above, above}).passages == 0);
+    CHECK(go(moving, {above, below, above}).passages > 0);
+    CHECK(go(moving, {above, below, above}).crossings == 0);
+  }
+  // A ball that is in the plate where its way bends.
+  CHECK(go(ball, {above, Vec3(0, 0.2, 0), above}).passages > 0);
 }
 
 TEST_CASE("audit: a crossing that does not move is counted in every step") {
@@ -132,7 +163,7 @@ TEST_CASE("audit: a crossing that does not move is counted in every step") {
   for (int step = 0; step < 5; ++step) {
     audit.begin_step(bodies);
     if (step == 1) bodies[1].pose.translation.y() = -1.5;
-    audit.end_step(bodies, {}, step);
+    audit.end_step(bodies, {}, {}, step);
   }
   CHECK(audit.report().steps == 5);
   CHECK(audit.report().crossings == 4);

@@ -45,9 +45,9 @@ class Scene {
     Audit audit;
     std::vector<body::Body> bodies = start_;
     audit.begin_step(bodies);
-    audit.end_step(bodies, {}, 0.0);  // a step in which nothing moves: sees who crosses from the start
+    audit.end_step(bodies, {}, {}, 0.0);  // a step in which nothing moves: sees who crosses from the start
     audit.begin_step(bodies);
-    audit.end_step(end_, {}, 0.1);
+    audit.end_step(end_, {}, {}, 0.1);
     return audit.report();
   }
 
