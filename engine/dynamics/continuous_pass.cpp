@@ -82,8 +82,6 @@ class Guard {
     }
     settle_cut_bodies();
     note_stuck_pairs();
-    for (std::size_t i = 0; i < work_.bodies.size(); ++i)
-      work_.bodies[i].straight_parts = paths_.count_parts(i);
   }
 
  private:

@@ -52,9 +52,11 @@ Pose pose_on_way(const WorkBody& body, double time) {
   return pose;
 }
 
-int parts_of(const WorkBody& body) {
+int count_straight_parts(double turn_angle) {
   constexpr int kMost = 64;
-  return std::clamp(static_cast<int>(std::ceil(std::min(1e3, body.turn_angle / kStraightTurn))), 1, kMost);
+  int parts = 1;
+  while (parts < kMost && parts * kStraightTurn < turn_angle) parts *= 2;
+  return parts;
 }
 
 void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
@@ -75,6 +77,7 @@ void shorten(WorkBody& body, double share) {
   if (share <= 0.0) {
     body.end = body.start;
     body.turn_angle = 0.0;
+    body.straight_parts = 1;
     body.knots.clear();
     return;
   }

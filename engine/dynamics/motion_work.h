@@ -34,7 +34,7 @@ struct WorkBody {
   double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
   double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
   std::vector<Quat> substep_rotations;  // after each substep of the solver
-  int straight_parts = 1;            // in which its way was tested
+  int straight_parts = 1;               // of its way, a power of two: between them vertices go straight
   std::vector<Quat> knots;           // rotations at equal times, start and end included; empty: a short turn
   Vec3 way = Vec3::Zero();           // m, of the centre since the start
   Quat rotation = Quat::Identity();  // now
@@ -161,8 +161,9 @@ Pose blend(const Pose& from, const Pose& to, double time);
 /// Where the body is after the share `time` of the step.
 Pose pose_on_way(const WorkBody& body, double time);
 
-/// Straight parts in which its way must be followed.
-int parts_of(const WorkBody& body);
+/// Straight parts in which a turn of so much (rad) must be followed: a power of two, so that the parts of two
+/// bodies fit into each other.
+int count_straight_parts(double turn_angle);
 
 /// Moves the end pose by `shift` (m) and `turn` (rotation vector), and the way to it in proportion.
 void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn);

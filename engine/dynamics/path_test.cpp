@@ -60,8 +60,7 @@ double least_separation(double gap, const WorkPair& pair) {
 }
 
 bool PathTest::turns_far(const WorkPair& pair) const {
-  return work_.bodies[at(pair.a)].turn_angle > kStraightTurn ||
-         work_.bodies[at(pair.b)].turn_angle > kStraightTurn;
+  return work_.bodies[at(pair.a)].straight_parts > 1 || work_.bodies[at(pair.b)].straight_parts > 1;
 }
 
 bool PathTest::needs_search(const WorkPair& pair) const {
@@ -106,6 +105,14 @@ void PathTest::prepare(const std::vector<char>& is_due) {
   });
 }
 
+int PathTest::level_of(const WorkPair& pair) const {
+  const int parts =
+      std::max(work_.bodies[at(pair.a)].straight_parts, work_.bodies[at(pair.b)].straight_parts);
+  int level = 0;
+  while ((1 << level) < parts) ++level;
+  return level;
+}
+
 // Pairs in which one turns far and that are not surely apart are followed in parts, both bodies in as many.
 void PathTest::divide(const std::vector<std::size_t>& turning) {
   in_parts_.resize(work_.pairs.size());
@@ -114,48 +121,47 @@ void PathTest::divide(const std::vector<std::size_t>& turning) {
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
     in_parts_[turning[k]] = keep_apart_as_balls(a, a.end, b, b.end, 2.0 * pair.kept_gap) ? 0 : 1;
   });
-  std::vector<int> parts(work_.bodies.size(), 0);
-  const auto raise = [&](int body, int count) {
-    const bool rises = parts[at(body)] < count;
-    if (rises) parts[at(body)] = count;
-    return rises;
-  };
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (const std::size_t p : turning) {
-      if (!in_parts_[p]) continue;
-      const WorkPair& pair = work_.pairs[p];
-      const int count = std::max({parts_of(work_.bodies[at(pair.a)]), parts_of(work_.bodies[at(pair.b)]),
-                                  parts[at(pair.a)], parts[at(pair.b)]});
-      const bool a_rises = raise(pair.a, count), b_rises = raise(pair.b, count);
-      grows = grows || a_rises || b_rises;
-    }
+  std::vector<std::array<bool, kLevels>> needs(work_.bodies.size());
+  for (const std::size_t p : turning) {
+    if (!in_parts_[p]) continue;
+    const int level = level_of(work_.pairs[p]);
+    needs[at(work_.pairs[p].a)][at(level)] = needs[at(work_.pairs[p].b)][at(level)] = true;
   }
   core::parallel_for(work_.bodies.size(), 1, [&](std::size_t i) {
-    if (parts[i] > 0) fill_parts(work_.bodies[i], parts[i], paths_[i]);
+    for (int level = 0; level < kLevels; ++level)
+      if (needs[i][at(level)]) fill_parts(work_.bodies[i], level, paths_[i]);
   });
 }
 
-void PathTest::fill_parts(const WorkBody& w, int count, Path& path) const {
-  path.parts.assign(static_cast<std::size_t>(count), {});
-  Pose begin = w.start;
-  std::vector<Vec3> turned;
+// A body has one way, whoever it meets: where it is divided further than it turns, vertices stay on the
+// straight lines between the ends of its own parts.
+void PathTest::fill_parts(const WorkBody& w, int level, Path& path) const {
+  const int count = 1 << level, halvings = count / w.straight_parts;
+  std::vector<Part>& parts = path.in_parts[at(level)];
+  parts.assign(at(count), {});
+  std::vector<Vec3> own_begin = w.placed.start, own_end, turned;
   for (int k = 0; k < count; ++k) {
-    Part& part = path.parts[at(k)];
-    const Pose end = pose_on_way(w, static_cast<double>(k + 1) / count);
-    place_at(w, end, part.to);
-    part.centre = begin.translation;
-    part.way = end.translation - begin.translation;
+    Part& part = parts[at(k)];
+    if (k % halvings == 0) {
+      if (k > 0) own_begin = std::move(own_end);
+      own_end.clear();
+      place_at(w, pose_on_way(w, static_cast<double>(k / halvings + 1) / w.straight_parts), own_end);
+    }
+    const int done = k % halvings + 1;
+    part.to = own_end;
+    if (done < halvings) {
+      const double share = static_cast<double>(done) / halvings;
+      for (std::size_t v = 0; v < part.to.size(); ++v)
+        part.to[v] = own_begin[v] + share * (own_end[v] - own_begin[v]);
+    }
+    const Vec3 whole = w.end.translation - w.start.translation;
+    part.centre = w.start.translation + (static_cast<double>(k) / count) * whole;
+    part.way = whole / count;
     turned = part.to;
     for (Vec3& p : turned) p -= part.way;
     part.placed.collider = w.collider;
-    collision::refit_swept_boxes(part.placed, k == 0 ? w.placed.start : path.parts[at(k - 1)].to, turned);
-    begin = end;
+    collision::refit_swept_boxes(part.placed, k == 0 ? w.placed.start : parts[at(k - 1)].to, turned);
   }
-}
-
-int PathTest::count_parts(std::size_t body_number) const {
-  return body_number < paths_.size() ? std::max(1, static_cast<int>(paths_[body_number].parts.size())) : 1;
 }
 
 std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare) {
@@ -186,7 +192,7 @@ std::vector<PathHit> PathTest::test_plane(const WorkPair& pair, double& spare) c
   const Vec3 normal = plane.start.rotation * Vec3::UnitY();
   const double level = normal.dot(plane.start.translation) + other.collider->radius;
   std::vector<PathHit> hits;
-  const int parts = parts_of(other);
+  const int parts = other.straight_parts;
   std::vector<Vec3> knot;
   spare = 1e300;
   for (int part = 0; part < parts && hits.empty(); ++part) {
@@ -222,7 +228,7 @@ std::vector<PathHit> PathTest::test_solids(const WorkPair& pair) const {
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   if (pair.least_gap - kSafe * pair.kept_gap > motion_bound(a, a.end, b, b.end)) return {};
   const double least = least_separation(pair.least_gap, pair);
-  const int parts = std::max(parts_of(a), parts_of(b));
+  const int parts = std::max(a.straight_parts, b.straight_parts);
   std::vector<PathHit> hits;
   for (int part = 0; part < parts && hits.empty(); ++part) {
     const double begin = static_cast<double>(part) / parts, end = static_cast<double>(part + 1) / parts;
@@ -273,7 +279,8 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
 // A body that turns far is followed through several straight parts.
 std::vector<PathHit> PathTest::test_in_parts(const WorkPair& pair, double& spare) const {
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-  const auto &parts_a = paths_[at(pair.a)].parts, &parts_b = paths_[at(pair.b)].parts;
+  const std::size_t level = at(level_of(pair));
+  const auto &parts_a = paths_[at(pair.a)].in_parts[level], &parts_b = paths_[at(pair.b)].in_parts[level];
   const double safe = kSafe * pair.kept_gap, margin = 2.0 * pair.kept_gap;
   const double share = 1.0 / static_cast<double>(parts_a.size());
   std::vector<PathHit> hits;

@@ -3,6 +3,7 @@
 // sec. III.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -35,9 +36,6 @@ class PathTest {
   /// of it are free too. Different pairs may be tested at once.
   std::vector<PathHit> find_hits(std::size_t pair_number, double& spare);
 
-  /// Straight parts in which the way of a body was followed last.
-  int count_parts(std::size_t body_number) const;
-
  private:
   // One body in one straight part of its way.
   struct Part {
@@ -46,15 +44,19 @@ class PathTest {
     Vec3 centre = Vec3::Zero();        // where it begins
     collision::PlacedCollider placed;  // its swept boxes
   };
+  // How finely a way is divided: its straight parts are halved as often as the other body asks for.
+  static constexpr int kLevels = 7;
   struct Path {
-    std::vector<Vec3> end;    // |V| x 3
-    std::vector<Part> parts;  // only for bodies that meet one that turns far
+    std::vector<Vec3> end;  // |V| x 3
+    std::array<std::vector<Part>, kLevels>
+        in_parts;  // in 1, 2, 4, ..; filled as pairs in which one turns far need
   };
 
   bool turns_far(const WorkPair& pair) const;
   bool needs_search(const WorkPair& pair) const;
   void divide(const std::vector<std::size_t>& turning);
-  void fill_parts(const WorkBody& body, int count, Path& path) const;
+  int level_of(const WorkPair& pair) const;
+  void fill_parts(const WorkBody& body, int level, Path& path) const;
   std::vector<PathHit> test_plane(const WorkPair& pair, double& spare) const;
   std::vector<PathHit> test_solids(const WorkPair& pair) const;
   std::vector<PathHit> test_straight(WorkPair& pair, double& spare) const;

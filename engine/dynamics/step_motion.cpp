@@ -116,6 +116,7 @@ void report_contacts(const MotionWork& work, ContactState& state, ContactReport&
 // A body that turns far is followed through what it turned in between.
 void keep_knots(const std::vector<Quat>& rotations, WorkBody& w) {
   w.knots.clear();
+  w.straight_parts = count_straight_parts(w.turn_angle);
   if (w.turn_angle <= kStraightTurn) return;
   w.knots.push_back(w.start.rotation);
   w.knots.insert(w.knots.end(), rotations.begin(), rotations.end());
@@ -130,11 +131,12 @@ void end_in_contact(WorkBody& w) {
 
 void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
   w.end = w.predicted;
+  w.straight_parts = count_straight_parts(w.turn_angle);
   if (w.turn_angle > kStraightTurn) {
     std::vector<Quat> rotations;
     Quat rotation = w.start.rotation;
     Vec3 spin = w.spin;
-    const int parts = parts_of(w);
+    const int parts = w.straight_parts;
     for (int k = 0; k < parts; ++k) {
       if (is_dynamic)
         advance_spin(w.inertia, settings.time_step / parts, SpinOrder::fourth, rotation, spin);

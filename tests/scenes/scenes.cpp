@@ -102,6 +102,18 @@ TEST_CASE("how near a hit comes to breaking does not depend on the step") {
   }
 }
 
+TEST_CASE("nothing passes through anything while things break") {
+  const Folder folder;
+  for (const char* scene : {"ornament --seconds 0.5", "window --seconds 0.55", "bowl --seconds 0.5",
+                            "ornament --seconds 0.48 --set ornament.position=[0,1.06,0]"}) {
+    const auto report = play(folder, std::string(scene) + " --audit");
+    INFO(scene);
+    CHECK(report["pieces"].get<int>() > 5);
+    CHECK(report["audit"]["crossings"] == 0);
+    CHECK(report["audit"]["passages"] == 0);
+  }
+}
+
 TEST_CASE("a broken scene gives the same bits with one thread and two") {
   const Folder folder;
   const auto one = play(folder, "window --seconds 0.5 --threads 1");
