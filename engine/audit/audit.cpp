@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "engine/audit/pair_audit.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 
 namespace shatterbox::audit {
@@ -11,10 +12,7 @@ namespace {
 
 using body::BodyId;
 using body::ShapeKind;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 bool is_same(const Pose& a, const Pose& b) {
   return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();

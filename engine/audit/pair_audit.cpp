@@ -6,16 +6,15 @@
 
 #include "engine/audit/passage.h"
 #include "engine/audit/triangle_crossing.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::audit {
 namespace {
 
+using core::at;
+
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();  // of the coordinates' size
 constexpr double kTouch = 1e-9;  // of a radius: how deep a ball must be entered to be sure of it
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Corners corners_of(const Surface& surface, const std::vector<Vec3>& positions, int triangle) {
   const auto& t = surface.triangles[at(triangle)];

@@ -1,4 +1,5 @@
 #include "engine/audit/surface.h"
+#include "engine/core/index.h"
 
 #include <algorithm>
 #include <numeric>
@@ -6,11 +7,9 @@
 namespace shatterbox::audit {
 namespace {
 
-constexpr int kLeafSize = 4;
+using core::at;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr int kLeafSize = 4;
 
 void add_box(const Vec3& half, Surface& surface) {
   for (int corner = 0; corner < 8; ++corner)

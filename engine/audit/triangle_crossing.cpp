@@ -4,15 +4,13 @@
 #include <utility>
 
 #include "engine/audit/exact_sign.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::audit {
 namespace {
 
 using Signs = std::array<int, 3>;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 Signs sides_of(const Corners& plane, const Corners& points) {
   Signs signs;

@@ -32,6 +32,24 @@ struct LoggedImpulse {
   double effective_mass = 0.0;  // kg along the normal, from both full inverse masses
 };
 
+/// An impulse (N s, on a) at a point (m), as both bodies feel it where they are; `normal` (unit) from b
+/// towards a.
+inline LoggedImpulse log_impulse(ImpulseKind kind, BodyId a, const Pose& pose_a, BodyId b, const Pose& pose_b,
+                                 const Vec3& point, const Vec3& normal, const Vec3& impulse) {
+  LoggedImpulse entry;
+  entry.kind = kind;
+  entry.body_a = a;
+  entry.body_b = b;
+  entry.point_world = point;
+  entry.normal_world = normal;
+  entry.impulse_world = impulse;
+  entry.point_a = pose_a.apply_inverse(point);
+  entry.point_b = pose_b.apply_inverse(point);
+  entry.impulse_a = pose_a.rotation.conjugate() * impulse;
+  entry.impulse_b = pose_b.rotation.conjugate() * Vec3(-impulse);
+  return entry;
+}
+
 using ImpulseLog = std::vector<LoggedImpulse>;
 
 }  // namespace shatterbox::body

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
 #include "engine/geometry/closest_points.h"
 
 namespace shatterbox::collision {
@@ -10,10 +11,7 @@ namespace {
 
 using body::Shape;
 using body::ShapeKind;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 void add_sphere_sphere(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& c) {
   const Vec3 way = pose_a.translation - pose_b.translation;

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/index.h"
 #include "engine/geometry/edge_topology.h"
 
 namespace shatterbox::collision {
 namespace {
 
+using core::at;
 using geometry::Triangle;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Rows of a table from (row, value) pairs given in any order; values stay in the order given within a row.
 void fill_rows(std::size_t rows, const std::vector<std::pair<int, int>>& entries, std::vector<int>& begin,

@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/index.h"
 #include "engine/geometry/closest_points.h"
 
 namespace shatterbox::collision {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 // No neighbour of `vertex` leads along `direction` by more than the slack.
 bool leads_away_at_vertex(const Collider& c, const std::vector<Vec3>& positions, int vertex,

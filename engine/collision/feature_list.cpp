@@ -4,16 +4,14 @@
 #include <array>
 #include <utility>
 
+#include "engine/core/index.h"
 #include "engine/geometry/crossings.h"
 
 namespace shatterbox::collision {
 namespace {
 
 using Node = geometry::TriangleTree::Node;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 // Boxes of edges, triangles and nodes from those of the vertices.
 void refit(const Collider& c, FeatureBoxes& boxes) {

@@ -6,6 +6,7 @@
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/broad_phase.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/motion_work.h"
@@ -19,12 +20,9 @@ namespace {
 using body::Body;
 using body::ShapeKind;
 using collision::Contact;
+using core::at;
 
 constexpr double kBroadSlack = 0.02;  // share of a body's size
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool is_same_pose(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();

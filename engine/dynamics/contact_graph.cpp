@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::dynamics {
 namespace {
 
 using collision::Contact;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 }  // namespace
 

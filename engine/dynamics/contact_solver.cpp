@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::dynamics {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 // Bodies that no impulse moves are not written to (islands share them): their motion is known at any time.
 struct Moved {

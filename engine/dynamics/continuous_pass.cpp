@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/contact_solver.h"
@@ -18,6 +19,7 @@ namespace shatterbox::dynamics {
 namespace {
 
 using collision::Contact;
+using core::at;
 
 constexpr double kSafe = 1e-3;  // share of the kept gap
 constexpr int kLastRounds = 6;  // in which bodies only keep what they have
@@ -25,10 +27,6 @@ constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 constexpr int kPatience = 2;         // rounds without fewer hits
 constexpr int kMostPartialCuts = 5;  // before whole steps are taken back
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 double wanted_separation(double gap, double kept_gap) {
   const double safe = kSafe * kept_gap;

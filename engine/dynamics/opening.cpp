@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::dynamics {
 namespace {
 
 using collision::Contact;
+using core::at;
 
 constexpr int kIterations = 20;
 constexpr int kIterationsAlike = 60;
 constexpr int kSweepsAlike = 30;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Turns and shifts of end poses, while they are sought.
 struct Moves {
@@ -79,17 +78,8 @@ void give(MotionWork& work, const Opening& o, double size, double closing, body:
     b.velocity -= b.inverse_mass * p;
     b.spin -= b.inverse_inertia * o.arm_b.cross(p);
   }
-  body::LoggedImpulse entry;
-  entry.kind = kind;
-  entry.body_a = work.ids[at(o.a)];
-  entry.body_b = work.ids[at(o.b)];
-  entry.point_world = a.end.translation + o.arm_a;
-  entry.normal_world = o.normal;
-  entry.impulse_world = p;
-  entry.point_a = a.end.rotation.conjugate() * o.arm_a;
-  entry.point_b = b.end.rotation.conjugate() * o.arm_b;
-  entry.impulse_a = a.end.rotation.conjugate() * p;
-  entry.impulse_b = b.end.rotation.conjugate() * Vec3(-p);
+  body::LoggedImpulse entry = body::log_impulse(kind, work.ids[at(o.a)], a.end, work.ids[at(o.b)], b.end,
+                                                a.end.translation + o.arm_a, o.normal, p);
   entry.closing_speed = closing;
   entry.effective_mass = o.weight;
   work.continuous_log.push_back(entry);

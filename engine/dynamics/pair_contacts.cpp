@@ -7,6 +7,7 @@
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_gap.h"
+#include "engine/core/index.h"
 #include "engine/dynamics/rest.h"
 #include "engine/dynamics/solid_touch.h"
 
@@ -15,6 +16,7 @@ namespace {
 
 using body::ShapeKind;
 using collision::Contact;
+using core::at;
 
 constexpr double kLocalSlack = 0.1;  // sine: neighbouring features may lead closer by this
 // Contacts of a pair: how far apart, as a share of its size, and how many. What rolls on something solid
@@ -28,10 +30,6 @@ constexpr double kAlwaysNear = 3.0;    // of the usual gap
 constexpr double kRaiseTime = 0.5;     // s
 constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks less only touches
 constexpr double kImpactWindow = 0.1;  // share of the step after the first hit in which others count
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Contact make_contact(const collision::FeaturePair& features, const collision::FeatureGap& gap) {
   Contact c;

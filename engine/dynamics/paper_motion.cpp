@@ -5,6 +5,7 @@
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/broad_phase.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/particle_soup.h"
 #include "engine/dynamics/rest.h"
@@ -14,13 +15,10 @@ namespace {
 
 using body::Body;
 using body::ShapeKind;
+using core::at;
 
 /// Sweeps over the vertices below a plane.
 constexpr int kPlaneSweeps = 8;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Share of the body's mass at each vertex.
 std::vector<double> lump_mass(const body::Shape& shape, const collision::Collider& collider) {
@@ -148,17 +146,9 @@ class PlaneImpulses {
 
   void log_push(const Body& body, const Body& plane, const collision::Contact& c, const Vec3& point,
                 const Vec3& impulse, double closing_speed, double effective_mass) {
-    body::LoggedImpulse entry;
-    entry.kind = closing_speed > 0.0 ? body::ImpulseKind::collision : body::ImpulseKind::contact;
-    entry.body_a = body.id;
-    entry.body_b = plane.id;
-    entry.point_world = point;
-    entry.normal_world = c.normal;
-    entry.impulse_world = impulse;
-    entry.point_a = body.pose.apply_inverse(point);
-    entry.point_b = plane.pose.apply_inverse(point);
-    entry.impulse_a = body.pose.rotation.conjugate() * impulse;
-    entry.impulse_b = plane.pose.rotation.conjugate() * Vec3(-impulse);
+    const auto kind = closing_speed > 0.0 ? body::ImpulseKind::collision : body::ImpulseKind::contact;
+    body::LoggedImpulse entry =
+        body::log_impulse(kind, body.id, body.pose, plane.id, plane.pose, point, c.normal, impulse);
     entry.closing_speed = closing_speed;
     entry.effective_mass = effective_mass;
     log_.push_back(entry);
@@ -226,18 +216,10 @@ void log_soup(const std::vector<Body>& bodies, const ContactSettings& settings,
   for (const SoupImpulse& i : impulses) {
     const SoupPair& pair = pairs[at(i.pair)];
     const Body &a = bodies[at(pair.a)], &b = bodies[at(pair.b)];
-    body::LoggedImpulse entry;
     const bool is_collision = i.closing_speed > impact_threshold(settings, pair.thickness);
-    entry.kind = is_collision ? body::ImpulseKind::collision : body::ImpulseKind::contact;
-    entry.body_a = a.id;
-    entry.body_b = b.id;
-    entry.point_world = i.point;
-    entry.normal_world = i.normal;
-    entry.impulse_world = i.impulse;
-    entry.point_a = a.pose.apply_inverse(i.point);
-    entry.point_b = b.pose.apply_inverse(i.point);
-    entry.impulse_a = a.pose.rotation.conjugate() * i.impulse;
-    entry.impulse_b = b.pose.rotation.conjugate() * Vec3(-i.impulse);
+    const auto kind = is_collision ? body::ImpulseKind::collision : body::ImpulseKind::contact;
+    body::LoggedImpulse entry =
+        body::log_impulse(kind, a.id, a.pose, b.id, b.pose, i.point, i.normal, i.impulse);
     if (is_collision) entry.closing_speed = i.closing_speed;
     log.push_back(entry);
   }

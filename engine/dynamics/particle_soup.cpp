@@ -6,6 +6,7 @@
 
 #include "engine/collision/feature_gap.h"
 #include "engine/core/disjoint_sets.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 
 namespace shatterbox::dynamics {
@@ -13,6 +14,7 @@ namespace {
 
 using collision::FeatureKind;
 using collision::FeaturePair;
+using core::at;
 
 /// [BFA02] sec. 7: repulsion opens this share of the missing thickness in one step.
 constexpr double kRepulsionShare = 0.1;
@@ -20,10 +22,6 @@ constexpr double kRepulsionShare = 0.1;
 constexpr int kMostRounds = 10;
 /// Least distance on the paths, share of the thickness.
 constexpr double kLeastShare = 1e-3;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// One feature pair that is near, or that meets on its way.
 struct Meeting {

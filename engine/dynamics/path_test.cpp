@@ -6,6 +6,7 @@
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_gap.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/solid_touch.h"
 
@@ -13,14 +14,11 @@ namespace shatterbox::dynamics {
 namespace {
 
 using body::ShapeKind;
+using core::at;
 
 constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr std::size_t kMostHits = 6;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 void keep_first(std::vector<PathHit>& hits, double size) {
   std::sort(hits.begin(), hits.end(), [](const PathHit& x, const PathHit& y) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_solver.h"
 #include "engine/dynamics/motion_work.h"
@@ -13,14 +14,11 @@ namespace {
 
 using body::Body;
 using body::ImpulseKind;
+using core::at;
 
 constexpr int kParts = 4;      // of a wild step
 constexpr int kManySpin = 20;  // a step is wild if of so many awake bodies more than one turns far
 constexpr int kManyHits = 30;  // and of so many more than one pair was hit
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body::ImpulseLog& log) {
   std::vector<char> pair_collides(work.pairs.size(), 0);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/index.h"
 #include "engine/core/vec.h"
 #include "engine/geometry/closest_points.h"
 
 namespace shatterbox::geometry {
 namespace {
+
+using core::at;
 
 constexpr double kUnit = 0.5 * std::numeric_limits<double>::epsilon();  // of rounding, 2^-53
 constexpr double kTiny = 1e-250;                                        // above what underflow can take away
@@ -21,10 +24,6 @@ struct Paths {
   std::array<Vec3, 4> from_start, from_end;  // all four vertices, seen from the last one
   std::array<Vec3, 4> start, end;            // pair i * second + j
 };
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Vec3 point_of(const double* numbers, int i) {
   return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};

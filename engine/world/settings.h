@@ -23,7 +23,7 @@ enum class AfterBreak : std::uint8_t {
 /// How bodies are kept apart.
 enum class ContactScheme : std::uint8_t {
   standard,  // engine/dynamics/step_motion.h
-  paper,     // [BHTF07] sec. III: cloth collision on a surface that drifts from its rigid body; for comparison
+  paper,  // [BHTF07] sec. III: cloth collision on a surface that drifts from its rigid body; for comparison
 };
 
 struct WorldSettings {

@@ -154,7 +154,8 @@ void World::step() {
   }
   book_conservation(before);
   if (s.settings.contact == ContactScheme::standard)
-    timer.time("sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+    timer.time("sleep",
+               [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   s.ways = std::move(contact.ways);
   book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
   ++s.steps;
