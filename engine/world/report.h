@@ -19,6 +19,7 @@ struct ImpactRow {
   double time = 0.0;  // s
   std::string body;
   body::BodyId id = 0;
+  bool is_struck = false;     // by a collision; otherwise contact alone pressed
   double impulse = 0.0;       // N s
   double duration = 0.0;      // s
   double stress = 0.0;        // Pa, greatest principal, the pulse's peak

@@ -25,6 +25,7 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
   row.time = time;
   row.body = body.name;
   row.id = body.id;
+  row.is_struck = impact.is_struck;
   row.impulse = verdict.impulse;
   row.duration = verdict.duration;
   row.stress = verdict.stress;

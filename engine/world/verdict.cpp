@@ -24,6 +24,7 @@ struct Candidate {
   Load hardest;
   std::vector<Load> loads;
   double first_time = 0.0;  // s
+  bool is_struck = false;   // by a collision
   bool is_piece = false;    // born of a break
   fracture::ShellImpact impact;
 };
@@ -175,7 +176,8 @@ bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::
     candidate.impact.loads.push_back(judge.shell_load(body, load, !is_paper));
   for (const Load& load : gather_by_place(memory.contact, radius))
     candidate.impact.loads.push_back(judge.shell_load(body, load, false));
-  const std::vector<Load>& told = memory.event.empty() ? memory.contact : memory.event;
+  candidate.is_struck = !memory.event.empty();
+  const std::vector<Load>& told = candidate.is_struck ? memory.event : memory.contact;
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
     return a.impulse_body.squaredNorm() < b.impulse_body.squaredNorm();
   });
@@ -259,6 +261,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     if (candidate.is_piece) how.core_spacing = 0.0;
     evaluated[i].id = candidate.body->id;
     evaluated[i].hardest = candidate.hardest;
+    evaluated[i].is_struck = candidate.is_struck;
     evaluated[i].first_time = candidate.first_time;
     evaluated[i].decision = fracture::decide_shell(candidate.fragile->subject, candidate.impact, how);
   });

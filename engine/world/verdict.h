@@ -17,6 +17,7 @@ struct EvaluatedImpact {
   body::BodyId id = 0;
   double first_time = 0.0;  // s, of the first impulse of the event
   Load hardest;             // body space
+  bool is_struck = false;   // by a collision; otherwise contact alone pressed
   fracture::Decision decision;
 };
 
