@@ -33,11 +33,13 @@ struct Play {
 
   world::World& world() { return built->world; }
 
-  /// Steps for `seconds`; `look` after each step.
-  void run(double seconds, const std::function<void()>& look) {
+  /// Steps for `seconds`, or until it is enough; `look` after each step.
+  void run(
+      double seconds, const std::function<void()>& look,
+      const std::function<bool()>& is_enough = [] { return false; }) {
     script::Script script(scene);
     const double end = world().time() + seconds - 1e-9;
-    while (world().time() < end) {
+    while (world().time() < end && !is_enough()) {
       for (const std::string& word : script.play(*built)) {
         INFO(word);  // what flies about may be where something would come in
         CHECK(word.find(" waits at ") != std::string::npos);
@@ -155,19 +157,22 @@ TEST_CASE("bowls: what is poured into the large bowl stays in it, and nothing is
 }
 
 TEST_CASE("plate_stack: stands whole until the ball comes, which breaks some plates and leaves others") {
-  Play play("plate_stack", {"throw.at=0.25"});
+  // Three plates of either kind instead of five, hit at the same height below the top; until it has broken.
+  Play play("plate_stack", {"throw.at=0.25", "dinner.repeat.count=3", "dessert.repeat.count=3",
+                            "throw.from=[-1.2,0.287,0.5]", "throw.at_point=[-0.06,0.082,0.02]"});
   const auto breaks = [&] { return play.world().report().breaks.size(); };
-  const double top = play.named("dessert[5]").pose.translation.y();
+  const double top = play.named("dessert[3]").pose.translation.y();
   play.run(0.25, [] {});
   CHECK(breaks() == 0);
-  CHECK(play.named("dessert[5]").pose.translation.y() == Approx(top).margin(0.01));
-  play.run(0.2, [] {});
+  CHECK(play.named("dessert[3]").pose.translation.y() == Approx(top).margin(0.01));
+  play.run(
+      0.2, [] {}, [&] { return breaks() > 0; });
   CHECK(breaks() > 0);
   int whole = 0;
   for (const body::Body& body : play.world().bodies())
     whole += body.shape->kind == body::ShapeKind::shell && play.world().ancestry(body.id).parent == 0 ? 1 : 0;
-  CHECK(whole >= 4);
-  CHECK(whole < 10);
+  CHECK(whole >= 2);
+  CHECK(whole < 6);
 }
 
 TEST_CASE("ornaments: ten thousand triangles each, and enough pieces of each") {
@@ -175,6 +180,8 @@ TEST_CASE("ornaments: ten thousand triangles each, and enough pieces of each") {
   const body::Body& ornament = play.named("ornaments");
   CHECK(ornament.shape->surface.triangles.size() > 10000);
   CHECK(ornament.shape->surface.triangles.size() < 11000);
-  play.run(0.45, [] {});
-  CHECK(play.world().bodies().size() > 20);  // and the floor
+  const auto count = [&] { return play.world().bodies().size(); };
+  play.run(
+      0.45, [] {}, [&] { return count() > 20; });
+  CHECK(count() > 20);  // and the floor
 }
