@@ -1,5 +1,5 @@
-// Boxes in single precision, rounded outwards: half the memory of exact ones, and never too small. Four lanes
-// (x, y, z and a nought) are worked on at once.
+// Boxes in single precision, rounded outwards: never too small. Four lanes (x, y, z and a nought) are
+// worked on at once.
 #pragma once
 
 #include <cmath>
