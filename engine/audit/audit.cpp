@@ -52,7 +52,7 @@ struct Audit::Actor {
   std::vector<double> times;                // shares of the step, from 0 to 1
   std::vector<Pose> poses;                  // at these times
   std::vector<std::vector<Vec3>> stations;  // vertices, or the sphere's centre, at these times
-  std::vector<MovingSurface> legs;          // between them
+  std::vector<MovingSurface> legs;          // between them; none if it goes straight, which `moving` tells
   MovingSurface moving;                     // the whole way
   Bounds bounds;                            // of the way; without end for planes
 
@@ -67,12 +67,14 @@ struct Audit::Actor {
   }
 
   /// Its straight way from one time to another between which it has no station.
-  MovingSurface leg(double from, double to) const {
+  const MovingSurface& leg(double from, double to, MovingSurface& scratch) const {
+    if (from == 0.0 && to == 1.0) return moving;
     const auto place =
         static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), from) - times.begin());
     if (times[place] == from && place + 1 < times.size() && times[place + 1] == to) return legs[place];
-    if (!surface) return {points_at(from), points_at(to), {}, {}};
-    return move_surface(*surface, points_at(from), points_at(to));
+    scratch = surface ? move_surface(*surface, points_at(from), points_at(to))
+                      : MovingSurface{points_at(from), points_at(to), {}, {}};
+    return scratch;
   }
 };
 
@@ -81,8 +83,10 @@ template <class Actor, class Visit>
 void follow(const Actor& a, const Actor& b, const Visit& visit) {
   std::vector<double> times;
   std::set_union(a.times.begin(), a.times.end(), b.times.begin(), b.times.end(), std::back_inserter(times));
+  MovingSurface scratch_a, scratch_b;
   for (std::size_t k = 0; k + 1 < times.size(); ++k)
-    visit(a.leg(times[k], times[k + 1]), b.leg(times[k], times[k + 1]), k + 2 == times.size());
+    visit(a.leg(times[k], times[k + 1], scratch_a), b.leg(times[k], times[k + 1], scratch_b),
+          k + 2 == times.size());
 }
 
 struct Audit::PairResult {
@@ -159,7 +163,7 @@ std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
         actor.stations.push_back({pose.translation});
         actor.bounds.include(pose.translation);
       }
-      for (std::size_t k = 0; k + 1 < actor.stations.size(); ++k)
+      for (std::size_t k = 0; actor.stations.size() > 2 && k + 1 < actor.stations.size(); ++k)
         actor.legs.push_back({actor.stations[k], actor.stations[k + 1], {}, {}});
       actor.moving = {actor.stations.front(), actor.stations.back(), {}, {}};
       actor.bounds.low.array() -= actor.radius;
@@ -167,11 +171,11 @@ std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
       return;
     }
     for (const Pose& pose : actor.poses) actor.stations.push_back(place_surface(*actor.surface, pose));
-    for (std::size_t k = 0; k + 1 < actor.stations.size(); ++k)
+    actor.moving = move_surface(*actor.surface, actor.stations.front(), actor.stations.back());
+    for (std::size_t k = 0; actor.stations.size() > 2 && k + 1 < actor.stations.size(); ++k) {
       actor.legs.push_back(move_surface(*actor.surface, actor.stations[k], actor.stations[k + 1]));
-    actor.moving = actor.legs.front();
-    for (const MovingSurface& leg : actor.legs) include_way(leg, actor.moving);
-    actor.moving.end = actor.stations.back();
+      include_way(actor.legs.back(), actor.moving);
+    }
     if (!actor.moving.nodes.empty()) actor.bounds = actor.moving.nodes.front();
   });
   return actors;

@@ -176,12 +176,15 @@ void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from,
   refit(*placed.collider, placed.swept);
 }
 
+void sort_by_bound(FeatureList& features) {
+  std::sort(features.begin(), features.end(), [](const FeaturePair& x, const FeaturePair& y) {
+    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
+  });
+}
+
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out) {
   out.clear();
   list_features(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), margin, out);
-  std::sort(out.begin(), out.end(), [](const FeaturePair& x, const FeaturePair& y) {
-    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
-  });
 }
 
 void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,

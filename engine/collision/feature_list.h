@@ -47,7 +47,10 @@ void refit_boxes(PlacedCollider& placed);
 void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from,
                        const std::vector<Vec3>& turned);
 
-/// All feature pairs that may be within `margin` (a superset; each pair once), nearest first by their boxes.
+/// Nearest first; a total order.
+void sort_by_bound(FeatureList& features);
+
+/// All feature pairs that may be within `margin` by their boxes (a superset; each pair once), in any order.
 /// Needs `boxes` of both.
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out);
 

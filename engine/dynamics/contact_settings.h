@@ -29,6 +29,7 @@ struct ContactSettings {
   int continuous_rounds = 6;    // rounds of the continuous pass before the failsafe
   bool has_sleep = true;        // islands at rest fall asleep
   double sleep_time = 0.5;      // s of quiet before sleep
+  bool has_ways = false;        // ContactReport::ways is filled
   bool has_caches = true;       // feature lists are kept between steps; the results are the same without
   std::vector<PairOverride> overrides;  // the first that fits is taken
 };

@@ -29,8 +29,8 @@ struct Moves {
   }
 };
 
-// Response of the pair's gap to an impulse on it.
-double response(const MotionWork& work, const Opening& o, Yielding yielding) {
+// One over the response of the pair's gap to an impulse on it; 0 if nothing can move.
+double weight(const MotionWork& work, const Opening& o, Yielding yielding) {
   double sum = 0.0;
   for (const auto& [i, arm] : {std::pair(o.a, &o.arm_a), std::pair(o.b, &o.arm_b)}) {
     const WorkBody& w = work.bodies[at(i)];
@@ -39,16 +39,14 @@ double response(const MotionWork& work, const Opening& o, Yielding yielding) {
     const double own = w.inverse_mass + moment.dot(w.inverse_inertia * moment);
     sum += yielding == Yielding::alike ? own / w.inverse_mass : own;
   }
-  return sum;
+  return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
 void relax(const MotionWork& work, std::vector<Opening>& openings, Moves& moves) {
   std::vector<double> weights;
-  for (const Opening& o : openings) {
-    const double sum = response(work, o, moves.yielding);
-    weights.push_back(sum > 0.0 ? 1.0 / sum : 0.0);
-  }
-  const int iterations = moves.yielding == Yielding::alike ? kIterationsAlike : kIterations;
+  const bool is_alike = moves.yielding == Yielding::alike;
+  for (const Opening& o : openings) weights.push_back(is_alike ? weight(work, o, Yielding::alike) : o.weight);
+  const int iterations = is_alike ? kIterationsAlike : kIterations;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     double greatest = 0.0;
     for (std::size_t k = 0; k < openings.size(); ++k) {
@@ -108,8 +106,7 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   const Vec3 middle = 0.5 * (end_a + end_b);
   o.arm_a = middle - pose_a.translation;
   o.arm_b = middle - pose_b.translation;
-  const double sum = response(work, o, Yielding::by_mass);
-  o.weight = sum > 0.0 ? 1.0 / sum : 0.0;
+  o.weight = weight(work, o, Yielding::by_mass);
   return o;
 }
 

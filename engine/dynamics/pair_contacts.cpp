@@ -26,6 +26,7 @@ struct Manifold {
   std::size_t cap;
 };
 constexpr Manifold kOnSolid = {0.04, 16}, kOnSurface = {0.08, 8};
+constexpr double kFastSlack = 0.25;    // of the slack: a list for one step need not last
 constexpr double kAlwaysNear = 3.0;    // of the usual gap
 constexpr double kRaiseTime = 0.5;     // s
 constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks less only touches
@@ -75,16 +76,15 @@ std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBo
   search->start_b = b.start;
   collision::FeatureList& features = search->features;
   collision::list_near_features(a.placed, b.placed, margin, features);
-  if (!stays) return search;
-  for (auto& f : features) {
-    const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    const double gap = collision::measure(points, direction_hint(a, b, points)).gap;
-    f.bound = std::max(f.bound, collision::round_down(gap * (1.0 - 1e-9)));
+  if (stays) {
+    for (auto& f : features) {
+      const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
+      const double gap = collision::measure(points, direction_hint(a, b, points)).gap;
+      f.bound = std::max(f.bound, collision::round_down(gap * (1.0 - 1e-9)));
+    }
+    std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
   }
-  std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
-  std::sort(features.begin(), features.end(), [](const auto& x, const auto& y) {
-    return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
-  });
+  collision::sort_by_bound(features);
   return search;
 }
 
@@ -125,7 +125,7 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   }
   double moved = 0.0;
   if (pair.is_fast) {
-    pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + 0.25 * slack);
+    pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack);
     memory.search.reset();
   } else {
     if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack, !pair.is_first_seen);

@@ -81,6 +81,7 @@ class Soup {
       const auto &a = bodies_[at(pair.a)], &b = bodies_[at(pair.b)];
       collision::FeatureList list;
       collision::list_near_features(placed_[at(pair.a)], placed_[at(pair.b)], pair.thickness, list);
+      collision::sort_by_bound(list);
       for (const FeaturePair& f : list) {
         const auto points = collision::gather(f, *a.collider, a.positions, *b.collider, b.positions);
         const auto gap = collision::measure(points, Vec3::UnitY());

@@ -236,7 +236,7 @@ ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settin
   solve_motion(bodies, settings, work);
   guard_motion(bodies, settings, state, work, report);
   finish_motion(bodies, state, work, log, report);
-  report.ways = find_ways(work, part);
+  if (settings.has_ways) report.ways = find_ways(work, part);
   return report;
 }
 

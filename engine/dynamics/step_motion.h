@@ -33,7 +33,7 @@ struct ContactReport {
   double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
   double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
-  std::vector<body::Way> ways;  // ascending id; of bodies that did not go straight through the step
+  std::vector<body::Way> ways;  // ascending id; if asked for: of bodies that did not go straight
   double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone
 };
 

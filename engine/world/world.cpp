@@ -90,6 +90,10 @@ const WorldReport& World::report() const {
   return state_->report;
 }
 
+void World::keep_ways() {
+  state_->contact_settings.has_ways = true;
+}
+
 std::span<const body::Way> World::ways() const {
   return state_->ways;
 }

@@ -60,6 +60,9 @@ class World {
   /// Factors and flaws of all breakable shapes, which would otherwise be made at the first hit. Optional.
   void prepare();
 
+  /// From now on `ways` tells how bodies went through the last step. Changes no result.
+  void keep_ways();
+
   /// Advances by one step of 1 / steps_per_second seconds.
   void step();
 
@@ -68,7 +71,8 @@ class World {
   Ancestry ancestry(body::BodyId id) const;
   StressPicture stress_picture(body::BodyId id) const;
   const WorldReport& report() const;
-  /// Of bodies that did not go straight through the last step, ascending by id.
+  /// Of bodies that did not go straight through the last step, ascending by id; none unless `keep_ways` was
+  /// called.
   std::span<const body::Way> ways() const;
   /// Impulses of the last step, of the pass that was kept.
   const body::ImpulseLog& impulse_log() const;

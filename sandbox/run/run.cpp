@@ -117,6 +117,7 @@ std::string play(Job& job, Recorder& recorder, Painter* painter) {
   script::Script script(scene);
   view::View view(scene, *job.built);
   Inspector inspector(job.options.has_audit, recorder.record);
+  if (job.options.has_audit) world.keep_ways();
   const auto advance = [&] {
     for (std::string& fault : script.play(*job.built)) recorder.record.warnings.push_back(std::move(fault));
     inspector.begin_step(world);
