@@ -194,13 +194,8 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
 
 namespace {
 
-// One of the equal parts into which a step is divided.
-struct Part {
-  int number = 0, count = 1;
-};
-
 // Where bodies were within the step: at the ends of the parts, and of the straight pieces of a turn.
-std::vector<body::Way> find_ways(const MotionWork& work, const Part& part) {
+std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
   std::vector<body::Way> ways;
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const WorkBody& w = work.bodies[i];
@@ -217,31 +212,18 @@ std::vector<body::Way> find_ways(const MotionWork& work, const Part& part) {
   return ways;
 }
 
-// The step, or one of the parts into which it is divided.
-ContactReport step_part(std::vector<Body>& bodies, const ContactSettings& settings, const Part& part,
-                        ContactState& state, body::ImpulseLog& log) {
-  ContactReport report;
-  MotionWork work;
-  find_candidate_pairs(bodies, settings, state, work);
-  // What wakes may touch further sleepers, which its island's memory already wakes with it: few rounds, each
-  // wakes more.
-  while (!work.to_wake.empty()) {
-    for (const body::BodyId id : work.to_wake) {
-      Body* sleeper = body::find_body(bodies, id);
-      wake_island(bodies, state, *sleeper);
-    }
-    find_candidate_pairs(bodies, settings, state, work);
+// Whether the next step should be taken in parts too.
+bool is_wild(const std::vector<Body>& bodies, const ContactSettings& settings, const ContactReport& report) {
+  int spinning = 0;
+  for (const Body& b : bodies) {
+    const bool turns = b.is_dynamic() && b.is_awake && b.shape->kind != body::ShapeKind::sphere;
+    spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
   }
-  if (part.number == 0) put_on_shelf(work, state);
-  solve_motion(bodies, settings, work);
-  guard_motion(bodies, settings, state, work, report);
-  finish_motion(bodies, state, work, log, report);
-  if (settings.has_ways) report.ways = find_ways(work, part);
-  return report;
+  return kManySpin * spinning > report.awake_bodies && kManyHits * report.hits > report.awake_bodies;
 }
 
-// Newborn pieces lie in each other's way, and go far against their own size while they part: their first step
-// is taken in parts, and so are those after it while many spin and collide.
+}  // namespace
+
 int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
   if (state.is_wild) return kParts;
   std::size_t newborn = 0;
@@ -254,59 +236,74 @@ int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
   return newborn >= 2 && !state.bodies.empty() ? kParts : 1;
 }
 
-// Whether the next step should be taken in parts too.
-bool is_wild(const std::vector<Body>& bodies, const ContactSettings& settings, const ContactReport& report) {
-  int spinning = 0;
-  for (const Body& b : bodies) {
-    const bool turns = b.is_dynamic() && b.is_awake && b.shape->kind != body::ShapeKind::sphere;
-    spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
+ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settings, const StepPart& part,
+                        ContactState& state, body::ImpulseLog& log) {
+  ContactSettings own = settings;
+  own.time_step /= part.count;
+  own.substeps = std::max(1, settings.substeps / part.count);
+  wake_bodies(bodies, own, state);
+  ContactReport report;
+  MotionWork work;
+  find_candidate_pairs(bodies, own, state, work);
+  // What wakes may touch further sleepers, which its island's memory already wakes with it: few rounds, each
+  // wakes more.
+  while (!work.to_wake.empty()) {
+    for (const body::BodyId id : work.to_wake) {
+      Body* sleeper = body::find_body(bodies, id);
+      wake_island(bodies, state, *sleeper);
+    }
+    find_candidate_pairs(bodies, own, state, work);
   }
-  return kManySpin * spinning > report.awake_bodies && kManyHits * report.hits > report.awake_bodies;
+  put_on_shelf(work, state);
+  solve_motion(bodies, own, work);
+  guard_motion(bodies, own, state, work, report);
+  const std::size_t first = log.size();
+  finish_motion(bodies, state, work, log, report);
+  for (std::size_t i = first; i < log.size(); ++i) log[i].time += part.number * own.time_step;
+  if (own.has_ways) report.ways = find_ways(work, part);
+  return report;
 }
 
-void add_part(ContactReport&& part, ContactReport& report) {
-  report.contacts = part.contacts;
-  report.solver_contacts = std::max(report.solver_contacts, part.solver_contacts);
-  report.least_gap = std::min(report.least_gap, part.least_gap);
-  report.hits += part.hits;
-  report.rounds += part.rounds;
-  report.failsafe_steps += part.failsafe_steps;
-  report.longest_cut = std::max(report.longest_cut, part.longest_cut);
-  report.crossing_pairs = part.crossing_pairs;
-  report.new_crossing_pairs.insert(report.new_crossing_pairs.end(), part.new_crossing_pairs.begin(),
-                                   part.new_crossing_pairs.end());
-  report.frozen_share += part.frozen_share;
+void add_part(ContactReport&& part, ContactReport& step) {
+  step.contacts = part.contacts;
+  step.solver_contacts = std::max(step.solver_contacts, part.solver_contacts);
+  step.least_gap = std::min(step.least_gap, part.least_gap);
+  step.hits += part.hits;
+  step.rounds += part.rounds;
+  step.failsafe_steps += part.failsafe_steps;
+  step.longest_cut = std::max(step.longest_cut, part.longest_cut);
+  step.crossing_pairs = part.crossing_pairs;
+  step.new_crossing_pairs.insert(step.new_crossing_pairs.end(), part.new_crossing_pairs.begin(),
+                                 part.new_crossing_pairs.end());
+  step.frozen_share += part.frozen_share;
   for (body::Way& way : part.ways) {
     const auto place =
-        std::lower_bound(report.ways.begin(), report.ways.end(), way.id,
+        std::lower_bound(step.ways.begin(), step.ways.end(), way.id,
                          [](const body::Way& known, body::BodyId id) { return known.id < id; });
-    if (place == report.ways.end() || place->id != way.id)
-      report.ways.insert(place, std::move(way));
+    if (place == step.ways.end() || place->id != way.id)
+      step.ways.insert(place, std::move(way));
     else
       place->points.insert(place->points.end(), way.points.begin(), way.points.end());
   }
-  report.residual = std::max(report.residual, part.residual);
-  report.awake_bodies = part.awake_bodies;
+  step.residual = std::max(step.residual, part.residual);
+  step.drift = std::max(step.drift, part.drift);
+  step.awake_bodies = part.awake_bodies;
 }
 
-}  // namespace
+void end_step(const std::vector<Body>& bodies, const ContactSettings& settings, int parts,
+              ContactReport& step, ContactState& state) {
+  step.frozen_share /= parts;
+  state.is_wild = is_wild(bodies, settings, step);
+}
 
 ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
                           body::ImpulseLog& log) {
-  wake_bodies(bodies, settings, state);
-  const int parts = count_parts(bodies, state);
-  ContactSettings part_settings = settings;
-  part_settings.time_step /= parts;
-  part_settings.substeps = std::max(1, settings.substeps / parts);
-  ContactReport report;
-  for (int number = 0; number < parts; ++number) {
-    const std::size_t first = log.size();
-    add_part(step_part(bodies, part_settings, {number, parts}, state, log), report);
-    for (std::size_t i = first; i < log.size(); ++i) log[i].time += number * part_settings.time_step;
-  }
-  report.frozen_share /= parts;
-  state.is_wild = is_wild(bodies, settings, report);
-  return report;
+  ContactReport step;
+  StepPart part{0, count_parts(bodies, state)};
+  for (; part.number < part.count; ++part.number)
+    add_part(move_part(bodies, settings, part, state, log), step);
+  end_step(bodies, settings, part.count, step, state);
+  return step;
 }
 
 }  // namespace shatterbox::dynamics

@@ -44,8 +44,31 @@ class MotionWork;  // motion_work.h
 /// touching pairs.
 void wake_bodies(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state);
 
-/// The whole motion in the order of the stages below. `bodies` ascend by id; they may have grown, shrunk or
-/// been replaced since the last call. Appends to `log` one entry a contact that gave an impulse.
+/// One of the equal parts in which a step is taken. What happens in a part is known at its end, so that who
+/// breaks bodies goes back no further than to its beginning.
+struct StepPart {
+  int number = 0, count = 1;
+};
+
+/// In how many parts the step that begins here should be taken: several if pieces are newborn, which lie in
+/// each other's way and go far against their own size while they part, and after that while many spin and
+/// collide.
+int count_parts(const std::vector<body::Body>& bodies, const ContactState& state);
+
+/// The motion of one part in the order of the stages below. `settings` are those of the whole step. `bodies`
+/// ascend by id; they may have grown, shrunk or been replaced since the last call. Appends to `log` one entry
+/// a contact that gave an impulse, with its time since the step began.
+ContactReport move_part(std::vector<body::Body>& bodies, const ContactSettings& settings,
+                        const StepPart& part, ContactState& state, body::ImpulseLog& log);
+
+/// Adds what a part reports to the report of its step.
+void add_part(ContactReport&& part, ContactReport& step);
+
+/// After the last part: decides whether the next step is one that is taken in parts too.
+void end_step(const std::vector<body::Body>& bodies, const ContactSettings& settings, int parts,
+              ContactReport& step, ContactState& state);
+
+/// All parts of a step, one after the other.
 ContactReport step_motion(std::vector<body::Body>& bodies, const ContactSettings& settings,
                           ContactState& state, body::ImpulseLog& log);
 

@@ -27,6 +27,7 @@ constexpr double kPatchShare = 0.075;
 constexpr int kMostScreenings = 6;         // steps of the search for the duration
 constexpr double kLargestResidual = 1e-4;  // of a solve that is an answer
 constexpr double kSpinThatCounts = 1e-3;   // least stress of a spin worth a solve, in strengths
+constexpr double kSpinSafety = 4.0;        // by which a bound exceeds the estimate of the spin's stress
 // Compliance of a thin plate at a corner over that far from its rim, about: the search for the duration
 // begins below the screening that it ends at.
 constexpr double kRimCompliance = 8.0;
@@ -104,6 +105,13 @@ bool ImpactForce::prepare(std::string& problem) {
   return !presses_.empty();
 }
 
+/// What bending by the spin comes to, about: 3/4 rho (spin size)^2 size / thickness.
+double ImpactForce::spin_stress() const {
+  const double size = subject_.systems->figures().size;
+  const double rim_speed = impact_.spin_material.norm() * size;
+  return 0.75 * subject_.material.density * rim_speed * rim_speed * size / subject_.thickness;
+}
+
 std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
   // Loads add up, so do the roots of their energies.
   double root_energy = 0.0;
@@ -113,7 +121,7 @@ std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
     root_energy += core::sqrt(0.5 * load.effective_mass) * load.closing_speed;
   }
   const stress::ShellFigures& figures = subject_.systems->figures();
-  if (impact_.spin_material.norm() * figures.size > 1.0) return std::nullopt;
+  const double spin = kSpinSafety * spin_stress();
   const double energy = root_energy * root_energy;
   const double per_root_area = stress::stress_bound(properties_of(subject_), 1.0, energy);
   Bound worst;
@@ -121,7 +129,7 @@ std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
     const double area = figures.stressed_areas[c];
     if (!(area > 0.0)) return std::nullopt;
     const double strength = weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(c));
-    const double stress = per_root_area / core::sqrt(area);
+    const double stress = per_root_area / core::sqrt(area) + spin;
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
   }
@@ -205,12 +213,7 @@ void ImpactForce::complete(Decision& decision) {
 /// The displacement under all forces and the spin at once.
 bool ImpactForce::solve_together(const geometry::ShellMesh& mesh, Decision& decision, std::string& problem) {
   const auto start = Clock::now();
-  const stress::ShellFigures& figures = subject_.systems->figures();
-  // Bending by a spin is at most about 3/4 rho (spin size)^2 size / thickness.
-  const double rim_speed = impact_.spin_material.norm() * figures.size;
-  const double spin_stress =
-      0.75 * subject_.material.density * rim_speed * rim_speed * figures.size / subject_.thickness;
-  const bool is_spinning = spin_stress > kSpinThatCounts * subject_.material.strength;
+  const bool is_spinning = spin_stress() > kSpinThatCounts * subject_.material.strength;
   bool is_solved = true;
   if (!is_cracked_ && has_lead_ && presses_.size() == 1 && !is_spinning) {
     displacement_ = presses_.front().force * lead_.displacement;
@@ -219,7 +222,7 @@ bool ImpactForce::solve_together(const geometry::ShellMesh& mesh, Decision& deci
     for (Size i = 0; i < presses_.size(); ++i) load += presses_[i].force * answers_[i].load;
     if (is_spinning)
       load += stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh, impact_.spin_material,
-                                       figures.mass.centre);
+                                       subject_.systems->figures().mass.centre);
     stress::ShellSolution solution;
     is_solved = solve(load, solution, problem);
     displacement_ = std::move(solution.displacement);

@@ -67,6 +67,7 @@ class ImpactForce {
 
  private:
   using System = stress::ShellSystemCache::System;
+  double spin_stress() const;
   std::optional<std::size_t> find_lead() const;
   bool use(const System& system, std::string& problem);
   bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);

@@ -23,6 +23,22 @@ int find_root(std::vector<int>& parent, int i) {
   return i;
 }
 
+/// Combinations of vectors with these `products` that are orthonormal, in columns; zero where what is left of
+/// the square of a vector is below its `least`.
+Mat6 orthonormal_combinations(const Mat6& products, const Vec6& least) {
+  Mat6 combinations = Mat6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    Vec6 direction = Vec6::Unit(i);
+    for (int j = 0; j < i; ++j) {
+      const Vec6 other = combinations.col(j);
+      direction -= other.dot(products * direction) * other;
+    }
+    const double norm = direction.dot(products * direction);
+    if (norm > least[i]) combinations.col(i) = direction / core::sqrt(norm);
+  }
+  return combinations;
+}
+
 }  // namespace
 
 RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>& positions,
@@ -71,7 +87,7 @@ RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>&
     modes_.block<1, 3>(dof, 3) = edge_directions[e].transpose() / part_size_[part];
     dofs[part].push_back(dof);
   }
-  for (Size part = 0; part < parts; ++part) orthonormalise(static_cast<int>(part), dofs[part], is_clamped);
+  for (Size part = 0; part < parts; ++part) orthonormalise(dofs[part], is_clamped);
 }
 
 void RigidModes::find_parts(const geometry::ShellMesh& mesh) {
@@ -100,41 +116,46 @@ void RigidModes::find_parts(const geometry::ShellMesh& mesh) {
   part_mass_.assign(at(count), 0.0);
 }
 
-void RigidModes::orthonormalise(int part, const std::vector<int>& dofs, const std::vector<char>& is_clamped) {
-  static_cast<void>(part);
+void RigidModes::orthonormalise(const std::vector<int>& dofs, const std::vector<char>& is_clamped) {
   Mat6 held = Mat6::Zero();
   for (const int dof : dofs)
     if (is_clamped[at(dof)] != 0) held += modes_.row(dof).transpose() * modes_.row(dof);
-  Mat6 basis = Mat6::Identity();
-  std::array<bool, 6> is_free{true, true, true, true, true, true};
   if (const double scale = held.trace(); scale > 0.0) {
     const Eigen::SelfAdjointEigenSolver<Mat6> eigen(held);
-    basis = eigen.eigenvectors();
-    for (int i = 0; i < 6; ++i) is_free[at(i)] = eigen.eigenvalues()(i) < 1e-9 * scale;
+    Mat6 free = eigen.eigenvectors();
+    for (int i = 0; i < 6; ++i)
+      if (!(eigen.eigenvalues()(i) < 1e-9 * scale)) free.col(i).setZero();
+    combine(dofs, free);
+    for (const int dof : dofs)
+      if (is_clamped[at(dof)] != 0) modes_.row(dof).setZero();
   }
+  // Gram and Schmidt on the six coefficients, and once more on what that gives, for the last digits: what is
+  // then far from a unit was rounding, of a motion that moves nothing.
+  Mat6 products = mass_product(dofs);
+  combine(dofs, orthonormal_combinations(products, 1e-20 * products.diagonal()));
+  products = mass_product(dofs);
+  const Mat6 normal = orthonormal_combinations(products, Vec6::Constant(0.5));
+  combine(dofs, normal);
+  for (int i = 0; i < 6; ++i) mode_count_ += normal.col(i).isZero(0.0) ? 0 : 1;
+}
+
+/// R^T M R over some unknowns.
+Eigen::Matrix<double, 6, 6> RigidModes::mass_product(const std::vector<int>& dofs) const {
+  Mat6 product = Mat6::Zero();
   for (const int dof : dofs) {
-    const Vec6 row = basis.transpose() * modes_.row(dof).transpose();
-    for (int i = 0; i < 6; ++i) modes_(dof, i) = is_free[at(i)] && is_clamped[at(dof)] == 0 ? row(i) : 0.0;
+    if (mass_(dof) == 0.0) continue;
+    const double* const row = &modes_(dof, 0);
+    for (int i = 0; i < 6; ++i) {
+      const double weighted = mass_(dof) * row[i];
+      for (int j = 0; j <= i; ++j) product(i, j) += weighted * row[j];
+    }
   }
-  // Gram and Schmidt in the product with the mass, twice for the last digits.
-  for (int i = 0; i < 6; ++i) {
-    if (!is_free[at(i)]) continue;
-    double before = 0.0;
-    for (const int dof : dofs) before += mass_(dof) * modes_(dof, i) * modes_(dof, i);
-    for (int pass = 0; pass < 2; ++pass)
-      for (int j = 0; j < i; ++j) {
-        if (!is_free[at(j)]) continue;
-        double overlap = 0.0;
-        for (const int dof : dofs) overlap += mass_(dof) * modes_(dof, i) * modes_(dof, j);
-        for (const int dof : dofs) modes_(dof, i) -= overlap * modes_(dof, j);
-      }
-    double norm = 0.0;
-    for (const int dof : dofs) norm += mass_(dof) * modes_(dof, i) * modes_(dof, i);
-    is_free[at(i)] = norm > 1e-20 * before && norm > 0.0;
-    const double factor = is_free[at(i)] ? 1.0 / core::sqrt(norm) : 0.0;
-    for (const int dof : dofs) modes_(dof, i) *= factor;
-    if (is_free[at(i)]) ++mode_count_;
-  }
+  return product.selfadjointView<Eigen::Lower>();
+}
+
+/// Of each unknown the row times `combinations`.
+void RigidModes::combine(const std::vector<int>& dofs, const Mat6& combinations) {
+  for (const int dof : dofs) modes_.row(dof) = (modes_.row(dof) * combinations).eval();
 }
 
 void RigidModes::remove_motion(VecX& x) const {

@@ -39,7 +39,9 @@ class RigidModes {
  private:
   using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
   void find_parts(const geometry::ShellMesh& mesh);
-  void orthonormalise(int part, const std::vector<int>& dofs, const std::vector<char>& is_clamped);
+  void orthonormalise(const std::vector<int>& dofs, const std::vector<char>& is_clamped);
+  Eigen::Matrix<double, 6, 6> mass_product(const std::vector<int>& dofs) const;
+  void combine(const std::vector<int>& dofs, const Eigen::Matrix<double, 6, 6>& combinations);
 
   VecX mass_;
   std::vector<int> part_;  // |dof|, -1 for unknowns without a cell

@@ -12,6 +12,7 @@
 #include "engine/dynamics/step_motion.h"
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
+#include "engine/world/verdict.h"
 #include "engine/world/world.h"
 
 namespace shatterbox::world {
@@ -41,6 +42,7 @@ struct World::State {
 
   MovingState moving;
   body::ImpulseLog log;         // of the last step
+  BorneImpacts borne;           // of the last step
   std::vector<body::Way> ways;  // of the last step
   std::map<body::BodyId, Ancestry> ancestry;
   std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;

@@ -1,5 +1,6 @@
-// World::step: the list of stages. Each is a free function of its floor; here they are only called, timed
-// and, when something broke, called again from the snapshot with the pieces in place of the whole.
+// World::step: the list of stages, for each part of the step. Each is a free function of its floor; here they
+// are only called, timed and, when something broke, called again from the snapshot at the part's beginning
+// with the pieces in place of the whole.
 #include <algorithm>
 #include <cstdio>
 
@@ -10,7 +11,7 @@
 namespace shatterbox::world {
 namespace {
 
-/// Passes of one step: the first, and one more for each generation of breaking that went back.
+/// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
 constexpr int kMostPasses = 12;
 
 std::string format_ratio(const char* word, double ratio) {
@@ -67,7 +68,6 @@ Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::Impul
   for (const body::Body& body : bodies)
     if (body.is_dynamic() && body.is_awake) sum += body.shape->mass * time_step * gravity;
   for (const body::LoggedImpulse& entry : log) {
-    if (entry.kind == body::ImpulseKind::fracture) continue;  // was given before this pass began
     const body::Body* a = body::find_body(bodies, entry.body_a);
     const body::Body* b = body::find_body(bodies, entry.body_b);
     if (a && a->is_dynamic()) sum += entry.impulse_world;
@@ -119,44 +119,57 @@ std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t pr
 
 }  // namespace
 
+dynamics::ContactReport World::move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log) {
+  State& s = *state_;
+  return s.report.stages.time("motion", [&] {
+    return s.settings.contact == ContactScheme::paper
+               ? dynamics::step_paper_motion(s.moving.bodies, s.contact_settings, s.moving.paper_contact, log)
+               : dynamics::move_part(s.moving.bodies, s.contact_settings, part, s.moving.contact, log);
+  });
+}
+
+int World::count_parts() const {
+  const State& s = *state_;
+  return s.settings.contact == ContactScheme::paper
+             ? 1
+             : dynamics::count_parts(s.moving.bodies, s.moving.contact);
+}
+
 void World::step() {
   State& s = *state_;
   core::StageTimer& timer = s.report.stages;
-  const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
   const bool may_break = !s.moving.fragiles.empty();
   if (s.steps == 0) s.report.bodies_start = static_cast<int>(s.moving.bodies.size());
 
   dynamics::ContactReport contact;
-  std::vector<body::Body> before;
-  BorneImpacts borne;
+  s.borne.clear();
   s.log.clear();
-  for (int pass = 0;; ++pass) {
+  dynamics::StepPart part{0, count_parts()};
+  for (int pass = 0; part.number < part.count;) {
     MovingState snapshot;
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
-    before = s.moving.bodies;
-    contact = timer.time("motion", [&] {
-      return s.settings.contact == ContactScheme::paper
-                 ? dynamics::step_paper_motion(s.moving.bodies, s.contact_settings, s.moving.paper_contact,
-                                               s.log)
-                 : dynamics::step_motion(s.moving.bodies, s.contact_settings, s.moving.contact, s.log);
-    });
-    if (!may_break) break;
-
-    EvaluationFigures figures;
-    const auto impacts = timer.time("stress", [&] {
-      return evaluate_stress(s.moving.bodies, s.log, s.moving.fragiles, s.settings, s.contact_settings,
-                             time(), s.moving.memories, borne, figures);
-    });
-    s.report.solver.solves += figures.solves;
-    s.report.solver.skipped += figures.skipped;
-    s.report.solver.factorisations += figures.factorisations;
-    s.report.solver.worst_residual = std::max(s.report.solver.worst_residual, figures.worst_residual);
-    if (!timer.time("fracture", [&] { return break_bodies(impacts, snapshot, end_time, pass); })) break;
+    const std::vector<body::Body> before = s.moving.bodies;
+    body::ImpulseLog log;
+    dynamics::ContactReport moved = move_bodies(part, log);
+    if (may_break) {
+      const auto impacts = judge_impacts(log);
+      if (timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); })) {
+        ++pass;
+        if (part.number == 0) part.count = std::max(part.count, count_parts());
+        continue;
+      }
+    }
+    book_conservation(before, log, s.contact_settings.time_step / part.count);
+    s.log.insert(s.log.end(), log.begin(), log.end());
+    dynamics::add_part(std::move(moved), contact);
+    ++part.number;
+    pass = 0;
   }
-  book_conservation(before);
-  if (s.settings.contact == ContactScheme::standard)
+  if (s.settings.contact == ContactScheme::standard) {
+    dynamics::end_step(s.moving.bodies, s.contact_settings, part.count, contact, s.moving.contact);
     timer.time("sleep",
                [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+  }
   s.ways = std::move(contact.ways);
   book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
   ++s.steps;
@@ -164,9 +177,23 @@ void World::step() {
   s.hash = timer.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
 }
 
-bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, double time,
-                         int pass) {
+std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log) {
   State& s = *state_;
+  EvaluationFigures figures;
+  auto impacts = s.report.stages.time("stress", [&] {
+    return evaluate_stress(s.moving.bodies, log, s.moving.fragiles, s.settings, s.contact_settings, time(),
+                           s.moving.memories, s.borne, figures);
+  });
+  s.report.solver.solves += figures.solves;
+  s.report.solver.skipped += figures.skipped;
+  s.report.solver.factorisations += figures.factorisations;
+  s.report.solver.worst_residual = std::max(s.report.solver.worst_residual, figures.worst_residual);
+  return impacts;
+}
+
+bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, int pass) {
+  State& s = *state_;
+  const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
   std::vector<const EvaluatedImpact*> broken;
   for (const EvaluatedImpact& impact : impacts) {
     const body::Body& body = *body::find_body(s.moving.bodies, impact.id);
@@ -175,12 +202,13 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
       s.element_stress[impact.id] =
           std::make_shared<const std::vector<double>>(impact.decision.element_stress);
     if (impact.decision.verdict.outcome != fracture::Outcome::broke) {
-      if (impact.decision.generations > 0) s.report.impacts.push_back(describe_impact(impact, body, time));
+      if (impact.decision.generations > 0)
+        s.report.impacts.push_back(describe_impact(impact, body, end_time));
       continue;
     }
     // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
     if (impact.first_time > memory.charged_until) memory.generation = 0;
-    ImpactRow row = describe_impact(impact, body, time);
+    ImpactRow row = describe_impact(impact, body, end_time);
     if (memory.generation >= s.settings.most_generations || pass + 1 >= kMostPasses) {
       row.verdict = "held: its impact event has used all its generations of breaking";
       s.report.impacts.push_back(row);
@@ -196,12 +224,11 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     for (const EvaluatedImpact* impact : broken)
       snapshot.memories[impact->id].generation = s.moving.memories[impact->id].generation;
     s.moving = std::move(snapshot);
-    s.log.clear();
   }
   for (const EvaluatedImpact* impact : broken) {
     if (goes_back) pay_for_cracks(s.moving, *impact, impact->decision.fracture_energy, s.log);
-    BreakRow row = replace_body(s.moving, *impact, time, s.ancestry);
-    row.time = time;
+    BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
+    row.time = end_time;
     inherit_stress(row);
     s.report.breaks.push_back(std::move(row));
   }
@@ -217,14 +244,14 @@ void World::inherit_stress(const BreakRow& row) {
   stress.erase(row.id);
 }
 
-void World::book_conservation(const std::vector<body::Body>& before) {
+void World::book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,
+                              double time_step) {
   State& s = *state_;
   ConservationFigures& figures = s.report.conservation;
   ConservationFigures start;
   total_energy(before, s.settings.gravity, start);
   const double energy = total_energy(s.moving.bodies, s.settings.gravity, figures);
-  const Vec3 explained =
-      explained_momentum(s.moving.bodies, s.log, s.settings.gravity, s.contact_settings.time_step);
+  const Vec3 explained = explained_momentum(s.moving.bodies, log, s.settings.gravity, time_step);
   const double error = (figures.momentum - start.momentum - explained).norm();
   figures.momentum_error = std::max(figures.momentum_error, error);
   if (!s.is_disturbed)

@@ -33,9 +33,10 @@ struct BorneImpact {
 };
 using BorneImpacts = std::map<body::BodyId, BorneImpact>;
 
-/// Reads the log of the step that begins at `time` (s); writes event sums to `memories`; returns the impacts
-/// that were evaluated, ascending by body. An impact like one that the body has `borne` in an earlier pass of
-/// the step is not solved again. Bodies are evaluated in parallel; the answer does not depend on it.
+/// Reads the log of a part of the step that begins at `time` (s); writes event sums to `memories`; returns
+/// the impacts that were evaluated, ascending by body. An impact like one that the body has `borne` in an
+/// earlier pass of the step is not solved again. Bodies are evaluated in parallel; the answer does not depend
+/// on it.
 std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
                                              const body::ImpulseLog& log, const Fragiles& fragiles,
                                              const WorldSettings& settings,

@@ -16,6 +16,11 @@
 #include "engine/world/report.h"
 #include "engine/world/settings.h"
 
+namespace shatterbox::dynamics {
+struct ContactReport;
+struct StepPart;
+}  // namespace shatterbox::dynamics
+
 namespace shatterbox::world {
 
 struct EvaluatedImpact;
@@ -87,11 +92,17 @@ class World {
  private:
   struct State;
 
-  /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the step must be taken
+  int count_parts() const;
+  /// Stage "motion", of one part of the step.
+  dynamics::ContactReport move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log);
+  /// Stage "stress", of the impulses of one part.
+  std::vector<EvaluatedImpact> judge_impacts(const body::ImpulseLog& log);
+  /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the part must be taken
   /// again.
-  bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, double time, int pass);
+  bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, int pass);
   void inherit_stress(const BreakRow& row);
-  void book_conservation(const std::vector<body::Body>& before);
+  void book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,
+                         double time_step);
 
   std::unique_ptr<State> state_;
 };
