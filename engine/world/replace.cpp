@@ -214,4 +214,22 @@ long count_overlaps(const BreakRow& row) {
   return geometry::count_crossing_pairs(meshes);
 }
 
+void inherit_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,
+                  const std::vector<body::Body>& bodies, std::vector<body::Way>& ways) {
+  for (const BreakRow& row : breaks) {
+    const auto known = std::lower_bound(ways.begin(), ways.end(), row.id,
+                                        [](const body::Way& way, body::BodyId id) { return way.id < id; });
+    if (known == ways.end() || known->id != row.id) continue;
+    const std::vector<body::Waypoint> points = known->points;
+    const Vec3 parent_origin = body::find_body(before, row.id)->shape->material_from_body;
+    for (const body::BodyId id : row.born) {
+      if (id == row.id) continue;
+      const Vec3 offset = body::find_body(bodies, id)->shape->material_from_body - parent_origin;
+      body::Way way{id, points};
+      for (body::Waypoint& point : way.points) point.pose.translation = point.pose.apply(offset);
+      ways.push_back(std::move(way));
+    }
+  }
+}
+
 }  // namespace shatterbox::world

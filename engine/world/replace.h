@@ -3,6 +3,7 @@
 // and reported.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/world/fragile.h"
@@ -21,5 +22,10 @@ double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double
 /// of the report, time apart.
 BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double time,
                       std::map<body::BodyId, Ancestry>& ancestry);
+
+/// Pieces that are born within a step have gone, before that, where their parents in `before` went: adds
+/// their ways. Pieces have higher ids than all bodies before them.
+void inherit_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,
+                  const std::vector<body::Body>& bodies, std::vector<body::Way>& ways);
 
 }  // namespace shatterbox::world

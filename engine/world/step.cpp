@@ -153,8 +153,10 @@ void World::step() {
     dynamics::ContactReport moved = move_bodies(part, log);
     if (may_break) {
       const auto impacts = judge_impacts(log);
+      const std::size_t known_breaks = s.report.breaks.size();
       if (timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); })) {
         ++pass;
+        inherit_ways(before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies, contact.ways);
         if (part.number == 0) part.count = std::max(part.count, count_parts());
         continue;
       }
