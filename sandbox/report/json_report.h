@@ -1,7 +1,7 @@
 // The report as JSON: field names as sandbox/README.md lists them.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "sandbox/report/run_record.h"

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/options.h"

@@ -1,5 +1,6 @@
 // The report's fields by their names, its statistics, and the OBJ of a frame.
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "engine/geometry/mass_properties.h"

@@ -60,7 +60,7 @@ inline Outcome shell(const Folder& folder, const std::string& command) {
 
 /// Runs the program with these arguments.
 inline Outcome program(const Folder& folder, const std::string& arguments) {
-  return shell(folder, std::string(SHATTERBOX_PROGRAM) + " " + arguments);
+  return shell(folder, std::string(SHATTERBOX_PROGRAM " ") + arguments);
 }
 
 inline nlohmann::json read_json(const fs::path& path) {
