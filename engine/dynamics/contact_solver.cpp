@@ -85,6 +85,7 @@ class IslandSolver {
   }
 
   WorkBody& body(int i) { return work_.bodies[at(i)]; }
+  SolverContact& contact(std::size_t k) { return work_.contacts[at(island_.contacts[k])]; }
 
   void kick() {
     for (const int i : island_.bodies) body(i).velocity += body(i).gravity * (0.5 * step_);
@@ -131,6 +132,8 @@ class IslandSolver {
         moment_b[k] = c.arm_b.cross(axes[k]);
       }
       const double both = a.inverse_mass + b.inverse_mass;
+      const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
+      c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
       for (int k = 0; k < 3; ++k) {
         Vec3 spin_a = Vec3::Zero(), spin_b = Vec3::Zero();
         if (a.inverse_mass > 0.0) spin_a = a.inverse_inertia * moment_a[k];
@@ -283,6 +286,70 @@ class IslandSolver {
     c.left_over = std::abs(c.response(0, 1) * change[1] + c.response(0, 2) * change[2]);
   }
 
+  // Sweeps alone carry a heavy body on light ones only after as many of them as the masses differ. Where
+  // plain ones do not end it, they go on to and fro as nonlinear conjugate gradients: what two sweeps
+  // changed is the negative gradient, and a share of the way so far is gone once more, until the changes
+  // grow.
+  void begin_course() {
+    course_square_ = 0.0;
+    course_.assign(island_.contacts.size(), Vec3::Zero());
+  }
+  void note_impulses() {
+    before_sweep_.resize(island_.contacts.size());
+    for (std::size_t k = 0; k < island_.contacts.size(); ++k) before_sweep_[k] = contact(k).impulse;
+  }
+  static Vec3 within_cone(const SolverContact& c, Vec3 impulse) {
+    impulse[0] = std::max(impulse[0], 0.0);
+    const double bound = c.friction * impulse[0], length = impulse.tail<2>().norm();
+    if (length > bound) impulse.tail<2>() *= bound / length;
+    return impulse;
+  }
+  void go_on_course() {
+    double square = 0.0;
+    for (std::size_t k = 0; k < island_.contacts.size(); ++k)
+      square += (contact(k).impulse - before_sweep_[k]).squaredNorm();
+    const double share = square < course_square_ ? square / course_square_ : 0.0;
+    course_square_ = square;
+    for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
+      SolverContact& c = contact(k);
+      const Vec3 change = c.impulse - before_sweep_[k];
+      const Vec3 extra = within_cone(c, c.impulse + share * course_[k]) - c.impulse;
+      course_[k] = extra + change;
+      if (extra.squaredNorm() > 0.0) apply(c, extra, relative_velocity(c));
+    }
+    forget_seen();
+  }
+
+  // How much closing may be left, as a share of what `visit` measures it by.
+  struct Sweeps {
+    int plain = 1;        // at most, before the course begins
+    double enough = 1.0;  // within the plain ones
+    double loose = 1.0;   // after them
+    double tight = 1.0;   // of an island with strain
+  };
+  template <class Visit>
+  void sweep(const Sweeps& how, const Visit& visit_contact) {
+    const std::size_t count = island_.contacts.size();
+    const int most = how.plain + static_cast<int>(kCourseSize * kCourseSize / (count * count + 1));
+    forget_seen();
+    for (int round = 0; round < most; ++round) {
+      const bool is_on_course = round >= how.plain;
+      if (round == how.plain) begin_course();
+      if (is_on_course) note_impulses();
+      double excess = 0.0;
+      bool has_strain = false;
+      for (std::size_t i = 0; i < (is_on_course ? 2 * count : count); ++i) {
+        const std::size_t k = i < count ? i : 2 * count - 1 - i;
+        SolverContact& c = contact(k);
+        excess = std::max(excess, visit_contact(k, c));
+        has_strain = has_strain || c.impulse[0] > c.strained_from;
+      }
+      const double enough = round + 1 < how.plain ? how.enough : how.loose;
+      if (excess < (has_strain ? how.tight : enough)) return;
+      if (is_on_course && round + 1 < most) go_on_course();
+    }
+  }
+
   double target_before_drift(const SolverContact& c) const {
     // What touches is held where it is; letting it use up the last of its gap would drop and catch it in
     // turn.
@@ -291,22 +358,15 @@ class IslandSolver {
     return std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
   }
 
-  // One sweep is enough at rest; what arrives must not overshoot the gap.
+  // One sweep is mostly enough at rest; what arrives must not overshoot the gap.
   void sweep_before_drift() {
-    const int most = has_arrivals_ ? 16 : 1;
-    forget_seen();
-    for (int sweep = 0; sweep < most; ++sweep) {
-      double excess = 0.0;
-      for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
-        SolverContact& c = work_.contacts[at(island_.contacts[k])];
-        const double tolerance = kTouching * c.kept_gap / step_;
-        if (is_still(k, c, tolerance)) continue;
-        const double found = visit(c, target_before_drift(c));
-        see(k, c);
-        excess = std::max(excess, found / tolerance);
-      }
-      if (excess < 1.0) break;
-    }
+    sweep({has_arrivals_ ? 16 : 1, 1.0, 1e300, kStrainedGap}, [&](std::size_t k, SolverContact& c) {
+      const double tolerance = kTouching * c.kept_gap / step_;
+      if (is_still(k, c, tolerance)) return 0.0;
+      const double found = visit(c, target_before_drift(c));
+      see(k, c);
+      return found / tolerance;
+    });
   }
 
   static bool is_touching(const SolverContact& c) {
@@ -314,17 +374,12 @@ class IslandSolver {
   }
 
   void sweep_after_drift() {
-    forget_seen();
-    for (int sweep = 0; sweep < 8; ++sweep) {
-      double excess = 0.0;
-      for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
-        SolverContact& c = work_.contacts[at(island_.contacts[k])];
-        if (is_still(k, c, kResting * c.threshold) || !is_touching(c)) continue;
-        excess = std::max(excess, visit(c, 0.0) / c.threshold);
-        see(k, c);
-      }
-      if (sweep > 0 && excess < kResting) break;
-    }
+    sweep({8, kResting, kLooseRest, kResting}, [&](std::size_t k, SolverContact& c) {
+      if (is_still(k, c, kResting * c.threshold) || !is_touching(c)) return 0.0;
+      const double found = visit(c, 0.0);
+      see(k, c);
+      return found / c.threshold;
+    });
   }
 
   // Newton's rule with the speed before the impact; the pair's impulses of this substep may not do work in
@@ -401,8 +456,14 @@ class IslandSolver {
     }
   }
 
-  static constexpr double kTouching = 0.05;   // of the kept gap
-  static constexpr double kResting = 1e-3;    // of the threshold: closing that is left at rest
+  static constexpr double kTouching = 0.05;    // of the kept gap
+  static constexpr double kResting = 1e-3;     // of the threshold: closing that is left at rest
+  static constexpr double kLooseRest = 0.1;    // the same, where no contact is strained
+  static constexpr double kStrain = 8.0;       // times the lighter body's weight
+  static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
+  // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
+  // solved to the end, and in large ones no body stands on the few that could not bear it.
+  static constexpr std::size_t kCourseSize = 1200;
   static constexpr double kBounced = 1e-9;    // of the speed: error of a bounce
   static constexpr double kStill = 0.25;      // of what a sweep may leave
   static constexpr double kFastSpin = 0.005;  // rad a substep
@@ -413,7 +474,9 @@ class IslandSolver {
   const double step_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
-  double substep_start_ = 0.0;  // s since the step's start
+  std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island
+  double course_square_ = 0.0;               // N2 s2, of the last change
+  double substep_start_ = 0.0;               // s since the step's start
   bool has_arrivals_ = false;
   bool is_before_drift_ = false;
 };

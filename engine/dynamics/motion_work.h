@@ -74,6 +74,9 @@ struct SolverContact {
   Mat3 response = Mat3::Zero();  // relative velocity by impulse, in (normal, tangents), 1/kg
   Vec3 weights = Vec3::Zero();   // 1 / diagonal of it, kg
   double slack = 0.0;            // m: gap less kept gap
+  // N s along the normal in a substep: many times what the lighter body weighs. What is left at such a
+  // contact is felt far away.
+  double strained_from = 0.0;
 
   Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
   Vec3 warm = Vec3::Zero();     // to start the next substep from, in the same axes

@@ -213,6 +213,41 @@ TEST_CASE("a stack of five boxes stands, and the ground carries its weight") {
   CHECK(scene.bodies[1].pose.translation.y() == Approx(half).margin(2e-3));
 }
 
+TEST_CASE("light boxes carry one of a hundred or a thousand times their mass") {
+  struct Tower {
+    int light;
+    double ratio;
+  };
+  for (const Tower& tower : {Tower{1, 1000.0}, Tower{4, 100.0}}) {
+    INFO(tower.light << " light boxes, " << tower.ratio << " times the mass on top");
+    auto scene = ground_scene();
+    scene.settings.has_sleep = false;
+    const double half = 0.1;
+    for (int k = 0; k <= tower.light; ++k)
+      scene.add(test::make_box(Vec3::Constant(half), Vec3(0, half + 2 * half * k, 0), true,
+                               k < tower.light ? 1000.0 : 1000.0 * tower.ratio));
+    double weight = 0.0, carried = 0.0;
+    int cut = 0;
+    for (const auto& b : scene.bodies)
+      if (b.is_dynamic()) weight += b.shape->mass * 9.81;
+    for (int i = 0; i < 480; ++i) {
+      scene.step();
+      if (i >= 240) cut += scene.report.failsafe_steps;
+      for (const auto& entry : scene.log)
+        if (i >= 240 && (entry.body_a == 1 || entry.body_b == 1))
+          carried += std::abs(entry.impulse_world.y());
+    }
+    CHECK(cut == 0);
+    CHECK(carried == Approx(weight).epsilon(1e-3));
+    for (int k = 0; k <= tower.light; ++k) {
+      const Vec3 place = scene.bodies[static_cast<std::size_t>(k) + 1].pose.translation;
+      INFO("box " << k << " at " << place.transpose());
+      CHECK(std::abs(place.x()) + std::abs(place.z()) < 1e-3);
+      CHECK(place.y() == Approx(half + 2 * half * k).margin(2e-3));
+    }
+  }
+}
+
 TEST_CASE("fast spheres and boxes do not pass each other") {
   for (const double speed : {10.0, 100.0, 500.0}) {
     test::Scene scene;
