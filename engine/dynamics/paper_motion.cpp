@@ -82,9 +82,8 @@ Pose free_end(const Body& body, const PrincipalInertia& inertia, const ContactSe
 /// vertex of the rigid end state stays below a plane.
 class PlaneImpulses {
  public:
-  PlaneImpulses(const ContactSettings& settings, std::vector<Body>& bodies, const PaperContactState& state,
-                body::ImpulseLog& log)
-      : settings_(settings), bodies_(bodies), state_(state), log_(log) {}
+  PlaneImpulses(const ContactSettings& settings, std::vector<Body>& bodies, body::ImpulseLog& log)
+      : settings_(settings), bodies_(bodies), log_(log) {}
 
   void apply(Body& body, const DriftingSurface& surface) {
     if (!body.is_dynamic()) return;
@@ -156,7 +155,6 @@ class PlaneImpulses {
 
   const ContactSettings& settings_;
   std::vector<Body>& bodies_;
-  const PaperContactState& state_;
   body::ImpulseLog& log_;
 };
 
@@ -261,7 +259,7 @@ void add_to_hash(const PaperContactState& state, core::Hash& hash) {
 ContactReport step_paper_motion(std::vector<Body>& bodies, const ContactSettings& settings,
                                 PaperContactState& state, body::ImpulseLog& log) {
   match_bodies(bodies, state);
-  PlaneImpulses planes(settings, bodies, state, log);
+  PlaneImpulses planes(settings, bodies, log);
   std::vector<SoupBody> soup(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const DriftingSurface& surface = state.surfaces[i];
