@@ -67,6 +67,9 @@ class IslandSolver {
     }
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
+      const WorkBody &a = body(c.a), &b = body(c.b);
+      const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
+      c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
       c.warm = c.warm_start;
       c.arrival_speed = c.arrival_before;
       c.total.setZero();
@@ -132,8 +135,6 @@ class IslandSolver {
         moment_b[k] = c.arm_b.cross(axes[k]);
       }
       const double both = a.inverse_mass + b.inverse_mass;
-      const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
-      c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
       for (int k = 0; k < 3; ++k) {
         Vec3 spin_a = Vec3::Zero(), spin_b = Vec3::Zero();
         if (a.inverse_mass > 0.0) spin_a = a.inverse_inertia * moment_a[k];
