@@ -203,6 +203,8 @@ std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
     body::Way way;
     way.id = work.ids[i];
     const int pieces = w.straight_parts, last = part.number + 1 < part.count ? pieces : pieces - 1;
+    // Who was woken, or born of what is held, in the midst of the step stood still until then.
+    if (part.number > 0) way.points.push_back({static_cast<double>(part.number) / part.count, w.start});
     for (int k = 1; k <= last; ++k) {
       const double time = (part.number + static_cast<double>(k) / pieces) / part.count;
       way.points.push_back({time, pose_on_way(w, static_cast<double>(k) / pieces)});
@@ -280,10 +282,13 @@ void add_part(ContactReport&& part, ContactReport& step) {
     const auto place =
         std::lower_bound(step.ways.begin(), step.ways.end(), way.id,
                          [](const body::Way& known, body::BodyId id) { return known.id < id; });
-    if (place == step.ways.end() || place->id != way.id)
+    if (place == step.ways.end() || place->id != way.id) {
       step.ways.insert(place, std::move(way));
-    else
-      place->points.insert(place->points.end(), way.points.begin(), way.points.end());
+    } else {
+      auto first = way.points.begin();  // the last part ended where this one begins
+      if (first != way.points.end() && first->time <= place->points.back().time) ++first;
+      place->points.insert(place->points.end(), first, way.points.end());
+    }
   }
   step.residual = std::max(step.residual, part.residual);
   step.drift = std::max(step.drift, part.drift);

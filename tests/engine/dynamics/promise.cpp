@@ -101,4 +101,33 @@ TEST_CASE("a plate that turns several radians a step meets what is in its way") 
   CHECK(scene.bodies[0].angular_velocity.z() < 700.0);
 }
 
+TEST_CASE("who is woken in the midst of a step has stood still until then") {
+  test::Scene scene;
+  scene.settings.has_ways = true;
+  scene.settings.gravity.setZero();
+  scene.add(test::make_shell(test::square_mesh(0.05, 1))).is_awake = false;
+  scene.add(test::make_shell(test::square_mesh(0.05, 1))).velocity = Vec3(0, 1, 0);
+  scene.bodies[1].pose.translation.x() = 1.0;
+  dynamics::ContactReport step;
+  for (int k = 0; k < 4; ++k) {
+    if (k == 2) {
+      scene.bodies[0].is_awake = true;
+      scene.bodies[0].velocity = Vec3(0, 2, 0);
+    }
+    dynamics::add_part(dynamics::move_part(scene.bodies, scene.settings, {k, 4}, scene.state, scene.log),
+                       step);
+  }
+  REQUIRE(step.ways.size() == 2);
+  const auto check_way = [&](std::size_t i, const std::vector<double>& times, double speed, double from) {
+    REQUIRE(step.ways[i].points.size() == times.size());
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const auto& point = step.ways[i].points[k];
+      CHECK(point.time == times[k]);
+      CHECK(point.pose.translation.y() == Approx(speed * (point.time - from) / 240.0).margin(1e-15));
+    }
+  };
+  check_way(0, {0.5, 0.75}, 2.0, 0.5);
+  check_way(1, {0.25, 0.5, 0.75}, 1.0, 0.0);
+}
+
 }  // namespace shatterbox
