@@ -28,10 +28,10 @@ namespace {
 struct Level {
   int samples_across;  // a pixel has as many down
   int shadow_map, shadow_taps;
-  int occlusion_taps, occlusion_scale;
+  int occlusion_taps;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 14, 9, 3} : Level{1, 512, 5, 6, 4};
+  return quality == Quality::full ? Level{2, 1024, 14, 9} : Level{1, 512, 5, 6};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
@@ -106,8 +106,8 @@ struct Renderer::Rooms {
         floor(size.width, size.height),
         shadow(level.shadow_map),
         surface(size.width, size.height, level.samples_across),
-        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
-        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale),
+        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across),
+        light(size.width, size.height, level.shadow_taps, level.samples_across, pass::OcclusionPass::kScale),
         glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
@@ -134,7 +134,7 @@ struct Renderer::Rooms {
     surface.run(meshes);
     if (tiles.glass().count > 0) surface.run_glass(meshes);
     clock.mark("surface");
-    occlusion.run(surface.opaque().depth);
+    occlusion.run(surface.opaque(), tiles);
     clock.mark("occlusion");
     shadow.bind();
     occlusion.bind();

@@ -26,12 +26,14 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
   float n_dot_v = clamp(abs(dot(s.normal, v)), 0.05, 1.0);
   vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
-  float once = schlick(0.06, n_dot_v);  // a little more than glass: few surroundings are bright
+  float once = schlick(0.04, n_dot_v);
   float mirror = 2.0 * once / (1.0 + once);  // both faces
-  vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 3.2 * room_windows(r));
+  vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 2.4 * room_windows(r));
+  // A pane is flat: it shows one small part of a lamp, all over. Pressed, so that it stays a film over what is behind.
+  light /= 1.0 + 0.5 * max(light.r, max(light.g, light.b));
   vec3 h = normalize(sun.xyz + v);
   float n_dot_l = max(dot(s.normal, sun.xyz), 0.0);
-  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(s.normal, h), 0.0), max(s.roughness, 0.12)) * 0.04;
+  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(s.normal, h), 0.0), max(s.roughness, 0.12)) * 0.008;
   vec3 haze = s.colour * ambient(s.normal) * (0.04 + (1.0 - s.transmission));
   add += weight * (mirror * light + glance + haze);
   // The way through is longer at a slant; as an exponent of the tint that is 1 to 4, by squaring.
@@ -44,7 +46,7 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
 void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
   vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
-  vec3 gathered = ambient(s.normal) * 0.7 + sun_radiance.rgb * (0.04 + 0.5 * dot(s.normal, sun.xyz) * dot(s.normal, sun.xyz));
+  vec3 gathered = ambient(s.normal) * 0.6 + sun_radiance.rgb * (0.04 + 0.5 * dot(s.normal, sun.xyz) * dot(s.normal, sun.xyz));
   bool is_crack = s.roughness > 0.1;
   vec3 light = s.colour * (is_crack ? vec3(1.0) : vec3(0.18, 0.42, 0.33)) * gathered + 0.1 * surroundings(r, 0.15);
   float through = is_crack ? 0.3 : 0.45;

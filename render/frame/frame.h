@@ -50,16 +50,20 @@ struct Lights {
 struct Ground {
   float height = 0.0F;  // m
   glm::vec3 colour{0.34F, 0.335F, 0.33F};
-  float fade_from = 0.0F, fade_to = 0.0F;  // m from the camera's target; both 0: chosen from the distance
-  float checker = 0.0F;                    // m a square; 0: plain
+  // Where it fades, m along the ground from the eye, into the picture; both 0: from the target to the
+  // horizon.
+  float fade_from = 0.0F, fade_to = 0.0F;
+  float checker = 0.0F;  // m a square; 0: plain
 };
 
-// Shown linear behind everything: a vertical gradient with a soft glow in the middle.
+// Shown linear behind everything: a vertical gradient with a soft glow in the middle, or a studio's sweep:
+// the floor curved up into a wall that the light reaches less and less.
 struct Backdrop {
   glm::vec3 top{0.085F, 0.105F, 0.135F};
   glm::vec3 bottom{0.40F, 0.41F, 0.43F};
   float glow = 0.3F;       // brighter behind the target
   float vignette = 0.25F;  // darker towards the corners; 0: exactly the gradient
+  float sweep = 0.0F;      // 0..1: how much of the gradient is the ground's own colour instead
 };
 
 enum class OverlayKind : std::uint8_t { none, stress, pieces };

@@ -22,9 +22,9 @@ Look ornament(glm::vec3 paint) {
   look.outside = paint;
   look.metalness = 0.55F;
   look.roughness = 0.32F;
-  look.inside = {0.82F, 0.83F, 0.84F};
+  look.inside = {0.90F, 0.89F, 0.86F};  // silver
   look.inside_metalness = 1.0F;
-  look.inside_roughness = 0.16F;
+  look.inside_roughness = 0.1F;
   look.crack = {0.93F, 0.95F, 0.94F};
   look.crack_roughness = 0.25F;
   look.clear_coat = 1.0F;

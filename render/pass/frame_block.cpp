@@ -7,20 +7,26 @@
 namespace shatterbox::render::pass {
 namespace {
 
+// The floor begins to fade a little beyond the target, as a multiple of its distance, and is gone so many
+// times as far.
+constexpr float kFadeFrom = 1.1F, kFarthest = 100.0F;
+// A sweep's light, as a share of the floor's: at its foot and at the picture's top.
+constexpr float kSweepFoot = 0.75F, kSweepTop = 0.3F;
+
 glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
   const float length = glm::length(v);
   return length > 0.0F && std::isfinite(length) ? v / length : otherwise;
 }
 
-// The rig of a product shot, turned with the sun: a large box on the sun's side, a tall one behind on the
-// other.
+// The rig of a product shot, turned with the sun: a large box high up on the sun's side, so that what lies on
+// the floor mirrors it only where it is tilted, and a tall one on the other side.
 void place_soft_boxes(glm::vec3 sun, FrameBlock& block) {
   const glm::vec3 flat = unit_or({sun.x, 0.0F, sun.z}, {1.0F, 0.0F, 0.0F});
   const glm::vec3 side = glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), flat);
-  const glm::vec3 axes[2] = {unit_or(0.75F * flat + 0.75F * side + glm::vec3(0.0F, 0.95F, 0.0F), sun),
+  const glm::vec3 axes[2] = {unit_or(0.45F * flat + 0.6F * side + glm::vec3(0.0F, 1.25F, 0.0F), sun),
                              unit_or(-0.9F * flat - 0.75F * side + glm::vec3(0.0F, 0.3F, 0.0F), sun)};
-  const glm::vec2 halves[2] = {{0.36F, 0.42F}, {0.16F, 0.75F}};
-  const float strengths[2] = {4.2F, 2.2F};
+  const glm::vec2 halves[2] = {{0.34F, 0.40F}, {0.13F, 0.7F}};
+  const float strengths[2] = {3.0F, 1.8F};
   for (int i = 0; i < 2; ++i) {
     const glm::vec3 right = unit_or(glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), axes[i]), {1.0F, 0.0F, 0.0F});
     block.box_axis[i] = glm::vec4(axes[i], strengths[i]);
@@ -41,6 +47,25 @@ void light_floor(FrameBlock& block) {
   block.floor_sky = glm::vec4(colour * around, 0.0F);
 }
 
+// Where the floor fades, and what into. level_way: the way into the picture, of any length above 0.
+void fade_floor(const Frame& frame, glm::vec2 level_way, FrameBlock& block) {
+  const Ground& ground = *frame.ground;
+  const glm::vec3 eye = frame.camera.position, target = frame.camera.target;
+  const glm::vec2 way = glm::normalize(level_way);
+  const bool is_chosen = ground.fade_to <= 0.0F;
+  const float to_target = std::max(glm::dot(glm::vec2(target.x - eye.x, target.z - eye.z), way),
+                                   0.3F * std::abs(eye.y - ground.height));
+  const float from = std::max(is_chosen ? kFadeFrom * to_target : ground.fade_from, 1e-6F);
+  const float to = is_chosen ? kFarthest * from : std::max(ground.fade_to, 1.001F * from);
+  block.ground_place = glm::vec4(ground.height, from, to, 1.0F);
+  block.ground_way = glm::vec4(way, 1.0F / from, 1.0F / (1.0F / from - 1.0F / to));
+  const glm::vec3 lit(block.floor_sun + block.floor_sky);
+  const float sweep = frame.backdrop.sweep;
+  block.backdrop_bottom =
+      glm::vec4(glm::mix(frame.backdrop.bottom, kSweepFoot * lit, sweep), block.backdrop_bottom.w);
+  block.backdrop_top = glm::vec4(glm::mix(frame.backdrop.top, kSweepTop * lit, sweep), block.backdrop_top.w);
+}
+
 }  // namespace
 
 FrameBlock make_frame_block(const Frame& frame, int width, int height) {
@@ -53,14 +78,8 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   if (std::abs(glm::dot(up, forward)) > 0.999F) up = {0.0F, 0.0F, -1.0F};
   const float slope = std::tan(0.5F * glm::radians(std::clamp(camera.vertical_fov, 1.0F, 150.0F)));
 
-  float fade_from = 0.0F, fade_to = 0.0F;
-  if (frame.ground) {
-    const bool is_chosen = frame.ground->fade_to <= 0.0F;
-    fade_from = is_chosen ? 0.8F * distance : frame.ground->fade_from;
-    fade_to = is_chosen ? 3.2F * distance : std::max(frame.ground->fade_to, fade_from + 1e-6F);
-  }
   const float near = 0.02F * distance;
-  const float far = 4.0F * distance + 2.0F * fade_to + 10.0F * distance;
+  const float far = 20.0F * distance + 2.0F * (frame.ground ? frame.ground->fade_to : 0.0F);
   const glm::mat4 view_from_world = glm::lookAt(camera.position, camera.position + forward, up);
   block.clip_from_world = glm::perspective(2.0F * std::atan(slope), w / h, near, far) * view_from_world;
 
@@ -84,12 +103,15 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   if (frame.ground) {
     block.ground_colour = glm::vec4(frame.ground->colour, frame.ground->checker);
     light_floor(block);
-    block.ground_place = glm::vec4(frame.ground->height, fade_from, fade_to, 1.0F);
+    // Forward, or up where the camera looks down, freed of what is not level.
+    const glm::vec3 level =
+        forward + glm::cross(glm::normalize(glm::cross(forward, up)), forward) * -forward.y;
+    fade_floor(frame, {level.x, level.z}, block);
   }
   block.viewport = glm::vec4(w, h, 1.0F / w, 1.0F / h);
   block.glow_centre = glm::vec4(0.5F * w, 0.58F * h, 1.0F / (0.62F * h), 0.0F);
-  // A neighbourhood of about a third of what the camera sees at its target.
-  const float reach = 0.62F * slope * distance;
+  // A neighbourhood of about a sixth of what the camera sees at its target.
+  const float reach = 0.32F * slope * distance;
   block.occlusion_scale = glm::vec4(near, far * near / (far - near), far / (far - near), reach);
   block.view_ray = glm::vec4(slope * w / h, slope, 0.0F, 0.0F);
   const glm::vec3 right = glm::normalize(glm::cross(forward, up));

@@ -15,7 +15,7 @@ struct FrameBlock {
   glm::vec4 box_axis[2], box_right[2], box_up[2];
   glm::vec4 backdrop_top, backdrop_bottom;
   glm::vec4 floor_sun, floor_sky;
-  glm::vec4 ground_colour, ground_place;
+  glm::vec4 ground_colour, ground_place, ground_way;
   glm::vec4 viewport, glow_centre;
   glm::vec4 occlusion_scale, view_ray;
   glm::vec4 view_forward, view_right, view_up;

@@ -1,22 +1,27 @@
-// Ambient occlusion at a half or a quarter of the size: depth of bodies and floor, spiral samples, blur
-// (shaders/occlusion*).
+// Ambient occlusion of bodies and floor at every second pixel, where bodies are near
+// (shaders/occlusion.frag).
 #pragma once
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
 #include "render/gpu/texture.h"
+#include "render/pass/surface.h"
+#include "render/pass/tiles.h"
 
 namespace shatterbox::render::pass {
 
 class OcclusionPass {
  public:
-  OcclusionPass(int width, int height, int taps, int samples_across, int scale);  // of the whole picture
-  void run(const gpu::Texture& opaque_depth) const;
-  void bind() const;  // texture units 3 and 9
+  static constexpr int kScale = 2;  // pixels of the picture to one of its own, across and down
+
+  OcclusionPass(int width, int height, int taps, int samples_across);
+  // Block and tiles must be bound.
+  void run(const Layer& opaque, const Tiles& tiles) const;
+  void bind() const;  // binds the shares for the light pass, and their least by tile
 
  private:
-  gpu::Texture depth_, raw_, blurred_, tiles_;
-  gpu::Framebuffer depth_target_, raw_target_, blurred_target_, tiles_target_;
-  gpu::Program gather_, sample_, blur_, reduce_;
+  gpu::Texture raw_, blurred_, tiles_;
+  gpu::Framebuffer raw_target_, blurred_target_, tiles_target_;
+  gpu::Program sample_, blur_, reduce_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -29,10 +29,10 @@ glm::mat3 sun_from_world(glm::vec3 sun) {
   return glm::transpose(glm::mat3(right, glm::cross(sun, right), -sun));
 }
 
-// Only shadows that can be seen matter: the view's cone, as far as the ground reaches, in the sun's frame.
-Box find_seen(const Frame& frame, const FrameBlock& block, const glm::mat3& sun_frame) {
-  const float far =
-      frame.ground ? block.target_distance.w + block.ground_place.z : 4.0F * block.target_distance.w;
+// Only shadows that can be seen matter: the view's cone, to where the ground is mostly faded, in the sun's
+// frame.
+Box find_seen(const FrameBlock& block, const glm::mat3& sun_frame) {
+  const float far = 4.2F * block.target_distance.w;
   const glm::mat4 world_from_clip = glm::inverse(block.clip_from_world);
   Box box;
   const glm::vec3 eye(block.eye_exposure);
@@ -73,7 +73,7 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   for (const Item& item : meshes.items()) {
     if (item.casts_shadow) casters.add(sun_frame * item.centre_world, item.radius);
   }
-  const Box seen = find_seen(frame, block, sun_frame);
+  const Box seen = find_seen(block, sun_frame);
   const glm::vec2 least = glm::max(glm::vec2(casters.least), glm::vec2(seen.least));
   const glm::vec2 most = glm::min(glm::vec2(casters.most), glm::vec2(seen.most));
   const bool is_needed =

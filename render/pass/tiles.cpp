@@ -14,7 +14,8 @@ constexpr char kPlain = 0, kOccluded = 1, kShaded = 2, kBody = 3;  // each needs
 constexpr char kFlat = 0, kFading = 1, kBackdrop = 2;              // ground: whole, partly faded, gone
 
 // Beyond so many radii a body hides too little of the sky to see.
-constexpr float kOcclusionRadii = 6.0F;
+constexpr float kOcclusionRadii = 3.5F;
+constexpr float kOcclusionPixels = 8.0F;  // and, however far, samples and blur reach so far
 
 // Along the sun onto the floor; what lies below it stays.
 glm::vec3 shadow_of(glm::vec3 p, const FrameBlock& block) {
@@ -81,10 +82,28 @@ Tiles::Range Tiles::append_runs(IsWanted is_wanted, int longest) {
   return range;
 }
 
+// The floor within `reach` of a body's box; none if it floats higher.
+std::optional<Tiles::Corners> Tiles::find_occluded_floor(const Corners& body, float reach,
+                                                         const FrameBlock& block) {
+  glm::vec3 least = body.at[0], most = least;
+  for (const glm::vec3& corner : body.at) {
+    least = glm::min(least, corner);
+    most = glm::max(most, corner);
+  }
+  const float height = block.ground_place.x;
+  if (block.ground_place.w == 0.0F || least.y > height + reach || most.y < height) return std::nullopt;
+  Corners floor;
+  for (int i = 0; i < 8; ++i) {
+    floor.at[i] = {(i & 1) ? most.x + reach : least.x - reach, height,
+                   (i & 2) ? most.z + reach : least.z - reach};
+  }
+  return floor;
+}
+
 void Tiles::mark_bodies(const MeshStore& meshes, const FrameBlock& block) {
   marks_.assign(static_cast<std::size_t>(across_ * down_), kPlain);
+  near_marks_.assign(marks_.size(), kPlain);
   glass_marks_.assign(marks_.size(), kPlain);
-  const float pixels_a_slope = 0.5F * static_cast<float>(height_) / block.view_ray.y;
   for (const Item& item : meshes.items()) {
     const DrawnMesh& shape = item.stored->shape;
     Corners body, shadow;
@@ -100,33 +119,35 @@ void Tiles::mark_bodies(const MeshStore& meshes, const FrameBlock& block) {
     if (item.is_glass) {
       mark(body, block, 1.0F, kBody, glass_marks_);
     } else {
-      const float nearest = std::max(item.eye_distance - item.radius, block.occlusion_scale.x);
       const float reach = std::min(block.occlusion_scale.w, kOcclusionRadii * item.radius);
-      mark(body, block, 4.0F + reach / nearest * pixels_a_slope, kOccluded, marks_);
+      if (const std::optional<Corners> floor = find_occluded_floor(body, reach, block)) {
+        mark(*floor, block, kOcclusionPixels, kOccluded, marks_);
+        mark(*floor, block, kOcclusionPixels, kOccluded, near_marks_);
+      }
       mark(body, block, 1.0F, kBody, marks_);
+      mark(body, block, 1.0F, kBody, near_marks_);
     }
   }
 }
 
-// By the corners: the ground within a tile lies no farther from the target than the farthest of them, and
-// hardly nearer than the nearest.
+// By the corners: the ground within a tile lies no farther into the picture than the farthest of them, and no
+// nearer than the nearest.
 void Tiles::mark_ground(const FrameBlock& block) {
   const auto stride = static_cast<std::size_t>(across_) + 1;
   corner_marks_.assign(stride * (static_cast<std::size_t>(down_) + 1), kBackdrop);
   ground_marks_.assign(marks_.size(), kBackdrop);
   if (block.ground_place.w == 0.0F) return;
-  const glm::vec3 eye(block.eye_exposure), target(block.target_distance);
-  const float drop = block.ground_place.x - eye.y;
+  const glm::vec2 way(block.ground_way);
+  const float drop = block.ground_place.x - block.eye_exposure.y;
   for (std::size_t i = 0; i < corner_marks_.size(); ++i) {
     const float x = static_cast<float>(i % stride * kSide) * block.viewport.z * 2.0F - 1.0F;
     const float y = static_cast<float>(i / stride * kSide) * block.viewport.w * 2.0F - 1.0F;
     const glm::vec3 ray =
         glm::vec3(block.view_forward) + x * glm::vec3(block.view_right) + y * glm::vec3(block.view_up);
     if (ray.y * drop <= 0.0F) continue;
-    const glm::vec3 p = eye + ray * (drop / ray.y);
-    const float away = glm::length(glm::vec2(p.x - target.x, p.z - target.z));
-    corner_marks_[i] = away <= block.ground_place.y           ? kFlat
-                       : away <= 1.02F * block.ground_place.z ? kFading
+    const float into = glm::dot(glm::vec2(ray.x, ray.z), way) * (drop / ray.y);
+    corner_marks_[i] = into <= block.ground_place.y           ? kFlat
+                       : into <= 1.02F * block.ground_place.z ? kFading
                                                               : kBackdrop;
   }
   for (std::size_t i = 0; i < ground_marks_.size(); ++i) {
@@ -144,6 +165,7 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
   rectangles_.clear();
   bodies_ = append_runs([&](std::size_t i) { return marks_[i] == kBody; }, across_);
   glass_ = append_runs([&](std::size_t i) { return glass_marks_[i] == kBody; }, across_);
+  near_bodies_ = append_runs([&](std::size_t i) { return near_marks_[i] != kPlain; }, across_);
   backdrop_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kBackdrop; }, 1);
   uneven_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kFading; }, 1);
   const auto is_floor = [&](std::size_t i) { return ground_marks_[i] != kBackdrop; };

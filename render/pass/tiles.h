@@ -2,6 +2,7 @@
 // or its occlusion may touch, found on the CPU so that the costly shaders run only there; and where the empty
 // floor is even.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "render/gpu/buffer.h"
@@ -30,7 +31,9 @@ class Tiles {
   // Floor, where it is not faded away, by what may darken it: shadows and occlusion, or occlusion alone.
   Range shaded() const { return shaded_; }
   Range occluded() const { return occluded_; }  // squares
-  // The same two together in squares, behind bodies or not, even or not.
+  // Where bodies are, and what floor is so near that they occlude it.
+  Range near_bodies() const { return near_bodies_; }
+  // Shaded and occluded floor together in squares, behind bodies or not, even or not.
   struct Floor {
     Range smooth, uneven;
   };
@@ -44,16 +47,18 @@ class Tiles {
   };
   void mark(const Corners& corners, const FrameBlock& block, float margin_pixels, char kind,
             Marks& marks) const;
+  static std::optional<Corners> find_occluded_floor(const Corners& body, float reach,
+                                                    const FrameBlock& block);
   void mark_bodies(const MeshStore& meshes, const FrameBlock& block);
   void mark_ground(const FrameBlock& block);
   template <typename IsWanted>
   Range append_runs(IsWanted is_wanted, int longest);
 
   int width_, height_, across_, down_;
-  Marks marks_, glass_marks_, ground_marks_, corner_marks_;  // the last: one a corner of tiles
+  Marks marks_, near_marks_, glass_marks_, ground_marks_, corner_marks_;  // the last: one a corner of tiles
   std::vector<glm::uvec4> rectangles_;
   gpu::Buffer buffer_;
-  Range bodies_, glass_, backdrop_, uneven_, shaded_, occluded_;
+  Range bodies_, glass_, backdrop_, uneven_, shaded_, occluded_, near_bodies_;
   Floor behind_bodies_, open_floor_;
 };
 

@@ -92,7 +92,9 @@ std::optional<render::Ground> make_ground(const std::string& name, double height
 
 render::Backdrop make_backdrop(const std::string& name) {
   render::Backdrop backdrop;
+  if (name == "studio") backdrop.sweep = 0.8F;
   if (name == "dark") {
+    backdrop.sweep = 0.5F;
     backdrop.top = hex(0x1d2126);
     backdrop.bottom = hex(0x3b4046);
   } else if (name == "sky") {

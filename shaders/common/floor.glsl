@@ -1,4 +1,5 @@
-// What is behind the bodies: a matt floor that fades into the backdrop.
+// What is behind the bodies: a matt floor that fades into the backdrop, level and evenly over the picture's height: along
+// one over the distance.
 #include "common/frame.glsl"
 #include "common/tone.glsl"
 
@@ -16,9 +17,10 @@ float floor_depth(vec3 ray) {
 
 float floor_faded(vec3 ray) {
   float drop = ground_place.x - eye_exposure.y;
-  vec2 p = eye_exposure.xz - target_distance.xz + ray.xz * (drop / ray.y);
+  float into = dot(ray.xz, ground_way.xy);
   bool is_hit = ground_place.w * ray.y * drop > 0.0;
-  float t = is_hit ? clamp((length(p) - ground_place.y) / (ground_place.z - ground_place.y), 0.0, 1.0) : 1.0;
+  float nearness = into > 0.0 ? ray.y / (drop * into) : ground_way.z;  // one over the metres from the eye
+  float t = is_hit ? clamp((ground_way.z - nearness) * ground_way.w, 0.0, 1.0) : 1.0;
   return t * t * (3.0 - 2.0 * t);
 }
 

@@ -1,11 +1,11 @@
 // Sun, sky, soft boxes: analytic, world space, linear. Reflection is GGX; [KarisUE4]'s fit stands for its integral.
 #include "common/frame.glsl"
 
-// Radiance of the surroundings from direction d, blurred as a surface of that roughness sees it.
+// Radiance of the surroundings from direction d, blurred as a surface of that roughness sees it: a studio, whose walls are
+// dark and whose ceiling is bright. Metal is known by such contrasts, and looks like paper where all around is alike.
 vec3 surroundings(vec3 d, float roughness) {
   float soft = 0.05 + 0.9 * roughness;
-  float up = clamp(d.y, 0.0, 1.0);
-  vec3 sky = sky_radiance.rgb * mix(1.15, 0.62, sqrt(up));
+  vec3 sky = sky_radiance.rgb * mix(0.16, 0.95, smoothstep(0.1 - soft, 0.85 + soft, d.y));
   vec3 light = mix(ground_radiance.rgb, sky, smoothstep(-soft, soft, d.y));
   float edge = 0.05 + 1.4 * roughness * roughness + 0.25 * roughness;
   for (int i = 0; i < 2; ++i) {
@@ -14,7 +14,9 @@ vec3 surroundings(vec3 d, float roughness) {
     vec2 half_size = vec2(box_right[i].w, box_up[i].w);
     vec2 inside = 1.0 - smoothstep(half_size - edge * 0.5, half_size + edge, p);
     float thinned = half_size.x * half_size.y / ((half_size.x + 0.3 * edge) * (half_size.y + 0.3 * edge));
-    light += sky_radiance.w * box_axis[i].w * thinned * inside.x * inside.y * step(0.0, towards);
+    vec2 q = p / (half_size + edge);
+    float paler = 1.0 - 0.45 * min(dot(q, q), 1.6);  // towards its rim
+    light += sky_radiance.w * box_axis[i].w * thinned * paler * inside.x * inside.y * step(0.0, towards);
   }
   return light;
 }

@@ -155,7 +155,7 @@ TEST_CASE("a frame drawn alone equals the same frame in a sequence") {
   }
 }
 
-TEST_CASE("the floor fades into the backdrop with the distance from the target") {
+TEST_CASE("the floor fades into the backdrop evenly in one over the distance into the picture") {
   for (const float height : {0.15F, 1.0F, 6.0F}) {
     Frame frame;
     frame.camera.position = {0.5F, height, 5.0F};
@@ -163,8 +163,9 @@ TEST_CASE("the floor fades into the backdrop with the distance from the target")
     frame.camera.vertical_fov = 40.0F;
     frame.backdrop = {glm::vec3(0.5F), glm::vec3(0.5F), 0.0F, 0.0F};
     frame.ground->colour = glm::vec3(0.0F);
-    frame.ground->fade_from = 2.0F;
-    frame.ground->fade_to = 7.0F;
+    frame.ground->fade_from = 3.0F;
+    frame.ground->fade_to = 20.0F;
+    const glm::vec2 way = glm::normalize(glm::vec2(-0.5F, -5.0F));  // level, from the eye to the target
     const glm::mat4 world_from_clip =
         glm::inverse(glm::perspective(glm::radians(40.0F), 320.0F / 180.0F, 0.1F, 100.0F) *
                      glm::lookAt(frame.camera.position, frame.camera.target, frame.camera.up));
@@ -178,13 +179,57 @@ TEST_CASE("the floor fades into the backdrop with the distance from the target")
                                         1.0F - (static_cast<float>(y) + 0.5F) / 90.0F, 1.0F, 1.0F);
         const glm::vec3 ray = glm::vec3(far) / far.w - frame.camera.position;
         const glm::vec3 p = frame.camera.position - ray * (height / ray.y);
-        const double away = glm::length(glm::vec2(p.x, p.z));
-        const double share = ray.y < 0.0F ? std::clamp((away - 2.0) / 5.0, 0.0, 1.0) : 1.0;
+        const double into = glm::dot(glm::vec2(p.x - 0.5F, p.z - 5.0F), way);
+        const double share =
+            ray.y < 0.0F ? std::clamp((1.0 / 3.0 - 1.0 / into) / (1.0 / 3.0 - 1.0 / 20.0), 0.0, 1.0) : 1.0;
         most =
             std::max(most, std::abs(green(image, {x, y}) - srgb(0.5 * share * share * (3.0 - 2.0 * share))));
       }
     }
     CHECK(most <= 2);
+  }
+}
+
+TEST_CASE("a sweep goes from the floor's colour into a darker wall of its hue, without an edge") {
+  for (const float height : {0.4F, 2.0F, 5.0F}) {
+    Frame frame = plain_frame();
+    frame.camera.position.y = height;
+    frame.ground->colour = {0.5F, 0.3F, 0.1F};
+    frame.backdrop = {glm::vec3(0.0F), glm::vec3(0.0F), 0.0F, 0.0F, 1.0F};
+    for (const Quality quality : {Quality::preview, Quality::full}) {
+      Renderer renderer(kSize, quality);
+      const Image image = renderer.render(frame);
+      int steepest = 0, brightening = 0;
+      for (int y = 1; y < 180; ++y) {
+        steepest = std::max(steepest, green(image, {160, y}) - green(image, {160, y - 1}));
+        brightening = std::max(brightening, green(image, {160, y - 1}) - green(image, {160, y}));
+        CHECK(std::abs(green(image, {10, y}) - green(image, {310, y})) <= 1);  // level
+      }
+      CHECK(steepest <= 6);
+      CHECK(brightening <= 1);
+      CHECK(green(image, {160, 0}) < green(image, {160, 179}) - 20);
+      CHECK(image.at(160, 0)[0] > image.at(160, 0)[2] + 20);  // still brown
+    }
+  }
+}
+
+TEST_CASE("a low slab darkens the floor at its foot, and not far from it") {
+  Frame frame;
+  frame.camera = {glm::vec3(0, 0.6F, 1.0F), glm::vec3(0), glm::vec3(0, 1, 0), 25.0F};
+  frame.lights.sun_strength = 0.0F;
+  frame.draws = {at(make_box(1, {0.2F, 0.006F, 0.1F}), {0.0F, 0.003F, 0.0F})};  // two pixels high
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image with = renderer.render(frame);
+    frame.draws.clear();
+    const Image without = renderer.render(frame);
+    frame.draws = {at(make_box(1, {0.2F, 0.006F, 0.1F}), {0.0F, 0.003F, 0.0F})};
+    const auto darker = [&](glm::vec3 p) {
+      return green(without, pixel_of(frame, p)) - green(with, pixel_of(frame, p));
+    };
+    CHECK(darker({0.0F, 0.0F, 0.055F}) >= 4);
+    CHECK(darker({0.0F, 0.0F, 0.13F}) <= 1);
+    CHECK(darker({0.25F, 0.0F, 0.0F}) <= 1);
   }
 }
 
