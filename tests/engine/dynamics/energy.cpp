@@ -1,0 +1,137 @@
+// Energy: a closed box of shells and solids never has more than it began with, and what falls and rubs only
+// loses.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/engine/dynamics/piles.h"
+#include "tests/support/sanitized.h"
+
+namespace shatterbox {
+namespace {
+
+const Vec3 kMiddle(0, 0.5, 0);
+
+/// The half space behind a wall that looks along `normal`, half a metre from the middle of the room.
+void add_wall(test::Scene& scene, const Vec3& normal) {
+  auto wall = test::make_plane();
+  wall.pose.rotation = Quat::FromTwoVectors(Vec3::UnitY(), normal);
+  wall.pose.translation = kMiddle - 0.5 * normal;
+  scene.add(wall);
+}
+
+/// Shells and solids that fly about in a closed room of a metre, as large as a quarter of it.
+test::Scene room_scene(std::uint64_t seed, double restitution) {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  scene.settings.has_sleep = false;
+  for (const int axis : {1, 0, 2}) {  // the floor comes first
+    add_wall(scene, Vec3::Unit(axis));
+    add_wall(scene, -Vec3::Unit(axis));
+  }
+  core::Random random(seed);
+  const auto draw = [&] {
+    Vec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = random.uniform(-1, 1);
+    return v;
+  };
+  const auto bowl = test::make_shell(test::bowl_mesh(0.1, 4, 10));
+  const auto plate = test::make_shell(test::square_mesh(0.09, 2));
+  for (int i = 0; i < 8; ++i) {
+    auto body = i < 3   ? bowl
+                : i < 5 ? plate
+                : i < 7 ? test::make_box(Vec3(0.05, 0.07, 0.09), Vec3::Zero(), true, 300.0 * i)
+                        : test::make_sphere(0.09, Vec3::Zero());
+    body.pose.translation =
+        kMiddle + 0.25 * Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) + 0.02 * draw();
+    body.pose.rotation = test::random_rotation(random);
+    body.velocity = 2.0 * draw();
+    body.angular_velocity = 5.0 * draw();
+    scene.add(body);
+  }
+  for (auto& body : scene.bodies) {
+    body.friction = 0.0;
+    body.restitution = restitution;
+  }
+  return scene;
+}
+
+void check_room(double restitution, long steps) {
+  auto scene = room_scene(3, restitution);
+  const double start = scene.kinetic();
+  double most = 0.0, rise = 0.0, last = start;
+  long collisions = 0, hits = 0, cut = 0;
+  for (long i = 0; i < steps; ++i) {
+    scene.step();
+    const double now = scene.kinetic();
+    most = std::max(most, now);
+    rise = std::max(rise, now - last);
+    last = now;
+    collisions += scene.log.empty() ? 0 : 1;
+    hits += scene.report.hits;
+    cut += scene.report.failsafe_steps;
+    if (i % 100 == 0) REQUIRE(test::count_crossings(scene) == 0);
+  }
+  WARN("room, restitution " << restitution << ", " << steps << " steps: most / start - 1 "
+                            << most / start - 1.0 << ", greatest rise in a step " << rise / start << ", kept "
+                            << last / start << ", steps with impulses " << collisions << ", hits " << hits
+                            << ", cut " << cut);
+  CHECK(most <= start * (1.0 + 1e-9));
+  CHECK(collisions > steps / 200);
+  CHECK(scene.report.crossing_pairs == 0);
+}
+
+double least_squares_slope(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size()), middle = 0.5 * (n - 1.0);
+  double up = 0.0, down = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    up += (static_cast<double>(i) - middle) * values[i];
+    down += (static_cast<double>(i) - middle) * (static_cast<double>(i) - middle);
+  }
+  return up / down;
+}
+
+// What falls, rubs and settles on the floor of the room.
+void check_settling(int seconds) {
+  auto scene = room_scene(5, 0.4);
+  scene.settings.gravity = Vec3(0, -9.81, 0);
+  for (auto& body : scene.bodies) body.friction = 0.5;
+  const double start = scene.energy();
+  double most = start, rise = 0.0;
+  int cut = 0;
+  std::vector<double> shares;
+  for (int i = 0; i < 240 * seconds; ++i) {
+    const double before = scene.energy();
+    scene.step();
+    most = std::max(most, scene.energy());
+    rise = std::max(rise, scene.energy() - before);
+    cut += scene.report.failsafe_steps;
+    if (i >= 240 * seconds / 2) shares.push_back(scene.energy() / start);
+  }
+  WARN("room with gravity and friction, "
+       << seconds << " s: most / start - 1 " << most / start - 1.0 << ", greatest rise in a step "
+       << rise / start << ", slope of the later half " << 240.0 * least_squares_slope(shares) << " 1/s, kept "
+       << shares.back() << ", cut " << cut);
+  CHECK(most <= start * (1.0 + 1e-3));
+  CHECK(rise <= 1e-3 * start);
+  CHECK(test::count_crossings(scene) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("what falls and rubs in a room only loses energy") {
+  check_settling(static_cast<int>(test::how_many(4, 1)));
+}
+
+TEST_CASE("what falls and rubs in a room for 60 s", "[.][long]") {
+  check_settling(60);
+}
+
+TEST_CASE("a closed room never has more energy than it began with") {
+  for (const double restitution : {1.0, 0.9}) check_room(restitution, test::how_many(2000, 200));
+}
+
+TEST_CASE("a closed room over 1e5 steps", "[.][long]") {
+  for (const double restitution : {1.0, 0.5}) check_room(restitution, 100000);
+}
+
+}  // namespace shatterbox

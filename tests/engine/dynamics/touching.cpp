@@ -1,0 +1,108 @@
+// Bodies that are placed closer than the usual gap: never blown open, not cut short, and at rest where they
+// are.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "tests/engine/dynamics/piles.h"
+
+namespace shatterbox {
+namespace {
+
+constexpr double kWidth = 0.2;  // m, of all of them
+
+struct Kind {
+  const char* name;
+  std::function<body::Body(double)> make;  // its lowest point at this height, m
+  double height;                           // m, of what lies on it
+};
+
+body::Body make_lifted(geometry::TriangleMesh mesh, double height) {
+  for (Vec3& p : mesh.positions) p.y() += height;
+  return test::make_shell(mesh);
+}
+
+const Kind kBox{"box", [](double y) { return test::make_box(Vec3::Constant(0.1), Vec3(0, y + 0.1, 0)); },
+                kWidth};
+const Kind kSphere{"sphere", [](double y) { return test::make_sphere(0.1, Vec3(0, y + 0.1, 0)); }, kWidth};
+const Kind kPlate{"plate", [](double y) { return make_lifted(test::square_mesh(0.1, 3), y); }, 0.0};
+const Kind kBowl{"bowl", [](double y) { return make_lifted(test::bowl_mesh(0.1, 4, 12, 0.0), y + 0.1); },
+                 0.0};
+
+struct Outcome {
+  int cut = 0, exempt = 0;
+  double fastest = 0.0;  // m/s, of any point of any body
+};
+
+Outcome run(test::Scene& scene, int steps) {
+  Outcome outcome;
+  for (int i = 0; i < steps; ++i) {
+    scene.step();
+    outcome.cut += scene.report.failsafe_steps;
+    outcome.exempt += scene.report.crossing_pairs;
+    for (const auto& b : scene.bodies) {
+      if (!b.is_dynamic()) continue;
+      const double speed = b.velocity.norm() + b.shape->bounding_radius * b.angular_velocity.norm();
+      outcome.fastest = std::max(outcome.fastest, speed);
+    }
+  }
+  return outcome;
+}
+
+void check_pair(const Kind& upper, const Kind& lower, double gap, bool has_gravity) {
+  test::Scene scene;
+  if (has_gravity)
+    scene.add(test::make_plane());
+  else
+    scene.settings.gravity.setZero();
+  scene.add(lower.make(gap));
+  scene.add(upper.make(2.0 * gap + lower.height));
+  const Outcome outcome = run(scene, 24);
+  INFO(upper.name << " on " << lower.name << ", gap " << gap / kWidth << " of their size, "
+                  << (has_gravity ? "with" : "without") << " gravity: fastest " << outcome.fastest << " m/s");
+  CHECK(outcome.cut == 0);
+  CHECK(outcome.exempt == 0);
+  // A gap of 1e-4 m that opens within a step would be 0.024 m/s.
+  CHECK(outcome.fastest < (has_gravity ? 2e-3 : 1e-8));
+}
+
+}  // namespace
+
+TEST_CASE("what is placed within 1e-5 of its size is not blown open, nor cut short") {
+  for (const double gap : {1e-5 * kWidth, 1e-6 * kWidth}) {
+    for (const bool has_gravity : {false, true}) {
+      for (const Kind& lower : {kBox, kSphere, kPlate})
+        for (const Kind& upper : {kBox, kSphere, kPlate, kBowl}) check_pair(upper, lower, gap, has_gravity);
+    }
+  }
+}
+
+TEST_CASE("what is placed touching is not blown open, nor cut short") {
+  for (const bool has_gravity : {false, true}) {
+    check_pair(kBox, kBox, 0.0, has_gravity);
+    for (const Kind& kind : {kBox, kSphere, kPlate}) check_pair(kSphere, kind, 0.0, has_gravity);
+    for (const Kind& kind : {kBox, kPlate}) check_pair(kBowl, kind, 0.0, has_gravity);
+    for (const Kind& kind : {kBox, kPlate, kBowl}) check_pair(kind, kSphere, 0.0, has_gravity);
+  }
+}
+
+TEST_CASE("plates edge to edge in one plane within 1e-5 of their size stay so, and slide apart freely") {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  for (int k = 0; k < 3; ++k) {
+    auto plate = kPlate.make(0.0);
+    plate.pose.translation.x() = (1.0 + 1e-5) * kWidth * k;
+    scene.add(plate);
+  }
+  const Outcome still = run(scene, 24);
+  CHECK(still.cut == 0);
+  CHECK(still.fastest < 1e-8);
+  scene.bodies[2].velocity = Vec3(0.5, 0.2, 0.3);
+  scene.bodies[0].velocity = Vec3(-0.5, 0.2, 0.3);
+  const Outcome leaving = run(scene, 120);
+  CHECK(leaving.cut == 0);
+  CHECK(scene.bodies[1].velocity.norm() < 1e-6);
+  CHECK(scene.bodies[2].velocity.x() == Approx(0.5).epsilon(1e-6));
+}
+
+}  // namespace shatterbox
