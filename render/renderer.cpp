@@ -28,10 +28,10 @@ namespace {
 struct Level {
   int samples_across;  // a pixel has as many down
   int shadow_map, shadow_taps;
-  int occlusion_taps;
+  int occlusion_taps, occlusion_scale;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 14, 9} : Level{1, 512, 5, 6};
+  return quality == Quality::full ? Level{2, 1024, 14, 9, 2} : Level{1, 512, 5, 6, 3};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
@@ -106,8 +106,8 @@ struct Renderer::Rooms {
         floor(size.width, size.height),
         shadow(level.shadow_map),
         surface(size.width, size.height, level.samples_across),
-        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across),
-        light(size.width, size.height, level.shadow_taps, level.samples_across, pass::OcclusionPass::kScale),
+        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
+        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale),
         glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
@@ -144,7 +144,7 @@ struct Renderer::Rooms {
     meshes.bind_paints();
     light.run(surface.opaque(), drawn, tiles, meshes.pattern_kinds(), values.ground_colour.w > 0.0F);
     clock.mark("light");
-    if (tiles.glass().count > 0) glass.run(surface, tiles, meshes.pattern_kinds());
+    if (tiles.glass().count > 0) glass.run(surface, drawn, tiles, meshes.pattern_kinds());
     clock.mark("glass");
   }
 

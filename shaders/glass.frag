@@ -1,40 +1,39 @@
-// Thin glass over what is drawn (dual-source blending): its faces mirror the surroundings and tint what is behind; its
-// broken rims gather light and show through the faces, bright and a little green. Samples that see none, or glass behind a
-// body, keep what is there. RIMS: for pixels with rims, and faces or not; otherwise with faces alone.
+// Thin glass over what is drawn (dual-source blending), in two passes. First its broken rims (RIMS), which gather light and
+// show through the faces, bright and a little green; then its faces, which mirror the surroundings and tint what is behind.
+// Samples that see none, or glass behind a body, keep what is there.
 #include "common/light.glsl"
 #include "common/paint.glsl"
 #include "common/samples.glsl"
 #include "common/tone.glsl"
 layout(binding = 7) uniform sampler2D opaque_depth;  // 0..1
-#ifdef RIMS
-layout(binding = 8) uniform usampler2D rim_map;      // as seen_map, of rims and crack lines only
-layout(binding = 9) uniform sampler2D rim_depth;
-#endif
 layout(location = 0, index = 0) out vec4 added;
 layout(location = 0, index = 1) out vec4 kept;
 
-// Tall windows around the room, each of four panes: what clear glass is known by. Linear, as a share of the sky.
+#ifndef RIMS
+// Two tall windows in each wall of a square room, each of four panes: what clear glass is known by. As a share of the sky.
 float room_windows(vec3 d) {
-  float along = abs(fract(atan(d.z, d.x) * (9.0 / (2.0 * kPi)) + 0.6) - 0.5);  // 0 at a window's middle
-  float up = d.y * inversesqrt(max(dot(d.xz, d.xz), 1e-6));
-  float wide = smoothstep(0.36, 0.33, along) * smoothstep(0.010, 0.022, along);
-  float high = smoothstep(-0.16, -0.10, up) * smoothstep(1.05, 0.85, up) * smoothstep(0.006, 0.014, abs(up - 0.14));
-  return wide * high * (0.4 + 0.6 * clamp(2.0 * up + 0.3, 0.0, 1.0));
+  bool is_x = abs(d.x) > abs(d.z);
+  vec2 wall = vec2(is_x ? d.z : d.x, d.y) / max(max(abs(d.x), abs(d.z)), 1e-3);  // -1..1 across; height over the eye's
+  float along = abs(abs(wall.x) - 0.46);
+  float wide = smoothstep(0.37, 0.33, along) * smoothstep(0.010, 0.024, along);
+  float high = smoothstep(-0.16, -0.10, wall.y) * smoothstep(1.05, 0.85, wall.y) * smoothstep(0.006, 0.016, abs(wall.y - 0.14));
+  return wide * high * (0.4 + 0.6 * clamp(2.0 * wall.y + 0.3, 0.0, 1.0));
 }
 
 void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
-  float n_dot_v = clamp(abs(dot(s.normal, v)), 0.05, 1.0);
-  vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
+  vec3 n = dot(s.normal, v) < 0.0 ? -s.normal : s.normal;  // only one of a pane's two faces is drawn
+  float n_dot_v = max(dot(n, v), 0.05);
+  vec3 r = 2.0 * dot(n, v) * n - v;
   float once = schlick(0.04, n_dot_v);
   float mirror = 2.0 * once / (1.0 + once);  // both faces
   vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 2.4 * room_windows(r));
   // A pane is flat: it shows one small part of a lamp, all over. Pressed, so that it stays a film over what is behind.
   light /= 1.0 + 0.5 * max(light.r, max(light.g, light.b));
   vec3 h = normalize(sun.xyz + v);
-  float n_dot_l = max(dot(s.normal, sun.xyz), 0.0);
-  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(s.normal, h), 0.0), max(s.roughness, 0.12)) * 0.008;
-  vec3 haze = s.colour * ambient(s.normal) * (0.04 + (1.0 - s.transmission));
+  float n_dot_l = max(dot(n, sun.xyz), 0.0);
+  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(n, h), 0.0), max(s.roughness, 0.12)) * 0.008;
+  vec3 haze = s.colour * ambient(n) * (0.06 + (1.0 - s.transmission));
   add += weight * (mirror * light + glance + haze);
   // The way through is longer at a slant; as an exponent of the tint that is 1 to 4, by squaring.
   float slant = min(1.0 / n_dot_v, 4.0) - 1.0;
@@ -42,6 +41,7 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   keep -= weight * (1.0 - s.transmission * (1.0 - mirror) * tint);
 }
 
+#else
 // Light that entered the faces comes out at a rim, from wherever it came.
 void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
@@ -50,9 +50,10 @@ void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   bool is_crack = s.roughness > 0.1;
   vec3 light = s.colour * (is_crack ? vec3(1.0) : vec3(0.18, 0.42, 0.33)) * gathered + 0.1 * surroundings(r, 0.15);
   float through = is_crack ? 0.3 : 0.45;
-  add += weight * light * keep;
+  add += weight * light;
   keep *= 1.0 - weight * (1.0 - through);
 }
+#endif
 
 // Of each pixel's samples: the share that `depths` has before the walls, and the last of them (-1: none).
 float cover(vec4 depths, vec4 walls, out int last) {
@@ -66,24 +67,19 @@ float cover(vec4 depths, vec4 walls, out int last) {
   return share;
 }
 
-// The surface of the pixel's sample i in a layer.
-Surface layer_surface(usampler2D map, vec4 depths, ivec2 first, int i) {
-  ivec2 at = sample_shift(max(i, 0));
-  vec2 place = floor(gl_FragCoord.xy) + (vec2(at) + 0.5) / float(SIDE);
-  return surface_at(texelFetch(map, first + at, 0), min(depths[max(i, 0)], 0.9999), place);
-}
-
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SIDE;
   vec4 walls = depths_at(opaque_depth, first), depths = depths_at(seen_depth, first);
-  int face, rim;
-  float faces = cover(depths, walls, face);
+  int last;
+  float share = cover(depths, walls, last);
+  ivec2 at = sample_shift(max(last, 0));
+  vec2 place = floor(gl_FragCoord.xy) + (vec2(at) + 0.5) / float(SIDE);
+  Surface s = surface_at(texelFetch(seen_map, first + at, 0), min(depths[max(last, 0)], 0.9999), place);
   vec3 add = vec3(0.0), keep = vec3(1.0);
-  add_face(layer_surface(seen_map, depths, first, face), faces, add, keep);
 #ifdef RIMS
-  vec4 rim_depths = depths_at(rim_depth, first);
-  float rims = cover(rim_depths, walls, rim);
-  add_rim(layer_surface(rim_map, rim_depths, first, rim), rims, add, keep);
+  add_rim(s, share, add, keep);
+#else
+  add_face(s, share, add, keep);
 #endif
   added = vec4(tone_map(add), 1.0);
   kept = vec4(keep, 1.0);

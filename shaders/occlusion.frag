@@ -1,24 +1,24 @@
-// How much of the sky each second pixel sees: samples on a spiral, each hiding what lies above the surface's plane and near
+// How much of the sky each pixel of a smaller picture sees: samples on a spiral, each hiding what lies above the surface's plane and near
 // [McG12]. The floor's plane is known exactly, so even what rises a millimetre from it darkens its foot; bodies have their
 // own normals. World axes, m from the eye. Turned by a 4 x 4 pattern of angles that the blur takes out again.
 #include "common/paint.glsl"
-#include "common/floor.glsl"
 layout(location = 0) out uint seen_share;  // half floats: share seen; 1 / view depth times the target's
 
-// What is seen at a pixel, from the eye: bodies or floor. is_body: which.
-vec3 place_at(ivec2 pixel, out bool is_body) {
+// What is seen at a pixel, from the eye: bodies or floor. x: one over the body's view depth, y: the floor's.
+vec3 place_at(ivec2 pixel, out vec2 nearness) {
   vec3 ray = ray_at(vec2(pixel) + 0.5);
   float depth = texelFetch(seen_depth, pixel * SIDE, 0).x;
-  float behind = min(floor_depth(ray), 1e6), before = view_depth_of(min(depth, 0.9999999));
-  is_body = before < behind && depth < 1.0;
-  return ray * (is_body ? before : behind);
+  float drop = ground_place.x - eye_exposure.y;
+  nearness = vec2((occlusion_scale.z - depth) / occlusion_scale.y, ray.y * (drop == 0.0 ? 0.0 : ground_place.w / drop));
+  return ray / max(max(nearness.x, nearness.y), 1e-6);
 }
 
 void main() {
   ivec2 last = ivec2(viewport.xy) - 1;
   ivec2 here = min(ivec2(gl_FragCoord.xy) * OCCLUSION_SCALE, last);
-  bool is_body, is_other;
-  vec3 p = place_at(here, is_body);
+  vec2 nearness, ignored;
+  vec3 p = place_at(here, nearness);
+  bool is_body = nearness.x > nearness.y;
   float z = dot(p, view_forward.xyz);
   vec3 n = is_body ? unpack_normal(texelFetch(seen_map, here * SIDE, 0).x) : vec3(0.0, 1.0, 0.0);
   n = dot(n, p) > 0.0 ? -n : n;
@@ -34,9 +34,9 @@ void main() {
   float fall = 1.0 / (reach * reach);
   for (int i = 0; i < OCCLUSION_TAPS; ++i) {
     float r = (float(i) + 0.5) / float(OCCLUSION_TAPS);
-    ivec2 at = here + ivec2(round(way * max(r * r * reach_pixels, 1.5 + float(i))));
+    ivec2 at = here + ivec2(round(way * max(r * r * reach_pixels, 1.5 + 1.2 * float(i))));
     way = kGolden * way;
-    vec3 way_there = place_at(clamp(at, ivec2(0), last), is_other) - p;
+    vec3 way_there = place_at(clamp(at, ivec2(0), last), ignored) - p;
     float d2 = dot(way_there, way_there);
     float near_by = max(1.0 - d2 * fall, 0.0);
     sum += near_by * max(dot(way_there, n) - margin, 0.0) * inversesqrt(d2 + 1e-12);

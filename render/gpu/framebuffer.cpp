@@ -46,6 +46,13 @@ Framebuffer::Framebuffer(const std::vector<const Texture*>& colours, const Textu
   check();
 }
 
+Framebuffer::Framebuffer(const Framebuffer& picture, const Texture& depth)
+    : handle_(create_framebuffer()), width_(picture.width_), height_(picture.height_) {
+  glNamedFramebufferRenderbuffer(name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, picture.colour_.get());
+  glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth.name(), 0);
+  check();
+}
+
 Framebuffer::Framebuffer(int width, int height, int samples, unsigned colour_format, unsigned depth_format)
     : handle_(create_framebuffer()),
       colour_(create_renderbuffer(width, height, samples, colour_format)),

@@ -15,6 +15,8 @@ class Framebuffer {
   Framebuffer() = default;
   // Draws to textures owned by the caller; `depth` may be null. All of one size.
   Framebuffer(const std::vector<const Texture*>& colours, const Texture* depth);
+  // Draws to the colours that another owns, and to a depth texture of the caller's.
+  Framebuffer(const Framebuffer& picture, const Texture& depth);
   // Owns a colour and a depth buffer; samples 1 or 4 (llvmpipe knows no other count).
   Framebuffer(int width, int height, int samples, unsigned colour_format, unsigned depth_format);
 

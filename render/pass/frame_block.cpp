@@ -110,8 +110,8 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   }
   block.viewport = glm::vec4(w, h, 1.0F / w, 1.0F / h);
   block.glow_centre = glm::vec4(0.5F * w, 0.58F * h, 1.0F / (0.62F * h), 0.0F);
-  // A neighbourhood of about a sixth of what the camera sees at its target.
-  const float reach = 0.32F * slope * distance;
+  // A neighbourhood of about an eighth of what the camera sees at its target.
+  const float reach = 0.25F * slope * distance;
   block.occlusion_scale = glm::vec4(near, far * near / (far - near), far / (far - near), reach);
   block.view_ray = glm::vec4(slope * w / h, slope, 0.0F, 0.0F);
   const glm::vec3 right = glm::normalize(glm::cross(forward, up));

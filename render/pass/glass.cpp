@@ -9,42 +9,62 @@ namespace shatterbox::render::pass {
 constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
 
 GlassPass::GlassPass(int samples_across)
-    : side_("SIDE " + std::to_string(samples_across)), cover_("tile.vert", "glass_cover.frag", {side_}) {}
-
-const GlassPass::Programs& GlassPass::programs(unsigned pattern_kinds) {
-  Programs& found = programs_[pattern_kinds];
-  if (found.faces.name() == 0) {
-    const std::string patterns = "PATTERNS " + std::to_string(pattern_kinds);
-    found.faces = gpu::Program("tile.vert", "glass.frag", {side_, patterns});
-    found.rims = gpu::Program("tile.vert", "glass.frag", {side_, patterns, "RIMS"});
-  }
-  return found;
+    : samples_across_(samples_across),
+      side_("SIDE " + std::to_string(samples_across)),
+      rims_("tile.vert", "glass.frag", {side_, "RIMS"}) {
+  if (samples_across_ > 1) cover_ = gpu::Program("tile.vert", "glass_cover.frag", {side_});
 }
 
-void GlassPass::run(const SurfacePass& surface, const Tiles& tiles, unsigned pattern_kinds) {
-  surface.glass_faces().bind(4, 5);
-  surface.opaque().depth.bind(7);
-  surface.glass_rims().bind(8, 9);
-  glEnable(GL_DEPTH_TEST);
+const gpu::Program& GlassPass::faces(unsigned pattern_kinds) {
+  gpu::Program& program = faces_[pattern_kinds];
+  if (program.name() == 0) {
+    program = gpu::Program("tile.vert", "glass.frag", {side_, "PATTERNS " + std::to_string(pattern_kinds)});
+  }
+  return program;
+}
+
+// Where there is glass, as depth: so that the costly programs skip blocks of pixels without. With one sample
+// a pixel the layers' own depths tell that.
+void GlassPass::find_cover(const SurfacePass& surface, const gpu::Framebuffer& drawn, const Tiles& tiles) {
+  if (samples_across_ == 1) {
+    if (on_faces_.name() == 0) {
+      on_faces_ = gpu::Framebuffer(drawn, surface.glass_faces().depth);
+      on_rims_ = gpu::Framebuffer(drawn, surface.glass_rims().depth);
+    }
+    return;
+  }
+  drawn.bind();
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  surface.glass_faces().bind(4, 5);
+  surface.glass_rims().depth.bind(9);
   cover_.use();
   Tiles::draw(tiles.glass());
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void GlassPass::run(const SurfacePass& surface, const gpu::Framebuffer& drawn, const Tiles& tiles,
+                    unsigned pattern_kinds) {
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  surface.opaque().depth.bind(7);
+  find_cover(surface, drawn, tiles);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC1_COLOR);
-  const Programs& glass = programs(pattern_kinds);
-  const auto draw = [&](const gpu::Program& program, GLenum comparison, float depth) {
+  const bool is_direct = samples_across_ == 1;
+  glDepthFunc(is_direct ? GL_GREATER : GL_LESS);
+  const auto draw = [&](const gpu::Program& program, const Layer& layer, const gpu::Framebuffer& direct,
+                        float depth) {
+    if (is_direct) direct.bind();
+    layer.bind(4, 5);
     program.use();
-    glDepthFunc(comparison);
-    gpu::Program::set(kTileDepth, depth);
+    gpu::Program::set(kTileDepth, is_direct ? 1.0F : depth);
     Tiles::draw(tiles.glass());
   };
-  draw(glass.faces, GL_EQUAL, 0.5F);
-  draw(glass.rims, GL_LESS, 0.75F);
+  draw(rims_, surface.glass_rims(), on_rims_, 0.75F);
+  draw(faces(pattern_kinds), surface.glass_faces(), on_faces_, 0.25F);
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);

@@ -1,8 +1,10 @@
-// Thin glass over the lit picture: faces and rims at once (shaders/glass_cover.frag, glass.frag).
+// Thin glass over the lit picture: rims, then faces, through which rims show (shaders/glass_cover.frag,
+// glass.frag).
 #pragma once
 #include <map>
 #include <string>
 
+#include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
 #include "render/pass/surface.h"
 #include "render/pass/tiles.h"
@@ -12,18 +14,19 @@ namespace shatterbox::render::pass {
 class GlassPass {
  public:
   explicit GlassPass(int samples_across);
-  // Into the framebuffer that is bound; its depth is used for the cover.
-  void run(const SurfacePass& surface, const Tiles& tiles, unsigned pattern_kinds);
+  // drawn: the lit picture; with several samples a pixel its depth is used for the cover.
+  void run(const SurfacePass& surface, const gpu::Framebuffer& drawn, const Tiles& tiles,
+           unsigned pattern_kinds);
 
  private:
-  struct Programs {
-    gpu::Program faces, rims;  // rims: with the faces before and behind them
-  };
-  const Programs& programs(unsigned pattern_kinds);  // built when first wanted
+  void find_cover(const SurfacePass& surface, const gpu::Framebuffer& drawn, const Tiles& tiles);
+  const gpu::Program& faces(unsigned pattern_kinds);  // built when first wanted
 
+  int samples_across_;
   std::string side_;
-  gpu::Program cover_;
-  std::map<unsigned, Programs> programs_;
+  gpu::Program cover_, rims_;
+  std::map<unsigned, gpu::Program> faces_;
+  gpu::Framebuffer on_faces_, on_rims_;  // the picture with a layer's depth; for one sample a pixel
 };
 
 }  // namespace shatterbox::render::pass

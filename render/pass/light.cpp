@@ -106,11 +106,8 @@ void LightPass::draw_samples(const Tiles& tiles, const gpu::Program& light) cons
 void LightPass::run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles,
                     unsigned pattern_kinds, bool is_checkered) {
   is_checkered_ = is_checkered;
-  if (samples_across_ == 1) {
-    glBlitNamedFramebuffer(opaque.target.name(), drawn.name(), 0, 0, drawn.width(), drawn.height(), 0, 0,
-                           drawn.width(), drawn.height(), GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-  }
-  drawn.bind();
+  if (samples_across_ == 1 && on_opaque_.name() == 0) on_opaque_ = gpu::Framebuffer(drawn, opaque.depth);
+  (samples_across_ == 1 ? on_opaque_ : drawn).bind();
   if (samples_across_ == 1) {
     draw_floor(between_, tiles.open_floor(), kChangesSlowly, kHasEdge);
     draw_floor(between_, tiles.floor_behind_bodies(), kChangesSlowly, kHasEdge);

@@ -19,7 +19,8 @@ class LightPass {
   LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale);
   // What the floor sees of sun and sky, at each second pixel; shadow and occlusion must be bound.
   void dim(const Tiles& tiles) const;
-  // Into `drawn`, which shows the empty floor; its depth is used for the cover. `opaque` must be bound.
+  // Into `drawn`, which shows the empty floor; with several samples a pixel its depth is used for the cover.
+  // `opaque` must be bound.
   void run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles, unsigned pattern_kinds,
            bool is_checkered);
 
@@ -37,6 +38,7 @@ class LightPass {
   std::vector<std::string> defines_;
   gpu::Texture dimming_, need_;  // of each second pixel; of each tile
   gpu::Framebuffer dimming_target_, need_target_;
+  gpu::Framebuffer on_opaque_;  // the picture with the bodies' depth; for one sample a pixel
   gpu::Program dim_, dim_occluded_, reduce_, cover_;
   FloorPrograms between_, at_pixels_;        // the second in full quality only
   std::map<unsigned, gpu::Program> bodies_;  // by pattern kinds

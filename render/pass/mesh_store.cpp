@@ -235,6 +235,8 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, fl
     item.centre_world = glm::vec3(draw.world_from_body * glm::vec4(shape.centre, 1.0F));
     item.radius = shape.radius * glm::length(glm::vec3(draw.world_from_body[0]));
     item.eye_distance = glm::distance(item.centre_world, frame.camera.position);
+    item.rim_pixels = draw.mesh->thickness * glm::length(glm::vec3(draw.world_from_body[0])) /
+                      std::max(pixel_slope * item.eye_distance, 1e-9F);
     item.is_glass = frame.overlay.kind != OverlayKind::pieces &&
                     std::any_of(draw.looks.begin(), draw.looks.end(),
                                 [](const Look& look) { return look.transmission > 0.0F; });
@@ -281,10 +283,10 @@ void MeshStore::draw(const Item& item, Part part) const {
       return draw_range(GL_TRIANGLES, 0, faces + shape.rim.count);
     case Part::outer:
       return draw_range(GL_TRIANGLES, 0, shape.outer.count);
-    case Part::faces:
-      return draw_range(GL_TRIANGLES, 0, faces);
     case Part::rims:
       draw_range(GL_TRIANGLES, shape.rim.first, shape.rim.count);
+      return draw_range(GL_LINES, shape.crack_lines.first, shape.crack_lines.count);
+    case Part::crack_lines:
       return draw_range(GL_LINES, shape.crack_lines.first, shape.crack_lines.count);
   }
 }

@@ -29,10 +29,11 @@ struct Item {
   glm::vec3 centre_world{0.0F};
   float radius = 0.0F;        // m, world
   float eye_distance = 0.0F;  // m, to the centre
+  float rim_pixels = 0.0F;    // a shell's thickness where it is
   bool is_glass = false, is_on_screen = false, casts_shadow = false;
 };
 
-enum class Part { all, outer, faces, rims };  // faces: without rims; rims: with crack lines
+enum class Part { all, outer, rims, crack_lines };  // rims: with crack lines
 
 class MeshStore {
  public:

@@ -7,8 +7,8 @@
 
 namespace shatterbox::render::pass {
 
-OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across)
-    : raw_((width + kScale - 1) / kScale, (height + kScale - 1) / kScale, GL_R32UI, gpu::Filter::nearest),
+OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across, int scale)
+    : raw_((width + scale - 1) / scale, (height + scale - 1) / scale, GL_R32UI, gpu::Filter::nearest),
       blurred_(raw_.width(), raw_.height(), GL_R32UI, gpu::Filter::nearest),
       tiles_((width + 15) / 16, (height + 15) / 16, GL_R32F, gpu::Filter::nearest),
       raw_target_({&raw_}, nullptr),
@@ -16,9 +16,9 @@ OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across
       tiles_target_({&tiles_}, nullptr),
       sample_("tile.vert", "occlusion.frag",
               {"SIDE " + std::to_string(samples_across), "OCCLUSION_TAPS " + std::to_string(taps),
-               "OCCLUSION_SCALE " + std::to_string(kScale)}),
+               "OCCLUSION_SCALE " + std::to_string(scale)}),
       blur_("tile.vert", "occlusion_blur.frag"),
-      reduce_("full_screen.vert", "occlusion_tiles.frag", {"OCCLUSION_SCALE " + std::to_string(kScale)}) {}
+      reduce_("full_screen.vert", "occlusion_tiles.frag", {"OCCLUSION_SCALE " + std::to_string(scale)}) {}
 
 void OcclusionPass::run(const Layer& opaque, const Tiles& tiles) const {
   glDisable(GL_DEPTH_TEST);

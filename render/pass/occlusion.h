@@ -1,4 +1,4 @@
-// Ambient occlusion of bodies and floor at every second pixel, where bodies are near
+// Ambient occlusion of bodies and floor on a smaller picture, where bodies are near
 // (shaders/occlusion.frag).
 #pragma once
 #include "render/gpu/framebuffer.h"
@@ -11,9 +11,8 @@ namespace shatterbox::render::pass {
 
 class OcclusionPass {
  public:
-  static constexpr int kScale = 2;  // pixels of the picture to one of its own, across and down
-
-  OcclusionPass(int width, int height, int taps, int samples_across);
+  // scale: pixels of the picture to one of its own, across and down.
+  OcclusionPass(int width, int height, int taps, int samples_across, int scale);
   // Block and tiles must be bound.
   void run(const Layer& opaque, const Tiles& tiles) const;
   void bind() const;  // binds the shares for the light pass, and their least by tile

@@ -5,6 +5,8 @@
 namespace shatterbox::render::pass {
 namespace {
 
+constexpr float kLineSamples = 1.3F;  // a rim no wider is drawn as a line where it is a crack
+
 // The colours need no clearing: only samples with a depth are read.
 void clear_depth() {
   glDepthMask(GL_TRUE);
@@ -12,17 +14,17 @@ void clear_depth() {
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-void draw_items(const MeshStore& meshes, bool is_glass, Part part) {
+// part: of each item.
+template <typename PartOf>
+void draw_items(const MeshStore& meshes, bool is_glass, PartOf part) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  glEnable(GL_CULL_FACE);
   meshes.bind_vertices();
   for (const Item& item : meshes.items()) {
-    if (item.is_on_screen && item.is_glass == is_glass) meshes.draw(item, part);
+    if (item.is_on_screen && item.is_glass == is_glass) meshes.draw(item, part(item));
   }
-  glDisable(GL_CULL_FACE);
 }
 
 }  // namespace
@@ -38,13 +40,17 @@ void Layer::bind(unsigned seen_unit, unsigned depth_unit) const {
 }
 
 SurfacePass::SurfacePass(int width, int height, int samples_across)
-    : opaque_(width * samples_across, height * samples_across), program_("surface.vert", "surface.frag") {}
+    : samples_across_(samples_across),
+      opaque_(width * samples_across, height * samples_across),
+      program_("surface.vert", "surface.frag") {}
 
 void SurfacePass::run(const MeshStore& meshes) const {
   opaque_.target.bind();
   clear_depth();
   program_.use();
-  draw_items(meshes, false, Part::all);
+  glEnable(GL_CULL_FACE);
+  draw_items(meshes, false, [](const Item&) { return Part::all; });
+  glDisable(GL_CULL_FACE);
 }
 
 void SurfacePass::run_glass(const MeshStore& meshes) {
@@ -55,10 +61,16 @@ void SurfacePass::run_glass(const MeshStore& meshes) {
   program_.use();
   glass_faces_.target.bind();
   clear_depth();
-  draw_items(meshes, true, Part::faces);
+  glDisable(GL_CULL_FACE);  // one face of a thin pane stands for both
+  draw_items(meshes, true, [](const Item&) { return Part::outer; });
   glass_rims_.target.bind();
   clear_depth();
-  draw_items(meshes, true, Part::rims);
+  glEnable(GL_CULL_FACE);
+  const auto samples = static_cast<float>(samples_across_);
+  draw_items(meshes, true, [samples](const Item& item) {
+    return samples * item.rim_pixels > kLineSamples ? Part::rims : Part::crack_lines;
+  });
+  glDisable(GL_CULL_FACE);
 }
 
 }  // namespace shatterbox::render::pass

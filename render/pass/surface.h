@@ -27,6 +27,7 @@ class SurfacePass {
   const Layer& glass_rims() const { return glass_rims_; }
 
  private:
+  int samples_across_;
   Layer opaque_, glass_faces_, glass_rims_;
   gpu::Program program_;
 };

@@ -13,9 +13,9 @@ constexpr int kSide = 16;                                          // pixels
 constexpr char kPlain = 0, kOccluded = 1, kShaded = 2, kBody = 3;  // each needs what the ones before do
 constexpr char kFlat = 0, kFading = 1, kBackdrop = 2;              // ground: whole, partly faded, gone
 
-// Beyond so many radii a body hides too little of the sky to see.
-constexpr float kOcclusionRadii = 3.5F;
-constexpr float kOcclusionPixels = 8.0F;  // and, however far, samples and blur reach so far
+// Farther than so many times its height above the floor a body hides too little of the sky to see.
+constexpr float kOcclusionHeights = 2.2F;
+constexpr float kOcclusionPixels = 8.0F;  // and, however low, samples and blur reach so far
 
 // Along the sun onto the floor; what lies below it stays.
 glm::vec3 shadow_of(glm::vec3 p, const FrameBlock& block) {
@@ -82,15 +82,15 @@ Tiles::Range Tiles::append_runs(IsWanted is_wanted, int longest) {
   return range;
 }
 
-// The floor within `reach` of a body's box; none if it floats higher.
-std::optional<Tiles::Corners> Tiles::find_occluded_floor(const Corners& body, float reach,
-                                                         const FrameBlock& block) {
+// The floor that a body's box hides enough sky from; none if it floats too high.
+std::optional<Tiles::Corners> Tiles::find_occluded_floor(const Corners& body, const FrameBlock& block) {
   glm::vec3 least = body.at[0], most = least;
   for (const glm::vec3& corner : body.at) {
     least = glm::min(least, corner);
     most = glm::max(most, corner);
   }
   const float height = block.ground_place.x;
+  const float reach = std::min(block.occlusion_scale.w, kOcclusionHeights * (most.y - height));
   if (block.ground_place.w == 0.0F || least.y > height + reach || most.y < height) return std::nullopt;
   Corners floor;
   for (int i = 0; i < 8; ++i) {
@@ -119,8 +119,7 @@ void Tiles::mark_bodies(const MeshStore& meshes, const FrameBlock& block) {
     if (item.is_glass) {
       mark(body, block, 1.0F, kBody, glass_marks_);
     } else {
-      const float reach = std::min(block.occlusion_scale.w, kOcclusionRadii * item.radius);
-      if (const std::optional<Corners> floor = find_occluded_floor(body, reach, block)) {
+      if (const std::optional<Corners> floor = find_occluded_floor(body, block)) {
         mark(*floor, block, kOcclusionPixels, kOccluded, marks_);
         mark(*floor, block, kOcclusionPixels, kOccluded, near_marks_);
       }

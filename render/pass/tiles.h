@@ -47,8 +47,7 @@ class Tiles {
   };
   void mark(const Corners& corners, const FrameBlock& block, float margin_pixels, char kind,
             Marks& marks) const;
-  static std::optional<Corners> find_occluded_floor(const Corners& body, float reach,
-                                                    const FrameBlock& block);
+  static std::optional<Corners> find_occluded_floor(const Corners& body, const FrameBlock& block);
   void mark_bodies(const MeshStore& meshes, const FrameBlock& block);
   void mark_ground(const FrameBlock& block);
   template <typename IsWanted>
