@@ -31,7 +31,7 @@ struct Level {
   int occlusion_taps, occlusion_scale;
 };
 Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 14, 9, 2} : Level{1, 512, 5, 6, 3};
+  return quality == Quality::full ? Level{2, 1024, 14, 6, 2} : Level{1, 512, 5, 6, 3};
 }
 
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
@@ -125,7 +125,7 @@ struct Renderer::Rooms {
     block.assign(std::span<const pass::FrameBlock>(&values, 1));
     block.bind_uniform(0);
     meshes.bind_vertices();  // core GL draws nothing without an array, even where none is read
-    floor.run(values, tiles, drawn);
+    floor.run(values, drawn);
   }
 
   void draw(PassClock& clock) {

@@ -165,8 +165,6 @@ void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
   bodies_ = append_runs([&](std::size_t i) { return marks_[i] == kBody; }, across_);
   glass_ = append_runs([&](std::size_t i) { return glass_marks_[i] == kBody; }, across_);
   near_bodies_ = append_runs([&](std::size_t i) { return near_marks_[i] != kPlain; }, across_);
-  backdrop_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kBackdrop; }, 1);
-  uneven_ = append_runs([&](std::size_t i) { return ground_marks_[i] == kFading; }, 1);
   const auto is_floor = [&](std::size_t i) { return ground_marks_[i] != kBackdrop; };
   shaded_ = append_runs([&](std::size_t i) { return marks_[i] >= kShaded && is_floor(i); }, across_);
   occluded_ = append_runs([&](std::size_t i) { return marks_[i] == kOccluded && is_floor(i); }, 1);

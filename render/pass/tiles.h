@@ -24,10 +24,6 @@ class Tiles {
 
   Range bodies() const { return bodies_; }
   Range glass() const { return glass_; }
-  // The empty floor and backdrop: where its parts run straight between the corners of a rectangle, and the
-  // rest.
-  Range backdrop() const { return backdrop_; }
-  Range uneven() const { return uneven_; }
   // Floor, where it is not faded away, by what may darken it: shadows and occlusion, or occlusion alone.
   Range shaded() const { return shaded_; }
   Range occluded() const { return occluded_; }  // squares
@@ -57,7 +53,7 @@ class Tiles {
   Marks marks_, near_marks_, glass_marks_, ground_marks_, corner_marks_;  // the last: one a corner of tiles
   std::vector<glm::uvec4> rectangles_;
   gpu::Buffer buffer_;
-  Range bodies_, glass_, backdrop_, uneven_, shaded_, occluded_, near_bodies_;
+  Range bodies_, glass_, shaded_, occluded_, near_bodies_;
   Floor behind_bodies_, open_floor_;
 };
 

@@ -213,6 +213,29 @@ TEST_CASE("a sweep goes from the floor's colour into a darker wall of its hue, w
   }
 }
 
+TEST_CASE("a checkered floor's squares lie where their size says, painted or under a shadow's edge") {
+  Frame frame = plain_frame();
+  frame.camera.position = {0.25F, 4.0F, 4.0F};
+  frame.camera.target = {0.25F, 0.0F, 0.0F};
+  frame.ground->checker = 0.5F;
+  frame.ground->colour = glm::vec3(0.2F);
+  frame.lights.sun_direction = {0.0F, 1.0F, 0.0F};
+  for (const bool has_shadow : {false, true}) {
+    if (has_shadow) frame.draws = {at(make_box(1, {0.2F, 0.01F, 0.2F}), {0.25F, 2.0F, 0.25F})};
+    for (const Quality quality : {Quality::preview, Quality::full}) {
+      Renderer renderer(kSize, quality);
+      const Image image = renderer.render(frame);
+      const auto light_at = [&](float x, float z) {
+        return linear(green(image, pixel_of(frame, {x, 0.0F, z})));
+      };
+      const double bright = light_at(0.05F, 0.45F), dark = light_at(0.55F, 0.45F);
+      CHECK(std::min(bright, dark) / std::max(bright, dark) == Approx(0.72).epsilon(0.03));
+      CHECK(light_at(0.55F, -0.05F) == Approx(bright).epsilon(0.03));
+      CHECK(light_at(0.05F, -0.05F) == Approx(dark).epsilon(0.03));
+    }
+  }
+}
+
 TEST_CASE("a low slab darkens the floor at its foot, and not far from it") {
   Frame frame;
   frame.camera = {glm::vec3(0, 0.6F, 1.0F), glm::vec3(0), glm::vec3(0, 1, 0), 25.0F};

@@ -1,0 +1,18 @@
+// The empty floor and its backdrop, worked out on the CPU: it is smooth, so that a pixel costs a few sums and
+// a look into a table, a fraction of what the rasteriser's own way to a pixel costs. The same law as
+// shaders/common/floor.glsl.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/pass/frame_block.h"
+
+namespace shatterbox::render::pass {
+
+// RGBA bytes (sRGB), rows from below, of the block's viewport. whole: what the floor is where it has not
+// begun to fade.
+void paint_floor(const FrameBlock& block, const std::array<std::uint8_t, 3>& whole,
+                 std::vector<std::uint8_t>& rgba);
+
+}  // namespace shatterbox::render::pass
