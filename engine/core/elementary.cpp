@@ -88,6 +88,15 @@ double cos(double x) {
   return r.quadrant == 1 || r.quadrant == 2 ? -value : value;
 }
 
+SinCos sin_cos(double x) {
+  if (std::abs(x) > 0.03125) return {sin(x), cos(x)};
+  // The first terms left out are below 2e-19 and 2e-21.
+  const double z = x * x;
+  const double s = -1.0 / 6.0 + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362880.0)));
+  const double c = 1.0 / 24.0 + z * (-1.0 / 720.0 + z * (1.0 / 40320.0 - z * (1.0 / 3628800.0)));
+  return {x + x * z * s, 1.0 - (0.5 * z - z * z * c)};
+}
+
 double exp(double x) {
   if (x < -708.0) return 0.0;
   if (x > 709.0) return std::numeric_limits<double>::max();

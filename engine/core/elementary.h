@@ -14,6 +14,12 @@ double sqrt(double x);
 double sin(double x);
 double cos(double x);
 
+/// Both at once; cheaper still for small angles.
+struct SinCos {
+  double sin, cos;
+};
+SinCos sin_cos(double x);
+
 /// e^x. Below -708 the result is 0; above 709 it is the largest finite double.
 double exp(double x);
 

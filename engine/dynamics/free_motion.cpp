@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "engine/core/elementary.h"
 
@@ -15,24 +17,27 @@ struct Spin {
   Vec3 momentum;
 
   void turn_about(int axis, double angle) {
-    const double half = 0.5 * angle;
-    const double c = core::cos(half), s = core::sin(half);
-    Quat turn(c, 0.0, 0.0, 0.0);
-    turn.vec()[axis] = s;
-    rotation = rotation * turn;
+    const auto [s, c] = core::sin_cos(0.5 * angle);
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    // rotation times (c, s along the axis), without the zeros
+    auto& q = rotation.coeffs();
+    const double w = q[3], x = q[axis], y = q[i], z = q[j];
+    q[3] = c * w - s * x;
+    q[axis] = c * x + s * w;
+    q[i] = c * y + s * z;
+    q[j] = c * z - s * y;
     const double cos_full = 1.0 - 2.0 * s * s, sin_full = 2.0 * s * c;
     const double mi = momentum[i], mj = momentum[j];
     momentum[i] = cos_full * mi + sin_full * mj;
     momentum[j] = cos_full * mj - sin_full * mi;
   }
 
-  void strang(const Vec3& moments, double time) {
-    turn_about(0, 0.5 * time * momentum[0] / moments[0]);
+  // Strang's splitting without its first and last turn, which neighbours share: `turn_first` does those.
+  void turn_first(const Vec3& moments, double time) { turn_about(0, time * momentum[0] / moments[0]); }
+  void turn_rest(const Vec3& moments, double time) {
     turn_about(1, 0.5 * time * momentum[1] / moments[1]);
     turn_about(2, time * momentum[2] / moments[2]);
     turn_about(1, 0.5 * time * momentum[1] / moments[1]);
-    turn_about(0, 0.5 * time * momentum[0] / moments[0]);
   }
 };
 
@@ -77,15 +82,19 @@ void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order,
   const Vec3 momentum_world = s.rotation * s.momentum;
   const int parts = 1 + static_cast<int>(std::min(speed * time / kMostAngle, 1e6));
   const double part = time / parts;
+  static constexpr std::array<double, 1> kOnce = {1.0};
+  static constexpr std::array<double, 5> kFive = {kSuzuki, kSuzuki, 1.0 - 4.0 * kSuzuki, kSuzuki, kSuzuki};
+  const std::span<const double> shares =
+      order == SpinOrder::second ? std::span<const double>(kOnce) : std::span<const double>(kFive);
+  double first = 0.5 * shares.front() * part;  // of the turn about the first axis, still to be done
   for (int i = 0; i < parts; ++i) {
-    if (order == SpinOrder::second) {
-      s.strang(inertia.moments, part);
-      continue;
-    }
-    for (const double share : {kSuzuki, kSuzuki, 1.0 - 4.0 * kSuzuki, kSuzuki, kSuzuki}) {
-      s.strang(inertia.moments, share * part);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      s.turn_first(inertia.moments, first);
+      s.turn_rest(inertia.moments, shares[k] * part);
+      first = 0.5 * (shares[k] + shares[(k + 1) % shares.size()]) * part;
     }
   }
+  s.turn_first(inertia.moments, 0.5 * shares.back() * part);
   s.rotation.normalize();
   // From the momentum in the world, which is kept, not from the rotated one, which gathers rounding.
   spin = s.rotation * (s.rotation.conjugate() * momentum_world).cwiseQuotient(inertia.moments);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "engine/core/elementary.h"
 
@@ -29,7 +30,7 @@ Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
 }
 
 /// Nearest point of a convex polygon in space; `normal` unit.
-Vec3 nearest_on_polygon(const Vec3& point, const std::vector<Vec3>& polygon, const Vec3& normal) {
+Vec3 nearest_on_polygon(const Vec3& point, std::span<const Vec3> polygon, const Vec3& normal) {
   bool is_inside = true;
   Vec3 nearest = polygon.front();
   double least = (point - nearest).squaredNorm();
@@ -77,29 +78,47 @@ Vec3 corner_weights(const geometry::ShellElements& elements, int element, const 
   return Vec3(1.0 - b - c, b, c);
 }
 
-/// Calls visit(barycentric, area) at the centres of `divisions`^2 equal parts of each triangle of a cell's
-/// fan.
-template <class Visit>
-void visit_points(const geometry::ShellMesh& mesh, const geometry::ShellCell& cell, double spacing,
-                  const Visit& visit) {
-  constexpr double kMostDivisions = 16.0;
+/// The paraboloid 1 - d^2 / radius^2 about the patch's centre, where it is above zero, over one cell: its
+/// integral and its mean's corner weights. By the middles of equal parts of each triangle of the cell's fan.
+PatchShare share_of_cell(const geometry::ShellMesh& mesh, int number, const LoadPatch& patch) {
+  constexpr double kMostDivisions = 16.0, kPointsPerRadius = 6.0;
+  const geometry::ShellCell& cell = mesh.cells[at(number)];
   const Vec2 a = mesh.corners[at(cell.first_corner)].barycentric;
+  const Vec3 pa = corner_position(mesh, cell, 0);
   const double whole = 2.0 * geometry::element_area(*mesh.elements, cell.element);
+  const double per_square = 1.0 / (patch.radius * patch.radius);
+  PatchShare share{number, 0.0, Vec3::Zero()};
+  Vec2 moment = Vec2::Zero();
   for (int c = 1; c + 1 < cell.corner_count; ++c) {
     const Vec2 ab = mesh.corners[at(cell.first_corner + c)].barycentric - a;
     const Vec2 ac = mesh.corners[at(cell.first_corner + c + 1)].barycentric - a;
-    const Vec3 pa = corner_position(mesh, cell, 0), pb = corner_position(mesh, cell, c),
-               pc = corner_position(mesh, cell, c + 1);
+    const Vec3 pb = corner_position(mesh, cell, c), pc = corner_position(mesh, cell, c + 1);
     const double longest = std::max({(pb - pa).norm(), (pc - pa).norm(), (pc - pb).norm()});
-    const int divisions = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, kMostDivisions));
-    const double area = 0.5 * (ab.x() * ac.y() - ab.y() * ac.x()) * whole / (divisions * divisions);
+    const int divisions = static_cast<int>(
+        std::clamp(std::ceil(longest * kPointsPerRadius / patch.radius), 1.0, kMostDivisions));
+    const Vec3 from = pa - patch.centre, along_b = (pb - pa) / divisions, along_c = (pc - pa) / divisions;
+    double sum = 0.0, sum_b = 0.0, sum_c = 0.0;
+    const auto add = [&](double b_steps, double c_steps) {
+      const double weight = 1.0 - (from + b_steps * along_b + c_steps * along_c).squaredNorm() * per_square;
+      if (weight <= 0.0) return;
+      sum += weight;
+      sum_b += weight * b_steps;
+      sum_c += weight * c_steps;
+    };
     for (int i = 0; i < divisions; ++i)
       for (int j = 0; i + j < divisions; ++j) {
-        visit(Vec2(a + (i + 1.0 / 3.0) / divisions * ab + (j + 1.0 / 3.0) / divisions * ac), area);
-        if (i + j + 1 < divisions)
-          visit(Vec2(a + (i + 2.0 / 3.0) / divisions * ab + (j + 2.0 / 3.0) / divisions * ac), area);
+        add(i + 1.0 / 3.0, j + 1.0 / 3.0);
+        if (i + j + 1 < divisions) add(i + 2.0 / 3.0, j + 2.0 / 3.0);
       }
+    const double area = 0.5 * (ab.x() * ac.y() - ab.y() * ac.x()) * whole / (divisions * divisions);
+    share.weight += area * sum;
+    moment += area * (sum * a + (sum_b / divisions) * ab + (sum_c / divisions) * ac);
   }
+  if (share.weight > 0.0) {
+    const Vec2 mean = moment / share.weight;
+    share.corner_weights = Vec3(1.0 - mean.x() - mean.y(), mean.x(), mean.y());
+  }
+  return share;
 }
 
 /// Elements nearer than `radius` to a centre that hang together with the first one, ascending.
@@ -115,9 +134,9 @@ std::vector<int> flood_elements(const geometry::ShellElements& elements, int fir
         const int neighbour = elements.topology.edge_triangles[at(k)];
         if (is_seen[at(neighbour)] != 0) continue;
         is_seen[at(neighbour)] = 1;
-        std::vector<Vec3> polygon;
-        for (const int vertex : elements.mesh.triangles[at(neighbour)])
-          polygon.push_back(elements.mesh.positions[at(vertex)]);
+        const geometry::Triangle& t = elements.mesh.triangles[at(neighbour)];
+        const auto& positions = elements.mesh.positions;
+        const std::array<Vec3, 3> polygon = {positions[at(t[0])], positions[at(t[1])], positions[at(t[2])]};
         const Vec3 nearest = nearest_on_polygon(centre, polygon, element_normal(elements, neighbour));
         if ((nearest - centre).squaredNorm() < radius * radius) found.push_back(neighbour);
       }
@@ -158,7 +177,6 @@ void find_nearest_cell(const geometry::ShellMesh& mesh, const Vec3& point, LoadP
 }  // namespace
 
 LoadPatch find_load_patch(const geometry::ShellMesh& mesh, const Vec3& point, double radius) {
-  constexpr double kPointsPerRadius = 6.0;
   LoadPatch patch;
   patch.radius = radius;
   if (mesh.cells.empty()) return patch;
@@ -169,19 +187,9 @@ LoadPatch find_load_patch(const geometry::ShellMesh& mesh, const Vec3& point, do
     is_near[at(element)] = 1;
   double sum = 0.0;
   for (Size c = 0; c < mesh.cells.size() && radius > 0.0; ++c) {
-    const geometry::ShellCell& cell = mesh.cells[c];
-    if (is_near[at(cell.element)] == 0) continue;
-    PatchShare share{static_cast<int>(c), 0.0, Vec3::Zero()};
-    visit_points(mesh, cell, radius / kPointsPerRadius, [&](const Vec2& barycentric, double area) {
-      const Vec3 place = geometry::position_in_element(*mesh.elements, cell.element, barycentric);
-      const double weight = area * (1.0 - (place - patch.centre).squaredNorm() / (radius * radius));
-      if (weight <= 0.0) return;
-      share.weight += weight;
-      share.corner_weights +=
-          weight * Vec3(1.0 - barycentric.x() - barycentric.y(), barycentric.x(), barycentric.y());
-    });
+    if (is_near[at(mesh.cells[c].element)] == 0) continue;
+    const PatchShare share = share_of_cell(mesh, static_cast<int>(c), patch);
     if (!(share.weight > 0.0)) continue;
-    share.corner_weights /= share.weight;
     sum += share.weight;
     patch.shares.push_back(share);
   }

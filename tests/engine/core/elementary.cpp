@@ -52,14 +52,17 @@ TEST_CASE("sine and cosine keep an absolute error of a few 1e-16, up to a millio
   for (int k = -1000; k <= 1000; ++k) CHECK(std::abs(sin(k * kPi)) < 1e-12);
 }
 
-TEST_CASE("small sines are exact relative to their size") {
+TEST_CASE("small sines are exact relative to their size, alone and with their cosines") {
   Random random(2);
-  Worst worst;
+  Worst worst, cosine;
   for (int i = 0; i < 50000; ++i) {
     const double x = random.uniform(-0.78, 0.78) * pow(10.0, -random.uniform(0.0, 20.0));
     worst.see(x, sin(x), std::sin(static_cast<long double>(x)), 0.0);
+    worst.see(x, sin_cos(x).sin, std::sin(static_cast<long double>(x)), 0.0);
+    cosine.see(x, sin_cos(x).cos, std::cos(static_cast<long double>(x)), 0.0);
   }
   CHECK(worst.error < 2.0);
+  CHECK(cosine.error < 2.0);
 }
 
 TEST_CASE("the exponential and the logarithm keep a few units of the last place") {
