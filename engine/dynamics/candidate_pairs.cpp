@@ -1,6 +1,7 @@
 // Stage: from bodies to pairs, contacts and islands.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -22,6 +23,7 @@ using body::ShapeKind;
 using collision::Contact;
 using core::at;
 
+constexpr double kOfTouch = 0.01;     // share of its momentum with which what only touches wakes further ones
 constexpr double kBroadSlack = 0.02;  // share of a body's size
 
 bool is_same_pose(const Pose& x, const Pose& y) {
@@ -261,7 +263,7 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
                         memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start) < needed);
 }
 
-// Sleepers that something touches or is about to reach, unless that moves hardly at all.
+// Sleepers that something hits, with its momentum, or touches and could move.
 void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSettings& settings,
                            MotionWork& work) {
   for (const WorkPair& pair : work.pairs) {
@@ -271,12 +273,18 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
     const int mover = a_sleeps ? pair.b : pair.a;
     const WorkBody& w = work.bodies[at(mover)];
     if (!w.is_active || is_quiet(settings, w.velocity, w.spin, w.reach)) continue;
+    const bool is_strong = could_move(settings, a_sleeps ? b : a, a_sleeps ? a : b);
     for (const Contact& c : pair.contacts) {
       const Vec3 arm = (a_sleeps ? c.on_b : c.on_a) - w.start.translation;
       const Vec3 towards = a_sleeps ? c.normal : Vec3(-c.normal);
-      const double closing = towards.dot(w.velocity + w.spin.cross(arm)) * settings.time_step;
-      if (c.gap > 2.0 * pair.kept_gap + std::max(0.0, closing)) continue;
-      work.to_wake.push_back(a_sleeps ? a.id : b.id);
+      const double closing = towards.dot(w.velocity + w.spin.cross(arm));
+      if (c.gap > 2.0 * pair.kept_gap + std::max(0.0, closing * settings.time_step)) continue;
+      const bool is_hit = closing > pair.threshold;
+      if (!is_hit && !is_strong) continue;
+      const double speed = w.velocity.norm() + w.spin.norm() * w.reach;
+      const double momentum =
+          w.inverse_mass > 0.0 ? speed / w.inverse_mass : std::numeric_limits<double>::infinity();
+      work.to_wake.push_back({a_sleeps ? a.id : b.id, is_hit ? momentum : kOfTouch * momentum});
       break;
     }
   }

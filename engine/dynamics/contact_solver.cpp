@@ -33,7 +33,7 @@ class IslandSolver {
     for (int i = 0; i < settings_.substeps; ++i) {
       substep_start_ = i * step_;
       kick();
-      prepare(substep_start_);
+      if (i == 0) prepare(0.0);  // later ones begin where the one before ended
       is_before_drift_ = true;
       find_arrivals();
       start_warm(0.5);
@@ -356,7 +356,10 @@ class IslandSolver {
     // turn.
     if (c.slack > kTouching * c.kept_gap) return -c.slack / step_;
     if (c.slack > 0.0) return 0.0;
-    return std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
+    // What is wedged cannot be opened: insisting would only press its bodies against each other, without end.
+    const double bearable = kEased * c.strained_from;
+    const double ease = c.warm[0] > bearable ? std::max(kLeastEase, bearable / c.warm[0]) : 1.0;
+    return ease * std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
   }
 
   // One sweep is mostly enough at rest; what arrives must not overshoot the gap.
@@ -461,6 +464,8 @@ class IslandSolver {
   static constexpr double kResting = 1e-3;     // of the threshold: closing that is left at rest
   static constexpr double kLooseRest = 0.1;    // the same, where no contact is strained
   static constexpr double kStrain = 8.0;       // times the lighter body's weight
+  static constexpr double kEased = 0.25;       // of what strains: opening is eased beyond it
+  static constexpr double kLeastEase = 0.05;   // so much is left where the load is a weight, however heavy
   static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.

@@ -36,6 +36,7 @@ void add_to_hash(const ContactState& state, core::Hash& hash) {
   for (const PairState& pair : state.pairs) {
     hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
     hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));
+    hash.add(static_cast<std::uint64_t>(pair.has_parted));
     hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
     hash.add(static_cast<std::uint64_t>(pair.is_exempt));
     for (const RememberedContact& c : pair.contacts) {

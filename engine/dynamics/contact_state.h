@@ -31,7 +31,8 @@ inline constexpr int kNoTrouble = 1000;
 struct PairState {
   body::BodyId body_a = 0, body_b = 0;  // body_a < body_b
   double kept_gap = 0.0;     // m: min(usual, least gap seen so far): never pushes newborn pieces apart
-  bool is_touching = false;  // holds an island together
+  bool is_touching = false;  // a sleeper and what disturbs it, or holds it up
+  bool has_parted = false;   // touched a step ago
   int trouble_age = 1000;    // steps since the continuous pass last had to act here
   int stuck_steps = 0;       // steps in a row in which the pair had to be cut short
   bool is_exempt = false;    // crossed when it was first seen, and still does: passes until it has come apart

@@ -13,6 +13,7 @@
 #include "engine/dynamics/contact_settings.h"
 #include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
+#include "engine/dynamics/rest.h"
 #include "engine/geometry/bvh.h"
 
 namespace shatterbox::dynamics {
@@ -136,7 +137,7 @@ class MotionWork {
   std::vector<WorkPair> pairs;   // ascending
   std::vector<SolverContact> contacts;
   std::vector<Island> islands;
-  std::vector<body::BodyId> to_wake;  // sleepers that something comes down on
+  std::vector<Disturbance> to_wake;  // sleepers that something comes down on
   std::vector<body::BodyId> ids;
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass

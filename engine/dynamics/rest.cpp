@@ -1,9 +1,11 @@
-// Sleep and waking. Islands are kept by the pairs that touch, also while they sleep.
+// Sleep and waking. Who touches whom is kept by the pairs, also while they sleep. A body sleeps when it and
+// all that it touches have been quiet; a disturbance wakes what it could move, from neighbour to neighbour.
 #include "engine/dynamics/rest.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <utility>
 
 #include "engine/dynamics/step_motion.h"
 
@@ -12,6 +14,8 @@ namespace {
 
 using body::Body;
 using body::BodyId;
+
+constexpr double kItAlone = std::numeric_limits<double>::min();  // kg m/s: wakes, and goes no further
 
 int find_number(const std::vector<Body>& bodies, BodyId id) {
   const auto place =
@@ -25,6 +29,10 @@ BodyState* find_memory(ContactState& state, BodyId id) {
   return place != state.bodies.end() && place->id == id ? &*place : nullptr;
 }
 
+double quiet_speed(const ContactSettings& settings, double reach) {
+  return 0.5 * std::sqrt(settings.gravity.norm() * settings.kept_gap * 2.0 * reach);
+}
+
 // No point of the body is further from where it was at `rest` than six of its usual gaps.
 bool stays_near(const ContactSettings& settings, const Body& b, const Pose& rest) {
   const double reach = b.shape->bounding_radius;
@@ -34,14 +42,15 @@ bool stays_near(const ContactSettings& settings, const Body& b, const Pose& rest
   return moved <= 6.0 * settings.kept_gap * 2.0 * reach;
 }
 
-// Islands of dynamic bodies that touch, asleep or not: the least number in each.
-std::vector<int> find_islands(const std::vector<Body>& bodies, const ContactState& state) {
-  std::vector<int> parent(bodies.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) i = parent[static_cast<std::size_t>(i)];
-    return i;
-  };
+// The momentum, kg m/s, below which a body is hardly disturbed: it would get a tenth of what still counts as
+// rest.
+double least_momentum(const ContactSettings& settings, const Body& b) {
+  return 0.1 * quiet_speed(settings, b.shape->bounding_radius) / b.inverse_mass;
+}
+
+// The dynamic bodies that touch each, asleep or not.
+std::vector<std::vector<int>> find_neighbours(const std::vector<Body>& bodies, const ContactState& state) {
+  std::vector<std::vector<int>> neighbours(bodies.size());
   for (const PairState& pair : state.pairs) {
     if (!pair.is_touching) continue;
     const int a = find_number(bodies, pair.body_a), b = find_number(bodies, pair.body_b);
@@ -49,26 +58,37 @@ std::vector<int> find_islands(const std::vector<Body>& bodies, const ContactStat
     if (!bodies[static_cast<std::size_t>(a)].is_dynamic() ||
         !bodies[static_cast<std::size_t>(b)].is_dynamic())
       continue;
-    const int ra = root(a), rb = root(b);
-    parent[static_cast<std::size_t>(std::max(ra, rb))] = std::min(ra, rb);
+    neighbours[static_cast<std::size_t>(a)].push_back(b);
+    neighbours[static_cast<std::size_t>(b)].push_back(a);
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) parent[i] = root(static_cast<int>(i));
-  return parent;
+  return neighbours;
 }
 
-// Wakes the sleepers of every island that has a roused body in it.
-void rouse(std::vector<Body>& bodies, const ContactState& state, const std::vector<char>& is_roused) {
-  if (std::find(is_roused.begin(), is_roused.end(), 1) == is_roused.end()) return;
-  const std::vector<int> islands = find_islands(bodies, state);
-  std::vector<char> island_roused(bodies.size(), 0);
+// Wakes the sleepers that a disturbance reaches: those it begins with, and from neighbour to neighbour all
+// that its momentum (kg m/s; 0: is not disturbed) could move noticeably.
+void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const ContactState& state,
+           std::vector<double> momentum) {
+  std::vector<int> roused;
+  const auto wake = [&](int i) {
+    Body& b = bodies[static_cast<std::size_t>(i)];
+    if (!b.is_dynamic() || b.is_awake) return;
+    b.is_awake = true;
+    b.quiet_time = 0.0;
+    roused.push_back(i);
+  };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (is_roused[i]) island_roused[static_cast<std::size_t>(islands[i])] = 1;
+    if (momentum[i] > 0.0) wake(static_cast<int>(i));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].is_dynamic() || bodies[i].is_awake || !island_roused[static_cast<std::size_t>(islands[i])])
-      continue;
-    bodies[i].is_awake = true;
-    bodies[i].quiet_time = 0.0;
+  if (roused.empty()) return;
+  const auto neighbours = find_neighbours(bodies, state);
+  for (std::size_t next = 0; next < roused.size(); ++next) {
+    const double given = momentum[static_cast<std::size_t>(roused[next])];
+    for (const int i : neighbours[static_cast<std::size_t>(roused[next])]) {
+      const Body& b = bodies[static_cast<std::size_t>(i)];
+      if (!b.is_dynamic() || b.is_awake || given < least_momentum(settings, b)) continue;
+      momentum[static_cast<std::size_t>(i)] = std::max(momentum[static_cast<std::size_t>(i)], given);
+      wake(i);
+    }
   }
 }
 
@@ -81,44 +101,58 @@ double impact_threshold(const ContactSettings& settings, double kept_gap) {
 }
 
 bool is_quiet(const ContactSettings& settings, const Vec3& velocity, const Vec3& spin, double reach) {
-  const double limit = std::sqrt(settings.gravity.norm() * settings.kept_gap * 2.0 * reach);
-  return velocity.norm() + spin.norm() * reach <= 0.5 * limit;
+  return velocity.norm() + spin.norm() * reach <= quiet_speed(settings, reach);
+}
+
+bool could_move(const ContactSettings& settings, const Body& mover, const Body& sleeper) {
+  const double reach = mover.shape->bounding_radius;
+  const double speed =
+      std::max(quiet_speed(settings, reach), mover.velocity.norm() + mover.angular_velocity.norm() * reach);
+  return speed / mover.inverse_mass >= least_momentum(settings, sleeper);
 }
 
 void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
-  std::vector<char> is_roused(bodies.size(), 0);
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+
+  std::vector<double> momentum(bodies.size(), 0.0);
   bool has_sleepers = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Body& b = bodies[i];
+    const Body& b = bodies[i];
     if (!b.is_dynamic() || b.is_awake) continue;
     has_sleepers = true;
     // A push, by the script or by a stage that gives impulses.
-    if (b.velocity.squaredNorm() + b.angular_velocity.squaredNorm() > 0.0) is_roused[i] = 1;
+    if (b.velocity.squaredNorm() + b.angular_velocity.squaredNorm() > 0.0) momentum[i] = kAll;
   }
   if (!has_sleepers) return;
   for (const PairState& pair : state.pairs) {
-    if (!pair.is_touching) continue;
+    if (!pair.is_touching && !pair.has_parted) continue;
     const int ends[2] = {find_number(bodies, pair.body_a), find_number(bodies, pair.body_b)};
     for (int k = 0; k < 2; ++k) {
       if (ends[k] < 0 || bodies[static_cast<std::size_t>(ends[k])].is_awake) continue;
+      double& given = momentum[static_cast<std::size_t>(ends[k])];
+      // What it leaned on has gone away, or is a support that moves.
+      if (pair.has_parted) given = std::max(given, kItAlone);
       const int other = ends[1 - k];
-      // The partner is gone, or is a support that moves.
       bool moves = other < 0;
       if (other >= 0) {
         const Body& o = bodies[static_cast<std::size_t>(other)];
         moves = o.motion == body::Motion::scripted &&
                 !is_quiet(settings, o.velocity, o.angular_velocity, o.shape->bounding_radius);
       }
-      if (moves) is_roused[static_cast<std::size_t>(ends[k])] = 1;
+      if (moves) given = kAll;
     }
   }
-  rouse(bodies, state, is_roused);
+  rouse(bodies, settings, state, std::move(momentum));
 }
 
-void wake_island(std::vector<Body>& bodies, const ContactState& state, Body& sleeper) {
-  std::vector<char> is_roused(bodies.size(), 0);
-  is_roused[static_cast<std::size_t>(&sleeper - bodies.data())] = 1;
-  rouse(bodies, state, is_roused);
+void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, const ContactState& state,
+                 const std::vector<Disturbance>& disturbances) {
+  std::vector<double> momentum(bodies.size(), 0.0);
+  for (const Disturbance& d : disturbances) {
+    double& given = momentum[static_cast<std::size_t>(find_number(bodies, d.body))];
+    given = std::max({given, d.momentum, kItAlone});
+  }
+  rouse(bodies, settings, state, std::move(momentum));
 }
 
 void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
@@ -143,19 +177,23 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
       if (const int i = find_number(bodies, id); i >= 0) is_held[static_cast<std::size_t>(i)] = 1;
     }
   }
+  // Nor who touches somebody that has no rest yet and could move it.
   const bool is_weightless = settings.gravity.squaredNorm() == 0.0;
-  const std::vector<int> islands = find_islands(bodies, state);
   std::vector<char> is_restless(bodies.size(), 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake) continue;
-    if (b.quiet_time < settings.sleep_time || (!is_held[i] && !is_weightless)) {
-      is_restless[static_cast<std::size_t>(islands[i])] = 1;
-    }
+    is_restless[i] = b.quiet_time < settings.sleep_time || (!is_held[i] && !is_weightless) ? 1 : 0;
   }
+  const auto neighbours = find_neighbours(bodies, state);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
-    if (!b.is_dynamic() || !b.is_awake || is_restless[static_cast<std::size_t>(islands[i])]) continue;
+    if (!b.is_dynamic() || !b.is_awake || is_restless[i]) continue;
+    if (std::any_of(neighbours[i].begin(), neighbours[i].end(), [&](int n) {
+          const Body& other = bodies[static_cast<std::size_t>(n)];
+          return is_restless[static_cast<std::size_t>(n)] != 0 && could_move(settings, other, b);
+        }))
+      continue;
     b.is_awake = false;
     b.velocity.setZero();
     b.angular_velocity.setZero();

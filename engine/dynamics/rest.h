@@ -17,7 +17,17 @@ double impact_threshold(const ContactSettings& settings, double kept_gap);
 /// True if no point of a body of this `reach` (m) moves noticeably.
 bool is_quiet(const ContactSettings& settings, const Vec3& velocity, const Vec3& spin, double reach);
 
-/// Wakes a sleeping body and all that sleep in its island.
-void wake_island(std::vector<body::Body>& bodies, const ContactState& state, body::Body& sleeper);
+/// Whether a body that moves, or may begin to, has the momentum to make a sleeper move noticeably.
+bool could_move(const ContactSettings& settings, const body::Body& mover, const body::Body& sleeper);
+
+/// Something that comes upon a sleeper.
+struct Disturbance {
+  body::BodyId body = 0;  // the sleeper
+  double momentum = 0.0;  // kg m/s: what goes on to others; infinite of what no impulse moves
+};
+
+/// Wakes the sleepers named, and from neighbour to neighbour all whom the momentum could move noticeably.
+void wake_struck(std::vector<body::Body>& bodies, const ContactSettings& settings, const ContactState& state,
+                 const std::vector<Disturbance>& disturbances);
 
 }  // namespace shatterbox::dynamics

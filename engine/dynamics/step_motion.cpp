@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
@@ -58,7 +59,7 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
   for (const WorkPair& pair : work.pairs) {
     PairState& memory = state.pairs[at(pair.state)];
     memory.contacts.clear();
-    memory.is_touching = false;
+    memory.has_parted = std::exchange(memory.is_touching, false);
     memory.trouble_age = std::min(memory.trouble_age + 1, kNoTrouble);
     const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
     // A sleeper and what lies on it quietly keep their memory through its sleep.
@@ -74,9 +75,11 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
     memory.contacts.push_back(
         {c.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v, c.arrival_speed, is_loaded});
   }
-  // What was found on the way came last.
   for (const WorkPair& pair : work.pairs) {
-    auto& contacts = state.pairs[at(pair.state)].contacts;
+    PairState& memory = state.pairs[at(pair.state)];
+    memory.has_parted = memory.has_parted && !memory.is_touching;
+    // What was found on the way came last.
+    auto& contacts = memory.contacts;
     const auto by_key = [](const RememberedContact& x, const RememberedContact& y) {
       return x.feature_key < y.feature_key;
     };
@@ -247,13 +250,9 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   ContactReport report;
   MotionWork work;
   find_candidate_pairs(bodies, own, state, work);
-  // What wakes may touch further sleepers, which its island's memory already wakes with it: few rounds, each
-  // wakes more.
+  // Few rounds: each wakes whom the bodies that are awake come upon, and all whom that could move.
   while (!work.to_wake.empty()) {
-    for (const body::BodyId id : work.to_wake) {
-      Body* sleeper = body::find_body(bodies, id);
-      wake_island(bodies, state, *sleeper);
-    }
+    wake_struck(bodies, own, state, work.to_wake);
     find_candidate_pairs(bodies, own, state, work);
   }
   put_on_shelf(work, state);

@@ -1,0 +1,98 @@
+// Sleep and waking: who keeps whom awake, and what a disturbance reaches.
+#include <catch2/catch.hpp>
+
+#include "tests/engine/dynamics/bodies.h"
+
+namespace shatterbox {
+namespace {
+
+constexpr double kHalf = 0.1;  // m
+
+// A row of boxes side by side on the ground, and time for all to fall asleep.
+test::Scene sleeping_row(const std::vector<double>& densities, double friction = 0.5) {
+  test::Scene scene;
+  scene.settings.overrides = {{0, 0, friction, 0.0}};
+  scene.add(test::make_plane());
+  double x = 0.0;
+  for (const double density : densities) {
+    scene.add(test::make_box(Vec3::Constant(kHalf), Vec3(x, kHalf + 5e-5, 0), true, density));
+    x += 2.0 * kHalf + 1e-4;
+  }
+  for (int i = 0; i < 300; ++i) scene.step();
+  for (std::size_t k = 1; k < scene.bodies.size(); ++k) {
+    INFO("box " << k);
+    REQUIRE(!scene.bodies[k].is_awake);
+  }
+  return scene;
+}
+
+// Pushes a body to and fro, noticeably, for two seconds.
+void shake(test::Scene& scene, std::size_t number, double speed) {
+  for (int i = 0; i < 480; ++i) {
+    body::Body& b = scene.bodies[number];
+    b.is_awake = true;
+    b.velocity = Vec3(i % 2 == 0 ? speed : -speed, 0, 0);
+    scene.step();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a body that trembles keeps its neighbours awake, and nobody else") {
+  auto scene = sleeping_row({1000, 1000, 1000, 1000, 1000});
+  for (body::Body& b : scene.bodies) b.is_awake = true;
+  shake(scene, 1, 0.05);
+  CHECK(scene.bodies[2].is_awake);
+  for (std::size_t k = 3; k < 6; ++k) CHECK(!scene.bodies[k].is_awake);
+}
+
+TEST_CASE("a feeble one does not keep a heavy one awake") {
+  auto scene = sleeping_row({1, 1000});
+  for (body::Body& b : scene.bodies) b.is_awake = true;
+  shake(scene, 1, 0.02);
+  CHECK(!scene.bodies[2].is_awake);
+}
+
+TEST_CASE("a blow wakes the row to its end, and its momentum goes through") {
+  auto scene = sleeping_row({1000, 1000, 1000, 1000}, 0.0);
+  auto ball = test::make_sphere(kHalf, Vec3(-3.0 * kHalf, kHalf + 1e-4, 0), 5000.0);
+  ball.velocity = Vec3(5, 0, 0);
+  const double momentum = ball.shape->mass * 5.0;
+  scene.add(std::move(ball));
+  bool all_awake = false;
+  for (int i = 0; i < 24; ++i) {
+    scene.step();
+    int awake = 0;
+    for (std::size_t k = 1; k < 5; ++k) awake += scene.bodies[k].is_awake ? 1 : 0;
+    CHECK((awake == 0 || awake == 4));
+    all_awake = all_awake || awake == 4;
+  }
+  CHECK(all_awake);
+  CHECK(scene.momentum().x() == Approx(momentum).epsilon(1e-9));
+  CHECK(scene.bodies[4].velocity.x() > 1.0);
+}
+
+TEST_CASE("who sleeps on something falls when it has slipped away") {
+  // A light slab under a heavy box, pulled out too feebly to disturb the box, until it has gone.
+  test::Scene scene;
+  scene.settings.overrides = {{0, 0, 0.0, 0.0}};
+  scene.add(test::make_plane());
+  scene.add(test::make_box(Vec3(kHalf, 0.01, kHalf), Vec3(0, 0.01, 0), true, 1.0));
+  scene.add(test::make_box(Vec3::Constant(kHalf), Vec3(0, 0.02 + kHalf, 0), true, 1000.0));
+  for (int i = 0; i < 300; ++i) scene.step();
+  REQUIRE(!scene.bodies[2].is_awake);
+  int hanging = 0;
+  for (int i = 0; i < 480 && scene.bodies[2].pose.translation.y() > kHalf + 2e-3; ++i) {
+    if (scene.bodies[1].pose.translation.x() < 2.5 * kHalf) {
+      scene.bodies[1].is_awake = true;
+      scene.bodies[1].velocity = Vec3(0.3, 0, 0);
+    } else {
+      ++hanging;
+    }
+    scene.step();
+  }
+  CHECK(hanging <= 60);
+  CHECK(scene.bodies[2].pose.translation.y() < kHalf + 2e-3);
+}
+
+}  // namespace shatterbox
