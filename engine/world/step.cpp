@@ -61,7 +61,7 @@ double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
   return figures.kinetic_energy + figures.potential_energy;
 }
 
-/// Momentum that gravity and the logged impulses of fixed bodies explain.
+/// Momentum that gravity and the logged impulses of what stands still (fixed bodies, sleepers) explain.
 Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::ImpulseLog& log,
                         const Vec3& gravity, double time_step) {
   Vec3 sum = Vec3::Zero();
@@ -70,8 +70,8 @@ Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::Impul
   for (const body::LoggedImpulse& entry : log) {
     const body::Body* a = body::find_body(bodies, entry.body_a);
     const body::Body* b = body::find_body(bodies, entry.body_b);
-    if (a && a->is_dynamic()) sum += entry.impulse_world;
-    if (b && b->is_dynamic()) sum -= entry.impulse_world;
+    if (a && a->is_dynamic() && a->is_awake) sum += entry.impulse_world;
+    if (b && b->is_dynamic() && b->is_awake) sum -= entry.impulse_world;
   }
   return sum;
 }
