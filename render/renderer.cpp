@@ -94,6 +94,7 @@ struct Renderer::Rooms {
   pass::OcclusionPass occlusion;
   pass::LightPass light;
   pass::GlassPass glass;
+  std::vector<std::uint8_t> rgba;  // as read back; kept, since new pages cost more than the reading
   PassTimes times;
   bool is_timed = false, has_shadow = false;
 
@@ -148,16 +149,18 @@ struct Renderer::Rooms {
     clock.mark("glass");
   }
 
-  Image read_back() const {
+  Image read_back() {
     const auto width = static_cast<std::size_t>(size.width), height = static_cast<std::size_t>(size.height);
-    std::vector<std::uint8_t> rgba(width * height * 4);
+    rgba.resize(width * height * 4);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn.name());
     glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     Image image(size.width, size.height);
     for (std::size_t y = 0; y < height; ++y) {  // GL's rows run from below
       const std::uint8_t* from = rgba.data() + (height - 1 - y) * width * 4;
       std::uint8_t* to = image.pixels.data() + y * width * 3;
-      for (std::size_t x = 0; x < width; ++x) std::memcpy(to + 3 * x, from + 4 * x, 3);
+      for (std::size_t x = 0; x + 1 < width; ++x)
+        std::memcpy(to + 3 * x, from + 4 * x, 4);  // the next overwrites the fourth
+      std::memcpy(to + 3 * (width - 1), from + 4 * (width - 1), 3);
     }
     return image;
   }
