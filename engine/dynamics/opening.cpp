@@ -103,7 +103,7 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   const Vec3 end_a = carry(a, contact.on_a, a.start, pose_a), end_b = carry(b, contact.on_b, b.start, pose_b);
   o.gap = contact.normal.dot(end_a - end_b);
   o.wanted = wanted;
-  const Vec3 middle = 0.5 * (end_a + end_b);
+  const Vec3 middle = contact.lean * end_a + (1.0 - contact.lean) * end_b;
   o.arm_a = middle - pose_a.translation;
   o.arm_b = middle - pose_b.translation;
   o.weight = weight(work, o, Yielding::by_mass);

@@ -125,6 +125,32 @@ TEST_CASE("a bowl comes to rest on the ground") {
   CHECK(risen < 1e-4 * energy);
 }
 
+TEST_CASE("a small plate slides and spins on the ground as far as friction lets it") {
+  for (const double rate : {60.0, 240.0}) {
+    for (const double spin : {0.0, 20.0, 150.0}) {
+      for (const double mu : {0.0, 0.4}) {
+        test::Scene scene;
+        scene.settings.time_step = 1.0 / rate;
+        scene.add(test::make_plane());
+        auto& plate = scene.add(test::make_shell(test::square_mesh(0.005, 1)));  // goes far against its size
+        plate.friction = scene.bodies[0].friction = mu;
+        plate.pose.translation.y() = 5e-6;
+        plate.velocity.x() = 4.0;
+        plate.angular_velocity.y() = spin;
+        int cut = 0;
+        for (int i = 0; i < static_cast<int>(rate) / 4; ++i) {
+          scene.step();
+          cut += scene.report.failsafe_steps;
+        }
+        INFO(rate << " steps a second, spin " << spin << " rad/s, friction " << mu);
+        CHECK(cut == 0);
+        CHECK(scene.bodies[1].pose.translation.x() ==
+              Approx(4.0 * 0.25 - 0.5 * mu * 9.81 * 0.0625).epsilon(0.01));
+      }
+    }
+  }
+}
+
 TEST_CASE("shards of any speed stay above the ground") {
   core::Random random(3);
   for (const double speed : {1.0, 30.0, 300.0, 1000.0}) {
