@@ -76,6 +76,12 @@ Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::Impul
   return sum;
 }
 
+/// Who was seen in one part of a step may have broken in a later one.
+std::string name_of(const std::vector<body::Body>& bodies, body::BodyId id) {
+  const body::Body* body = body::find_body(bodies, id);
+  return body != nullptr ? body->name : "body " + std::to_string(id) + ", broken since";
+}
+
 void book_contact(const dynamics::ContactReport& contact, const std::vector<body::Body>& bodies, long steps,
                   ContactFigures& figures) {
   constexpr std::size_t kMostNames = 100;
@@ -87,8 +93,7 @@ void book_contact(const dynamics::ContactReport& contact, const std::vector<body
   for (const auto& [a, b] : contact.new_crossing_pairs) {
     ++figures.crossing_pairs;
     if (figures.crossing_names.size() < kMostNames)
-      figures.crossing_names.push_back(body::find_body(bodies, a)->name + " / " +
-                                       body::find_body(bodies, b)->name);
+      figures.crossing_names.push_back(name_of(bodies, a) + " / " + name_of(bodies, b));
   }
   figures.longest_cut = std::max(figures.longest_cut, contact.longest_cut);
   figures.failsafe_steps += contact.failsafe_steps > 0 ? 1 : 0;
