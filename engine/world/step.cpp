@@ -3,6 +3,7 @@
 // with the pieces in place of the whole.
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
 #include "engine/world/replace.h"
 #include "engine/world/state.h"
