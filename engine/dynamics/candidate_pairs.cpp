@@ -90,6 +90,7 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   w.rotation = b.pose.rotation;
   const double dt = settings.time_step;
   w.placed.collider = w.collider;
+  w.is_quiet = is_quiet(settings, b.velocity, b.angular_velocity, w.reach);
   if (b.motion == body::Motion::scripted) {
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;

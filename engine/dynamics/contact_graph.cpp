@@ -36,12 +36,16 @@ SolverContact make_solver_contact(const PairState& memory, const MotionWork& wor
   c.arm_b_start = found.on_b - b.start.translation;
   c.gap_start = found.gap;
   c.lean = found.lean;
+  c.has_sides = pair.has_sides;
+  c.can_creep = a.is_quiet && b.is_quiet && a.shape->kind != body::ShapeKind::sphere &&
+                b.shape->kind != body::ShapeKind::sphere;
   const auto known =
       std::lower_bound(memory.contacts.begin(), memory.contacts.end(), found.key,
                        [](const RememberedContact& r, std::uint64_t key) { return r.feature_key < key; });
   if (known != memory.contacts.end() && known->feature_key == found.key) {
     c.was_loaded = known->was_loaded;
     c.arrival_before = known->arrival_speed;
+    c.creep_before = known->creep;
     c.warm_start = {known->normal_impulse, c.tangent_u.dot(known->friction_impulse),
                     c.tangent_v.dot(known->friction_impulse)};
     c.warm_start *= work.warm_scale;

@@ -71,6 +71,7 @@ class IslandSolver {
       const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
       c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
       c.warm = c.warm_start;
+      c.held_from = -c.creep_before;
       c.arrival_speed = c.arrival_before;
       c.total.setZero();
       c.moment_point.setZero();
@@ -121,6 +122,7 @@ class IslandSolver {
       const Moved ma = moved(a, time), mb = moved(b, time);
       const Vec3 turned_a = ma.turn * c.arm_a_start, turned_b = mb.turn * c.arm_b_start;
       const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
+      c.change = change;
       const double gap = c.gap_start + c.normal.dot(change);
       c.slack = gap - c.kept_gap;
       // One point for both bodies, seen from both centres.
@@ -215,11 +217,21 @@ class IslandSolver {
     }
   }
 
+  // What friction holds is brought back to where it was when that began: what sweeps leave over would add up.
+  Vec2 way_back(const SolverContact& c) const {
+    if (!is_before_drift_ || !c.can_creep) return Vec2::Zero();
+    const Vec3 crept = c.change - c.held_from;
+    Vec2 back(c.tangent_u.dot(crept), c.tangent_v.dot(crept));
+    const double length = back.norm(), most = kMostBack * c.kept_gap;
+    back *= 0.2 / step_;
+    return length > most ? Vec2(back * (most / length)) : back;
+  }
+
   // Friction on the present normal impulse, in a circular cone.
   void rub(SolverContact& c, Vec3& u, Vec3& change) {
     if (c.friction <= 0.0) return;
     const double bound = c.friction * (c.impulse[0] + change[0]);
-    const Vec2 held(c.impulse[1], c.impulse[2]), slip(u[1], u[2]);
+    const Vec2 held(c.impulse[1], c.impulse[2]), slip = Vec2(u[1], u[2]) + way_back(c);
     const double kuu = c.response(1, 1), kvv = c.response(2, 2), kuv = c.response(1, 2);
     Vec2 wanted =
         held - Vec2(kvv * slip[0] - kuv * slip[1], kuu * slip[1] - kuv * slip[0]) / (kuu * kvv - kuv * kuv);
@@ -356,10 +368,12 @@ class IslandSolver {
     // turn.
     if (c.slack > kTouching * c.kept_gap) return -c.slack / step_;
     if (c.slack > 0.0) return 0.0;
-    // What is wedged cannot be opened: insisting would only press its bodies against each other, without end.
+    const double opening = std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
     const double bearable = kEased * c.strained_from;
-    const double ease = c.warm[0] > bearable ? std::max(kLeastEase, bearable / c.warm[0]) : 1.0;
-    return ease * std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
+    if (c.warm[0] <= bearable) return opening;
+    // What is wedged cannot be opened: insisting would only press its bodies against each other, without end.
+    // A heavy load on something solid is a weight.
+    return c.has_sides ? std::max(kLeastEase, bearable / c.warm[0]) * opening : 0.0;
   }
 
   // One sweep is mostly enough at rest; what arrives must not overshoot the gap.
@@ -448,6 +462,8 @@ class IslandSolver {
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
       if (!was_impact) c.warm = c.impulse;
+      if (!c.can_creep || was_impact || c.impulse.tail<2>().norm() >= kSliding * c.friction * c.impulse[0])
+        c.held_from = c.change;
       if (c.impulse.squaredNorm() == 0.0) continue;
       const Quat from_a = rotation_now(body(c.a)).conjugate(), from_b = rotation_now(body(c.b)).conjugate();
       const Vec3 p = c.impulse[0] * c.normal + c.impulse[1] * c.tangent_u + c.impulse[2] * c.tangent_v;
@@ -461,11 +477,13 @@ class IslandSolver {
   }
 
   static constexpr double kTouching = 0.05;    // of the kept gap
+  static constexpr double kSliding = 0.999;    // of the friction that there can be
+  static constexpr double kMostBack = 0.1;     // of the kept gap: creep beyond it does not count
   static constexpr double kResting = 1e-3;     // of the threshold: closing that is left at rest
   static constexpr double kLooseRest = 0.1;    // the same, where no contact is strained
   static constexpr double kStrain = 8.0;       // times the lighter body's weight
   static constexpr double kEased = 0.25;       // of what strains: opening is eased beyond it
-  static constexpr double kLeastEase = 0.05;   // so much is left where the load is a weight, however heavy
+  static constexpr double kLeastEase = 0.05;   // of solids, however much they bear
   static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.

@@ -40,7 +40,7 @@ void add_to_hash(const ContactState& state, core::Hash& hash) {
     hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
     hash.add(static_cast<std::uint64_t>(pair.is_exempt));
     for (const RememberedContact& c : pair.contacts) {
-      hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.arrival_speed);
+      hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.creep).add(c.arrival_speed);
       hash.add(static_cast<std::uint64_t>(c.was_loaded));
     }
   }

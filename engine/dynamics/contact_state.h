@@ -21,6 +21,7 @@ struct RememberedContact {
   std::uint64_t feature_key = 0;         // kind and numbers of both features
   double normal_impulse = 0.0;           // N s, of one substep
   Vec3 friction_impulse = Vec3::Zero();  // N s, of one substep, world, on body a
+  Vec3 creep = Vec3::Zero();             // m, world: how far a has crept on b since friction holds it
   double arrival_speed = 0.0;            // m/s: closing speed of an impact that has not bounced yet
   bool was_loaded = false;               // carried an impulse in the last step
 };
@@ -32,7 +33,7 @@ struct PairState {
   body::BodyId body_a = 0, body_b = 0;  // body_a < body_b
   double kept_gap = 0.0;     // m: min(usual, least gap seen so far): never pushes newborn pieces apart
   bool is_touching = false;  // a sleeper and what disturbs it, or holds it up
-  bool has_parted = false;   // touched a step ago
+  bool has_parted = false;   // pressed a step ago, and touches no longer
   int trouble_age = 1000;    // steps since the continuous pass last had to act here
   int stuck_steps = 0;       // steps in a row in which the pair had to be cut short
   bool is_exempt = false;    // crossed when it was first seen, and still does: passes until it has come apart

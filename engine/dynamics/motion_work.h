@@ -25,6 +25,7 @@ struct WorkBody {
   Vec3 inverse_moments = Vec3::Zero();  // about the principal axes; zero if nothing can turn it
   double inverse_mass = 0.0;            // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
   bool is_active = false;               // moves in this step: awake dynamic, or scripted with a velocity
+  bool is_quiet = false;                // at the step's start
   double reach = 0.0;                   // m: greatest distance of a vertex from the centre
 
   Pose start, end;
@@ -72,9 +73,13 @@ struct SolverContact {
 
   // At the present pose.
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero(), point = Vec3::Zero();
-  Mat3 response = Mat3::Zero();  // relative velocity by impulse, in (normal, tangents), 1/kg
-  Vec3 weights = Vec3::Zero();   // 1 / diagonal of it, kg
-  double slack = 0.0;            // m: gap less kept gap
+  Mat3 response = Mat3::Zero();   // relative velocity by impulse, in (normal, tangents), 1/kg
+  Vec3 weights = Vec3::Zero();    // 1 / diagonal of it, kg
+  double slack = 0.0;             // m: gap less kept gap
+  Vec3 change = Vec3::Zero();     // m: of a against b since the step's start
+  Vec3 held_from = Vec3::Zero();  // m: `change` where friction began to hold
+  bool can_creep = false;         // both are quiet, and no sphere rolls
+  bool has_sides = false;         // one of the two is solid
   // N s along the normal in a substep: many times what the lighter body weighs. What is left at such a
   // contact is felt far away.
   double strained_from = 0.0;
@@ -82,11 +87,12 @@ struct SolverContact {
   Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
   Vec3 warm = Vec3::Zero();     // to start the next substep from, in the same axes
   Vec2 rolling_impulse = Vec2::Zero();
-  Vec3 warm_start = Vec3::Zero();  // of the last step, to begin this one with
-  double arrival_speed = 0.0;      // m/s, of an impact that has not bounced
-  double arrival_before = 0.0;     // m/s, the same at the start of the step
-  double target = 0.0;             // m/s, of the bounce
-  double left_over = 0.0;          // m/s, along the normal, that the last visit's friction brought
+  Vec3 creep_before = Vec3::Zero();  // m, at the start of the step
+  Vec3 warm_start = Vec3::Zero();    // of the last step, to begin this one with
+  double arrival_speed = 0.0;        // m/s, of an impact that has not bounced
+  double arrival_before = 0.0;       // m/s, the same at the start of the step
+  double target = 0.0;               // m/s, of the bounce
+  double left_over = 0.0;            // m/s, along the normal, that the last visit's friction brought
   bool is_arriving = false;
 
   // Of the whole step.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
@@ -58,8 +57,10 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
   state.substep = work.substep;
   for (const WorkPair& pair : work.pairs) {
     PairState& memory = state.pairs[at(pair.state)];
+    memory.has_parted = std::any_of(memory.contacts.begin(), memory.contacts.end(),
+                                    [](const RememberedContact& c) { return c.was_loaded; });
     memory.contacts.clear();
-    memory.has_parted = std::exchange(memory.is_touching, false);
+    memory.is_touching = false;
     memory.trouble_age = std::min(memory.trouble_age + 1, kNoTrouble);
     const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
     // A sleeper and what lies on it quietly keep their memory through its sleep.
@@ -72,8 +73,9 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
     PairState& memory = state.pairs[at(work.pairs[at(c.pair)].state)];
     const bool is_loaded = c.total.squaredNorm() > 0.0;
     memory.is_touching = memory.is_touching || is_loaded || c.slack <= c.kept_gap;
-    memory.contacts.push_back(
-        {c.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v, c.arrival_speed, is_loaded});
+    const Vec3 crept = is_loaded ? Vec3(c.change - c.held_from) : Vec3::Zero();
+    memory.contacts.push_back({c.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v,
+                               crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded});
   }
   for (const WorkPair& pair : work.pairs) {
     PairState& memory = state.pairs[at(pair.state)];

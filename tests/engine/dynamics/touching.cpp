@@ -86,6 +86,27 @@ TEST_CASE("what is placed touching is not blown open, nor cut short") {
   }
 }
 
+TEST_CASE("bowls nested within 1e-5 of their size stay so, and leave each other freely") {
+  for (const double gap : {1e-5 * kWidth, 5e-6 * kWidth}) {
+    test::Scene scene;
+    scene.settings.gravity.setZero();
+    // At the rim the walls lean by a sixteenth of a turn: there the gap is the least.
+    const double shift = gap / core::sin(core::kPi / 16.0);
+    scene.add(kBowl.make(0.0));
+    scene.add(kBowl.make(shift));
+    const Outcome still = run(scene, 24);
+    INFO("gap " << gap / kWidth << " of their size: fastest " << still.fastest << " m/s");
+    CHECK(still.cut == 0);
+    CHECK(still.exempt == 0);
+    CHECK(still.fastest < 1e-8);
+    scene.bodies[1].velocity = Vec3(0, 1.0, 0);
+    const Outcome leaving = run(scene, 120);
+    CHECK(leaving.cut == 0);
+    CHECK(scene.bodies[0].velocity.norm() < 1e-6);
+    CHECK(scene.bodies[1].velocity.y() == Approx(1.0).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("plates edge to edge in one plane within 1e-5 of their size stay so, and slide apart freely") {
   test::Scene scene;
   scene.settings.gravity.setZero();
