@@ -53,7 +53,7 @@ class Guard {
         must_test_[p] = 0;
     }
     bool has_hits = test();
-    if (has_hits && solve_again()) has_hits = test();
+    if (has_hits && settings_.continuous_rounds > 0 && solve_again()) has_hits = test();
     int hits_before = 1 << 30;
     for (int round = 0; has_hits && round < settings_.continuous_rounds; ++round) {
       const int hits = count_hits();
@@ -68,7 +68,8 @@ class Guard {
     }
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
     // great shards cannot hold them apart by its mass.
-    for (int round = 0; has_hits && round < kLastRounds; ++round) {
+    const int last_rounds = settings_.continuous_rounds > 0 ? kLastRounds : 0;
+    for (int round = 0; has_hits && round < last_rounds; ++round) {
       ++report_.rounds;
       open(0.0, Yielding::alike);
       has_hits = test();
