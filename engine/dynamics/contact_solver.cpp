@@ -355,7 +355,7 @@ class IslandSolver {
         const std::size_t k = i < count ? i : 2 * count - 1 - i;
         SolverContact& c = contact(k);
         excess = std::max(excess, visit_contact(k, c));
-        has_strain = has_strain || c.impulse[0] > c.strained_from;
+        has_strain = has_strain || std::min(c.impulse[0], c.warm[0]) > c.strained_from;
       }
       const double enough = round + 1 < how.plain ? how.enough : how.loose;
       if (excess < (has_strain ? how.tight : enough)) return;
