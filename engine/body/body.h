@@ -31,7 +31,7 @@ struct Body {
   Mat3 inverse_inertia = Mat3::Zero();   // body space, 1/(kg m2); 0 unless dynamic
 
   double friction = 0.5;
-  double rolling_friction = 0.0;  // m
+  double rolling_friction = 0.0;  // m: radius of the patch that it rolls, and spins, on
   double restitution = 0.3;
   double young = 70e9;  // Pa, for the contact's own compliance
   double poisson = 0.22;

@@ -245,22 +245,24 @@ class IslandSolver {
     change[2] = wanted[1] - c.impulse[2];
   }
 
-  // Rolling friction: a couple that slows the part of the relative spin along the tangents.
+  // Rolling friction: a couple that slows the part of the relative spin along the tangents. What it rolls on
+  // is a patch of about this radius, whose friction also slows the spin about the normal.
   void resist_rolling(SolverContact& c) {
     if (c.rolling <= 0.0 || c.impulse[0] <= 0.0) return;
     WorkBody &a = body(c.a), &b = body(c.b);
-    const Vec3 axes[2] = {c.tangent_u, c.tangent_v};
-    Vec2 wanted = c.rolling_impulse;
-    for (int k = 0; k < 2; ++k) {
+    const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
+    Vec3 wanted = c.rolling_impulse;
+    for (int k = 0; k < 3; ++k) {
       double response = 0.0;
       if (a.inverse_mass > 0.0) response += axes[k].dot(a.inverse_inertia * axes[k]);
       if (b.inverse_mass > 0.0) response += axes[k].dot(b.inverse_inertia * axes[k]);
       if (response > 0.0) wanted[k] -= axes[k].dot(a.spin - b.spin) / response;
     }
-    const double bound = c.rolling * c.impulse[0];
-    if (wanted.norm() > bound) wanted *= bound / wanted.norm();
-    const Vec2 change = wanted - c.rolling_impulse;
-    const Vec3 couple = change[0] * axes[0] + change[1] * axes[1];
+    const double bound = c.rolling * c.impulse[0], twist = kPatch * c.friction * bound;
+    wanted[0] = std::clamp(wanted[0], -twist, twist);
+    if (const double length = wanted.tail<2>().norm(); length > bound) wanted.tail<2>() *= bound / length;
+    const Vec3 change = wanted - c.rolling_impulse;
+    const Vec3 couple = change[0] * axes[0] + change[1] * axes[1] + change[2] * axes[2];
     for (WorkBody* w : {&a, &b}) {
       if (w->inverse_mass <= 0.0) continue;
       const Vec3 turn = w->inverse_inertia * couple;
@@ -488,9 +490,10 @@ class IslandSolver {
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = 1200;
-  static constexpr double kBounced = 1e-9;    // of the speed: error of a bounce
-  static constexpr double kStill = 0.25;      // of what a sweep may leave
-  static constexpr double kFastSpin = 0.005;  // rad a substep
+  static constexpr double kPatch = 2.0 / 3.0;  // mean arm of friction over a patch, of its radius
+  static constexpr double kBounced = 1e-9;     // of the speed: error of a bounce
+  static constexpr double kStill = 0.25;       // of what a sweep may leave
+  static constexpr double kFastSpin = 0.005;   // rad a substep
 
   const ContactSettings& settings_;
   const Island& island_;

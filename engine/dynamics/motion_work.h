@@ -84,15 +84,15 @@ struct SolverContact {
   // contact is felt far away.
   double strained_from = 0.0;
 
-  Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
-  Vec3 warm = Vec3::Zero();     // to start the next substep from, in the same axes
-  Vec2 rolling_impulse = Vec2::Zero();
-  Vec3 creep_before = Vec3::Zero();  // m, at the start of the step
-  Vec3 warm_start = Vec3::Zero();    // of the last step, to begin this one with
-  double arrival_speed = 0.0;        // m/s, of an impact that has not bounced
-  double arrival_before = 0.0;       // m/s, the same at the start of the step
-  double target = 0.0;               // m/s, of the bounce
-  double left_over = 0.0;            // m/s, along the normal, that the last visit's friction brought
+  Vec3 impulse = Vec3::Zero();          // of this substep, in (normal, tangents), N s
+  Vec3 warm = Vec3::Zero();             // to start the next substep from, in the same axes
+  Vec3 rolling_impulse = Vec3::Zero();  // couple, N m s, in the same axes
+  Vec3 creep_before = Vec3::Zero();     // m, at the start of the step
+  Vec3 warm_start = Vec3::Zero();       // of the last step, to begin this one with
+  double arrival_speed = 0.0;           // m/s, of an impact that has not bounced
+  double arrival_before = 0.0;          // m/s, the same at the start of the step
+  double target = 0.0;                  // m/s, of the bounce
+  double left_over = 0.0;               // m/s, along the normal, that the last visit's friction brought
   bool is_arriving = false;
 
   // Of the whole step.

@@ -21,7 +21,7 @@ struct Material {
   double grain_size = 0.0;        // mean distance of grain seeds, m; 0: no grains
   double grain_strength = 0.6;    // strength of grain boundaries, share of the material's
   double friction = 0.5;          // Coulomb, dimensionless
-  double rolling_friction = 0.0;  // m
+  double rolling_friction = 0.0;  // m: radius of the patch that it rolls, and spins, on
   double restitution = 0.3;       // Newton, in [0, 1]
   double thickness = 1e-3;        // of shells, m
 };

@@ -130,6 +130,25 @@ TEST_CASE("a sliding ball comes to roll") {
   CHECK(scene.bodies[1].velocity.x() == Approx(5.0 / 7.0 * v0).epsilon(0.01));
 }
 
+TEST_CASE("a ball that spins on the spot is slowed by the friction of the patch it rests on") {
+  auto scene = ground_scene();
+  scene.settings.has_sleep = false;
+  const double radius = 0.05, patch = 0.002, friction = 0.4, spin = 30.0;
+  scene.settings.overrides = {{0, 0, friction, 0.0}};
+  auto ball = test::make_sphere(radius, Vec3(0, radius, 0));
+  ball.rolling_friction = patch;
+  ball.angular_velocity = Vec3(0, spin, 0);
+  scene.add(std::move(ball));
+  // The couple 2/3 mu b m g on 2/5 m r^2.
+  const double slowing = (2.0 / 3.0) * friction * patch * 9.81 / (0.4 * radius * radius);
+  const int half = static_cast<int>(0.5 * spin / slowing * 240.0);
+  for (int i = 0; i < half; ++i) scene.step();
+  CHECK(scene.bodies[1].angular_velocity.y() == Approx(spin - slowing * half / 240.0).epsilon(0.01));
+  for (int i = 0; i < half + 24; ++i) scene.step();
+  CHECK(scene.bodies[1].angular_velocity.norm() < 1e-3);
+  CHECK(scene.bodies[1].velocity.norm() < 1e-3);
+}
+
 TEST_CASE("colliding bodies keep momentum and lose what Newton's rule says") {
   core::Random random(7);
   const auto draw = [&] {
