@@ -282,7 +282,7 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
       if (c.gap > 2.0 * pair.kept_gap + std::max(0.0, closing * settings.time_step)) continue;
       const bool is_hit = closing > pair.threshold;
       if (!is_hit && !is_strong) continue;
-      const double speed = w.velocity.norm() + w.spin.norm() * w.reach;
+      const double speed = greatest_speed(w.velocity, w.spin, w.reach);
       const double momentum =
           w.inverse_mass > 0.0 ? speed / w.inverse_mass : std::numeric_limits<double>::infinity();
       work.to_wake.push_back({a_sleeps ? a.id : b.id, is_hit ? momentum : kOfTouch * momentum});

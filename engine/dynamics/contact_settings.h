@@ -27,7 +27,7 @@ struct ContactSettings {
   double search_slack = 0.012;  // feature lists are kept until this share of the pair's size is used up
   double warm_start = 0.95;     // share of the last impulses to begin with
   int continuous_rounds = 6;    // rounds of the continuous pass before the failsafe; 0: that at once
-  bool has_sleep = true;        // islands at rest fall asleep
+  bool has_sleep = true;        // what rests falls asleep
   double sleep_time = 0.5;      // s of quiet before sleep
   bool has_ways = false;        // ContactReport::ways is filled
   bool has_caches = true;       // feature lists are kept between steps; the results are the same without

@@ -100,15 +100,19 @@ double impact_threshold(const ContactSettings& settings, double kept_gap) {
   return 2.0 * g * settings.time_step + std::sqrt(8.0 * g * kept_gap) + 1e-3 * kept_gap / settings.time_step;
 }
 
+double greatest_speed(const Vec3& velocity, const Vec3& spin, double reach) {
+  return velocity.norm() + spin.norm() * reach;
+}
+
 bool is_quiet(const ContactSettings& settings, const Vec3& velocity, const Vec3& spin, double reach) {
-  return velocity.norm() + spin.norm() * reach <= quiet_speed(settings, reach);
+  return greatest_speed(velocity, spin, reach) <= quiet_speed(settings, reach);
 }
 
 bool could_move(const ContactSettings& settings, const Body& mover, const Body& sleeper) {
   const double reach = mover.shape->bounding_radius;
   const double speed =
-      std::max(quiet_speed(settings, reach), mover.velocity.norm() + mover.angular_velocity.norm() * reach);
-  return speed / mover.inverse_mass >= least_momentum(settings, sleeper);
+      std::max(quiet_speed(settings, reach), greatest_speed(mover.velocity, mover.angular_velocity, reach));
+  return speed >= mover.inverse_mass * least_momentum(settings, sleeper);
 }
 
 void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
@@ -185,15 +189,21 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
     if (!b.is_dynamic() || !b.is_awake) continue;
     is_restless[i] = b.quiet_time < settings.sleep_time || (!is_held[i] && !is_weightless) ? 1 : 0;
   }
-  const auto neighbours = find_neighbours(bodies, state);
+  std::vector<char> is_kept_up = is_restless;
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_touching) continue;
+    const int ends[2] = {find_number(bodies, pair.body_a), find_number(bodies, pair.body_b)};
+    for (int k = 0; k < 2; ++k) {
+      if (ends[k] < 0 || ends[1 - k] < 0 || !is_restless[static_cast<std::size_t>(ends[k])]) continue;
+      const auto other = static_cast<std::size_t>(ends[1 - k]);
+      if (bodies[other].is_dynamic() &&
+          could_move(settings, bodies[static_cast<std::size_t>(ends[k])], bodies[other]))
+        is_kept_up[other] = 1;
+    }
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
-    if (!b.is_dynamic() || !b.is_awake || is_restless[i]) continue;
-    if (std::any_of(neighbours[i].begin(), neighbours[i].end(), [&](int n) {
-          const Body& other = bodies[static_cast<std::size_t>(n)];
-          return is_restless[static_cast<std::size_t>(n)] != 0 && could_move(settings, other, b);
-        }))
-      continue;
+    if (!b.is_dynamic() || !b.is_awake || is_kept_up[i]) continue;
     b.is_awake = false;
     b.velocity.setZero();
     b.angular_velocity.setZero();

@@ -14,6 +14,9 @@ namespace shatterbox::dynamics {
 /// few gaps.
 double impact_threshold(const ContactSettings& settings, double kept_gap);
 
+/// At most this fast, m/s, is any point of a body of this `reach` (m).
+double greatest_speed(const Vec3& velocity, const Vec3& spin, double reach);
+
 /// True if no point of a body of this `reach` (m) moves noticeably.
 bool is_quiet(const ContactSettings& settings, const Vec3& velocity, const Vec3& spin, double reach);
 
