@@ -15,26 +15,11 @@ Size at(int i) {
 }
 
 constexpr double kRestLength = 4.0;  // thicknesses: length that drives a crack on after a rest
-constexpr double kLeastEntry =
-    0.156;                         // sine of the least angle at which a crack leaves an edge, about 9 degrees
-constexpr double kMostTurn = 1.2;  // rad, in one element
-constexpr double kParallel = 0.9;  // cosine above which two cracks count as side by side
-constexpr double kJoinPull = 0.8;  // how hard a crack turns to one beside it
+// A crack right across a strip that the first cracks left unloads it that many of its lengths far.
+constexpr double kStripRelief = 1.5;
 
 Vec2 left_of(const Vec2& d) {
   return {-d.y(), d.x()};
-}
-
-Vec2 turned(const Vec2& d, double angle) {
-  const double c = core::cos(angle);
-  const double s = core::sin(angle);
-  return {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
-}
-
-/// Normal stress on a plane stress's cut along a unit direction.
-double stress_across(const stress::PlaneStress& s, const Vec2& along) {
-  const Vec2 n = left_of(along);
-  return s.x() * n.x() * n.x() + s.y() * n.y() * n.y() + 2.0 * s.z() * n.x() * n.y();
 }
 
 }  // namespace
@@ -44,21 +29,8 @@ CrackTracer::CrackTracer(ShellCutter& cutter, TracerSetup setup)
       setup_(std::move(setup)),
       elements_(cutter.elements()),
       exits_(cutter, *setup_.planes, setup_.thickness),
-      next_crack_(setup_.first_crack) {
-  toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
-}
-
-double CrackTracer::distance_to_load(const Vec3& p) const {
-  double nearest = 1e300;
-  for (const LoadCentre& centre : setup_.centres)
-    nearest = std::min(nearest, std::max((p - centre.point).norm(), centre.radius));
-  return nearest;
-}
-
-double CrackTracer::stress_intensity(const stress::PlaneStress& tensor, const Vec2& along,
-                                     double length) const {
-  return std::max(0.0, stress_across(tensor, along)) * core::sqrt(0.5 * core::kPi * length);
-}
+      courses_(cutter, exits_, setup_, present_),
+      next_crack_(setup_.first_crack) {}
 
 bool CrackTracer::pay(double length, double toughness_share) {
   const double cost =
@@ -80,178 +52,78 @@ void CrackTracer::record(const LiveTip& tip, const ElementPlane& plane, const Ve
   present_.add({begin, end, tip.tip.crack, tip.branch, tip.branch_length + 0.5 * length});
 }
 
-Vec2 CrackTracer::steer_to_neighbour(const LiveTip& tip, const ElementPlane& plane, const Vec2& start,
-                                     const Vec2& heading, double crack_length) const {
-  const Vec3 p = plane.space(start);
-  const Vec3 forward = plane.direction(heading);
-  const double reach = std::min(0.25 * crack_length, 0.3 * distance_to_load(p));
-  double nearest = reach;
-  Vec2 towards = Vec2::Zero();
-  present_.visit_near(p, reach, [&](const CrackStretch& s, const Vec3& near, double distance) {
-    if (distance >= nearest || !(distance > 0.0)) return true;
-    if (s.crack == tip.tip.crack) {
-      const double apart =
-          s.branch == tip.branch ? tip.branch_length - s.branch_length : tip.branch_length + s.branch_length;
-      if (apart < 3.0 * reach) return true;
-    }
-    const Vec3 along = s.end - s.begin;
-    const double length = along.norm();
-    if (!(length > 0.0) || std::abs(along.dot(forward)) < kParallel * length) return true;
-    if ((near - p).dot(forward) < -0.3 * distance) return true;
-    const Vec2 flat = plane.flat_direction(near - p);
-    if (!(flat.squaredNorm() > 0.0)) return true;
-    nearest = distance;
-    towards = flat.normalized();
-    return true;
-  });
-  return (heading + kJoinPull * towards).normalized();
-}
-
-void CrackTracer::follow_grains(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start,
-                                Course& course) const {
-  const CutCell& cell = cutter_.cell(entry.cell);
-  const ElementPlane& plane = (*setup_.planes)[at(cell.element)];
-  // A crack that could run straight on with the energy release G turns by an angle into a weaker plane, where
-  // it finds about G cos^4(angle / 2), if that is more of the plane's toughness (share^2 of the material's)
-  // than G is of its own (M.-Y. He, J. W. Hutchinson, J. Appl. Mech. 56, 1989).
-  const double share = setup_.material->grain_strength;
-  const double weak = share * share;
-  double best = 1.0;
-  for (const GrainCrossing& crossing : find_grain_crossings(*setup_.grains, elements_, cell.element)) {
-    if (crossing.edge == tip.tip.edge) continue;
-    const auto stretch = cutter_.find_stretch(cell.element, crossing.edge, crossing.parameter);
-    if (!stretch || stretch->cell != entry.cell) continue;
-    const CrackExit exit = exits_.settle_on_edge(stretch->cell, stretch->side, crossing.parameter);
-    const Vec2 along = plane.flat(exit.place.barycentric) - start;
-    if (!(along.squaredNorm() > 0.0)) continue;
-    const Vec2 direction = along.normalized();
-    const double forward = direction.dot(course.heading);
-    if (forward <= 0.0) continue;
-    // On a boundary already: the chord lies on it if one of its two grains is at the other end too.
-    const bool is_on_grain =
-        tip.grain_a >= 0 && (crossing.grain_a == tip.grain_a || crossing.grain_a == tip.grain_b ||
-                             crossing.grain_b == tip.grain_a || crossing.grain_b == tip.grain_b);
-    const double release = 0.5 * (1.0 + forward);  // cos^2 of half the angle
-    const double drive = release * release / (is_on_grain ? weak : 0.5 * (1.0 + weak));
-    if (drive <= best) continue;
-    best = drive;
-    course.exit = exit;
-    course.is_on_grain = is_on_grain;
-    course.grain_a = crossing.grain_a;
-    course.grain_b = crossing.grain_b;
-    course.toughness_share = is_on_grain ? share : 1.0;
-    course.release_share = release;
-  }
-}
-
-CrackTracer::Course CrackTracer::choose_course(const LiveTip& tip, const EdgeStretch& entry,
-                                               const Vec2& start, Vec2 heading,
-                                               const stress::PlaneStress& tensor, double crack_length) const {
-  const CutCell& cell = cutter_.cell(entry.cell);
-  const ElementPlane& plane = (*setup_.planes)[at(cell.element)];
-  const stress::PrincipalStress principal = stress::principal_stress(tensor);
-  Vec2 target = left_of(principal.direction);
-  if (target.dot(heading) < 0.0) target = -target;
-  const double anisotropy =
-      std::min(1.0, std::max(0.0, (principal.first - principal.second) / principal.first));
-  double angle = core::atan2(cross(heading, target), heading.dot(target));
-  angle = std::min(kMostTurn, std::max(-kMostTurn, angle + setup_.noise->at(plane.space(start))));
-  // Where both principal stresses are alike, and over less than a thickness, a crack goes straight on.
-  angle *= 1.0 - core::exp(-anisotropy * anisotropy * plane.scale / (2.0 * setup_.thickness));
-  Course course;
-  course.heading = steer_to_neighbour(tip, plane, start, turned(heading, angle), crack_length);
-  if (setup_.grains && !setup_.grains->is_empty()) follow_grains(tip, entry, start, course);
-  return course;
-}
-
 void CrackTracer::arrest(LiveTip& tip) {
   tip.is_running = false;
   open_tips_.push_back(tip.tip);
 }
 
-void CrackTracer::advance(LiveTip& tip, stress::ShellFace face, double& crack_length) {
-  const auto entry = cutter_.find_stretch(tip.tip.element, tip.tip.edge, tip.tip.parameter);
+void CrackTracer::advance(LiveTip& tip, double& crack_length) {
+  const auto entry = courses_.enter(tip.tip);
   if (!entry) {
     tip.is_running = false;  // a free edge, or another cut was met
     return;
   }
-  const CutCell& cell = cutter_.cell(entry->cell);
+  const auto course = courses_.find(tip, *entry, crack_length);
+  if (!course) return arrest(tip);
+  tip.intensity = course->intensity;
+  if (!cut_along(tip, *entry, *course, crack_length)) arrest(tip);
+}
+
+/// Cuts the cell; if the chord would leave a part without area, one that leads more to the middle of the cell
+/// is tried. False if none is possible, or paid for.
+bool CrackTracer::cut_along(LiveTip& tip, const TipEntry& entry, const Course& course, double& crack_length) {
+  const ElementPlane& plane = *entry.plane;
+  const CutCell& cell = cutter_.cell(entry.stretch.cell);
   const int element = cell.element;
-  const ElementPlane& plane = (*setup_.planes)[at(element)];
-  if (!(plane.scale > 0.0)) return arrest(tip);
-  const Size n = cell.polygon.size();
-  const int local_edge = cell.polygon[at(entry->side)].side_id;
-  const BorderPlace start{entry->side, false,
-                          barycentric_on_edge(elements_, element, local_edge, tip.tip.parameter)};
-  const Vec2 from = plane.flat(start.barycentric);
-  const Vec2 side = plane
-                        .flat(cell.polygon[(at(entry->side) + 1) % n].barycentric -
-                              cell.polygon[at(entry->side)].barycentric)
-                        .normalized();
-  const Vec2 inward = left_of(side);
-  // Over a fold the heading keeps its parts along and across the edge; it always leads inwards.
-  const auto inwards = [&](const Vec2& d) {
-    const double across = std::max(kLeastEntry, d.dot(inward));
-    const double along = std::min(1.0, std::max(-1.0, d.dot(side)));
-    return Vec2(inward * across + side * along).normalized();
-  };
-  const double along = std::min(1.0, std::max(-1.0, tip.tip.heading.dot(plane.direction(side))));
-  const Vec2 heading = inwards(along * side + core::sqrt(1.0 - along * along) * inward);
-
-  const stress::PlaneStress tensor = (*setup_.stresses)[at(cell.origin)].at(face);
-  if (!(stress::principal_stress(tensor).first > 0.0)) return arrest(tip);
-  Course course = choose_course(tip, *entry, from, heading, tensor, crack_length);
-  course.heading = inwards(course.heading);
-  tip.intensity = course.release_share * stress_intensity(tensor, course.heading, tip.driven_length);
-  if (tip.intensity < toughness_ * course.toughness_share) return arrest(tip);
-
-  // If the chord would leave a part without area, one that leads more to the middle of the cell is tried.
   Vec2 middle = Vec2::Zero();
   for (const geometry::ShellCorner& corner : cell.polygon) middle += plane.flat(corner.barycentric);
-  const Vec2 to_middle = (middle / static_cast<double>(n) - from).normalized();
+  const Vec2 to_middle = (middle / static_cast<double>(cell.polygon.size()) - entry.from).normalized();
   const int side_id = cutter_.new_side_id();
   for (int attempt = 0; attempt < 5; ++attempt) {
     const double bend = 0.25 * attempt;
     const Vec2 direction = ((1.0 - bend) * course.heading + bend * to_middle).normalized();
-    const auto exit = course.exit && attempt == 0
+    const bool is_to_grain = course.exit && attempt == 0;
+    const auto exit = is_to_grain
                           ? course.exit
-                          : exits_.find_exit(entry->cell, entry->side, from, direction);
+                          : exits_.find_exit(entry.stretch.cell, entry.stretch.side, entry.from, direction);
     if (!exit) continue;
     const Vec2 to = plane.flat(exit->place.barycentric);
-    const double length = (to - from).norm();
+    const double length = (to - entry.from).norm();
     if (!(length > 0.0)) continue;
-    const bool is_on_grain = attempt == 0 && course.is_on_grain;
+    const bool is_on_grain = is_to_grain && course.is_on_grain;
     const double energy_before = energy_;
-    if (!pay(length, is_on_grain ? course.toughness_share : 1.0)) return arrest(tip);
-    if (!cutter_.cut(entry->cell, start, exit->place, SideKind::crack, side_id)) {
+    if (!pay(length, is_on_grain ? course.toughness_share : 1.0)) return false;
+    if (!cutter_.cut(entry.stretch.cell, entry.start, exit->place, SideKind::crack, side_id)) {
       energy_ = energy_before;
       continue;
     }
-    record(tip, plane, from, to, side_id, is_on_grain);
+    record(tip, plane, entry.from, to, side_id, is_on_grain);
     crack_length += length;
     tip.branch_length += length;
     tip.driven_length += length;
     tip.tip.length += length;
-    tip.tip.heading = plane.direction((to - from) / length);
-    const bool goes_on_grain = course.exit && attempt == 0;
-    tip.grain_a = goes_on_grain ? course.grain_a : -1;
-    tip.grain_b = goes_on_grain ? course.grain_b : -1;
-    if (exit->has_met_cut || !exit->is_on_edge || elements_.topology.triangle_count(exit->edge) != 2) {
-      tip.is_running = false;
-      return;
-    }
-    const int first = elements_.topology.first_triangle[at(exit->edge)];
-    const int a = elements_.topology.edge_triangles[at(first)];
-    const int b = elements_.topology.edge_triangles[at(first) + 1];
-    tip.tip.element = a == element ? b : a;
-    tip.tip.edge = exit->edge;
-    tip.tip.parameter = exit->parameter;
-    return;
+    tip.tip.heading = plane.direction((to - entry.from) / length);
+    tip.grain_a = is_to_grain ? course.grain_a : -1;
+    tip.grain_b = is_to_grain ? course.grain_b : -1;
+    tip.is_running = go_over(*exit, element, tip.tip);
+    return true;
   }
-  arrest(tip);
+  return false;
 }
 
-void CrackTracer::run(std::array<LiveTip, 2>& tips, int count, stress::ShellFace face) {
+/// To the element behind an exit. False where there is none.
+bool CrackTracer::go_over(const CrackExit& exit, int element, CrackTip& tip) const {
+  if (exit.has_met_cut || !exit.is_on_edge || elements_.topology.triangle_count(exit.edge) != 2) return false;
+  const int first = elements_.topology.first_triangle[at(exit.edge)];
+  const int a = elements_.topology.edge_triangles[at(first)];
+  const int b = elements_.topology.edge_triangles[at(first) + 1];
+  tip.element = a == element ? b : a;
+  tip.edge = exit.edge;
+  tip.parameter = exit.parameter;
+  return true;
+}
+
+void CrackTracer::run(std::array<LiveTip, 2>& tips, int count) {
   double crack_length = 0.0;
   for (int i = 0; i < count; ++i) crack_length += tips[at(i)].tip.length;
   // A crack cannot visit more cells than there are; what runs on longer has lost its way.
@@ -262,7 +134,7 @@ void CrackTracer::run(std::array<LiveTip, 2>& tips, int count, stress::ShellFace
       if (tips[at(i)].is_running && (!next || tips[at(i)].intensity > next->intensity)) next = &tips[at(i)];
     if (!next) return;
     const double before = crack_length;
-    advance(*next, face, crack_length);
+    advance(*next, crack_length);
     for (int i = 0; i < count; ++i)
       if (&tips[at(i)] != next) tips[at(i)].driven_length += crack_length - before;
     const int own = next->tip.crack - setup_.first_crack;
@@ -281,20 +153,27 @@ void CrackTracer::resume(const std::vector<CrackTip>& tips) {
     live[0].driven_length = kRestLength * setup_.thickness;
     const auto& stress_here = (*setup_.stresses)[at(cutter_.cell(entry->cell).origin)];
     const Size before = segments_.size();
-    run(live, 1, stress::worst_stress(stress_here).face);
+    live[0].face = stress::worst_stress(stress_here).face;
+    run(live, 1);
     if (segments_.size() > before) ++resumed_count_;
   }
 }
 
 bool CrackTracer::is_shielded(const Candidate& candidate) const {
   const Vec3 p = position_in_element(elements_, candidate.element, candidate.barycentric);
-  const double reach = distance_to_load(p) / core::sqrt(candidate.overload);
+  const NearestLoad nearest = find_nearest_load(setup_, p);
+  const double reach = nearest.distance / core::sqrt(candidate.overload);
   const double spacing = setup_.material->crack_spacing;
+  // Rings, which open by bending, unload what bending reaches: strips of a flat pane bend as a whole, in a
+  // curved shell bending dies out.
+  const double relief =
+      setup_.generation > 0 ? std::min(nearest.distance, nearest.load->bending_length) : 0.0;
+  const double farthest = std::max(spacing * reach, relief);
   bool is_near = false;
-  present_.visit_near(p, spacing * reach, [&](const CrackStretch& s, const Vec3&, double distance) {
+  present_.visit_near(p, farthest, [&](const CrackStretch& s, const Vec3&, double distance) {
     const int own = s.crack - setup_.first_crack;
     const double length = own >= 0 ? crack_lengths_[at(own)] : reach;
-    is_near = distance < spacing * std::min(length, reach);
+    is_near = distance < std::max(spacing * std::min(length, reach), std::min(kStripRelief * length, relief));
     return !is_near;
   });
   return is_near;
@@ -334,19 +213,13 @@ bool CrackTracer::try_start(const Candidate& candidate) {
     tip.tip.length = tip.branch_length = 0.5 * length;
     tip.driven_length = length;
     tip.intensity = 1e300;
+    tip.face = worst.face;
     if (exit == &*forth) record(tip, plane, from, to, side_id, false);
-    if (exit->has_met_cut || !exit->is_on_edge || elements_.topology.triangle_count(exit->edge) != 2)
-      continue;
-    const int first = elements_.topology.first_triangle[at(exit->edge)];
-    const int a = elements_.topology.edge_triangles[at(first)];
-    const int b = elements_.topology.edge_triangles[at(first) + 1];
-    tip.tip.element = a == candidate.element ? b : a;
-    tip.tip.edge = exit->edge;
-    tip.tip.parameter = exit->parameter;
+    if (!go_over(*exit, candidate.element, tip.tip)) continue;
     tip.tip.heading = plane.direction((exit == &*forth ? to - from : Vec2(from - to)) / length);
     tips[at(count++)] = tip;
   }
-  run(tips, count, worst.face);
+  run(tips, count);
   return true;
 }
 

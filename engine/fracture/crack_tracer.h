@@ -6,21 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/fracture/crack_exit.h"
-#include "engine/fracture/crack_set.h"
-#include "engine/fracture/decide_shell.h"
-#include "engine/fracture/element_plane.h"
-#include "engine/fracture/path_noise.h"
-#include "engine/fracture/shell_cutter.h"
-#include "engine/stress/shell_stress.h"
+#include "engine/fracture/crack_course.h"
 
 namespace shatterbox::fracture {
-
-/// Where a load presses and on how large a patch.
-struct LoadCentre {
-  Vec3 point = Vec3::Zero();
-  double radius = 0.0;
-};
 
 /// A flaw that the stress is above.
 struct Candidate {
@@ -28,21 +16,6 @@ struct Candidate {
   Vec2 barycentric = Vec2::Zero();
   double overload = 0.0;  // stress / strength, above 1
   int number = 0;         // breaks ties
-};
-
-/// What does not change while the cracks of a generation run.
-struct TracerSetup {
-  const std::vector<ElementPlane>* planes = nullptr;
-  const std::vector<stress::CellStress>* stresses =
-      nullptr;  // Pa, per cell of the mesh that the cutter was made from
-  const material::Material* material = nullptr;
-  const GrainField* grains = nullptr;  // may be null
-  const PathNoise* noise = nullptr;
-  std::vector<LoadCentre> centres;
-  double thickness = 0.0;      // m
-  double energy_budget = 0.0;  // J, for this generation; below zero: no guard
-  int generation = 0;
-  int first_crack = 0;  // number of the next new crack
 };
 
 /// Runs cracks through a cutter. One object a generation.
@@ -63,36 +36,13 @@ class CrackTracer {
   bool is_out_of_energy() const { return is_out_of_energy_; }
 
  private:
-  struct LiveTip {
-    CrackTip tip;
-    int branch = 0;
-    double branch_length = 0.0;
-    double driven_length = 0.0;  // m, of the crack, for the stress intensity
-    double intensity = 0.0;      // K of the last step
-    bool is_running = true;
-    int grain_a = -1, grain_b = -1;  // the boundary it is on
-  };
-  struct Course {
-    Vec2 heading;
-    std::optional<CrackExit> exit;  // a grain crossing to go to
-    bool is_on_grain = false;
-    int grain_a = -1, grain_b = -1;
-    double toughness_share = 1.0;
-    double release_share = 1.0;  // of the stress intensity that is left after turning into a boundary
-  };
-
-  void run(std::array<LiveTip, 2>& tips, int count, stress::ShellFace face);
-  void advance(LiveTip& tip, stress::ShellFace face, double& crack_length);
+  void run(std::array<LiveTip, 2>& tips, int count);
+  void advance(LiveTip& tip, double& crack_length);
   void arrest(LiveTip& tip);
-  Course choose_course(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start, Vec2 heading,
-                       const stress::PlaneStress& tensor, double crack_length) const;
-  Vec2 steer_to_neighbour(const LiveTip& tip, const ElementPlane& plane, const Vec2& start,
-                          const Vec2& heading, double crack_length) const;
-  void follow_grains(const LiveTip& tip, const EdgeStretch& entry, const Vec2& start, Course& course) const;
+  bool cut_along(LiveTip& tip, const TipEntry& entry, const Course& course, double& crack_length);
+  bool go_over(const CrackExit& exit, int element, CrackTip& tip) const;
   bool try_start(const Candidate& candidate);
   bool is_shielded(const Candidate& candidate) const;
-  double distance_to_load(const Vec3& p) const;
-  double stress_intensity(const stress::PlaneStress& tensor, const Vec2& along, double length) const;
   bool pay(double length, double toughness_share);
   void record(const LiveTip& tip, const ElementPlane& plane, const Vec2& from, const Vec2& to, int side_id,
               bool is_on_grain);
@@ -101,7 +51,8 @@ class CrackTracer {
   TracerSetup setup_;
   const geometry::ShellElements& elements_;
   ExitFinder exits_;
-  CrackSet present_;                   // cracks of this generation
+  CrackSet present_;  // cracks of this generation
+  CourseFinder courses_;
   std::vector<double> crack_lengths_;  // of this generation's new cracks, by number - first_crack
   std::vector<CrackSegment> segments_;
   std::vector<CrackTip> open_tips_;
@@ -109,7 +60,6 @@ class CrackTracer {
   int resumed_count_ = 0;
   double energy_ = 0.0;
   bool is_out_of_energy_ = false;
-  double toughness_ = 0.0;  // K_Ic, Pa sqrt(m)
 };
 
 }  // namespace shatterbox::fracture

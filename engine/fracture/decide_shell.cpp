@@ -8,6 +8,7 @@
 #include "engine/fracture/crack_tracer.h"
 #include "engine/fracture/crushed_core.h"
 #include "engine/fracture/impact_force.h"
+#include "engine/fracture/shell_subject.h"
 #include "engine/stress/shell_stress.h"
 
 namespace shatterbox::fracture {
@@ -20,6 +21,8 @@ Size at(int i) {
 
 constexpr double kCoreOverload = 5.0;       // stress over strength above which the core is crushed
 constexpr double kCoreReach = 6.0;          // patch radii
+constexpr double kCurvatureReach = 2.0;     // patch radii, about which the curvature is taken
+constexpr double kFlat = 1e6;               // body sizes: a greater radius of curvature is none
 constexpr double kWaveLength = 0.14;        // of the paths' noise, share of the body's size
 constexpr double kGrowthThatCounts = 0.04;  // of the cracks' length: a generation that adds less is the last
 
@@ -134,15 +137,15 @@ class Decider {
     return candidates.empty() ? sound : candidates;
   }
 
-  TracerSetup tracer_setup(const std::vector<stress::CellStress>& stresses, int generation) const {
+  TracerSetup tracer_setup(int generation) const {
     TracerSetup setup;
     setup.planes = &planes_;
-    setup.stresses = &stresses;
+    setup.stresses = &stresses_;
     setup.material = &subject_.material;
     setup.grains = subject_.grains.get();
     setup.noise = &*noise_;
     for (const Press& press : force_.presses())
-      setup.centres.push_back({press.contact.point, press.contact.radius});
+      setup.centres.push_back({press.contact.point, press.contact.radius, bending_length(press.contact)});
     setup.thickness = subject_.thickness;
     setup.energy_budget = settings_.has_energy_guard
                               ? std::max(0.0, decision_.elastic_energy - decision_.fracture_energy)
@@ -150,6 +153,25 @@ class Decider {
     setup.generation = generation;
     setup.first_crack = next_crack_;
     return setup;
+  }
+
+  /// sqrt(R t), m, from how much the normals about a load differ from the one at it.
+  double bending_length(const ContactPress& press) const {
+    const auto distance = [&](const ElementPlane& plane) {
+      return plane.scale > 0.0 ? (plane.middle() - press.point).norm() : 1e300;
+    };
+    const ElementPlane& here = *std::min_element(
+        planes_.begin(), planes_.end(),
+        [&](const ElementPlane& a, const ElementPlane& b) { return distance(a) < distance(b); });
+    const double reach = kCurvatureReach * std::max(press.radius, distance(here));
+    double turn = 0.0, way = 0.0;
+    for (const ElementPlane& plane : planes_) {
+      if (distance(plane) > reach) continue;
+      turn += (plane.frame.col(2) - here.frame.col(2)).norm();
+      way += (plane.middle() - here.middle()).norm();
+    }
+    const double flattest = kFlat * size();
+    return core::sqrt(subject_.thickness * (way < flattest * turn ? way / turn : flattest));
   }
 
   void run_generations() {
@@ -165,7 +187,7 @@ class Decider {
       }
       const auto start = Clock::now();
       ShellCutter cutter(*mesh_);
-      CrackTracer tracer(cutter, tracer_setup(stresses_, generation));
+      CrackTracer tracer(cutter, tracer_setup(generation));
       tracer.resume(tips);
       tracer.nucleate(std::move(candidates_));
       decision_.generation_bound_active = false;

@@ -59,7 +59,7 @@ struct ShellSubject {
   std::shared_ptr<stress::ShellSystemCache> systems;
   material::Material material;
   double thickness = 0.0;                    // m
-  std::vector<int> clamped_vertices;         // of the element mesh, ascending; empty: a free body
+  std::vector<int> clamped_vertices;         // held, of the element mesh, ascending; empty: a free body
   std::shared_ptr<const FlawField> flaws;    // of the first parent; null: drawn from the seed
   std::shared_ptr<const GrainField> grains;  // null: no grains
   std::vector<CrackTip> tips;                // open tips, as the last decision left them
@@ -68,7 +68,7 @@ struct ShellSubject {
 
 struct FractureSettings {
   int most_generations = 4;   // solves of the cracking body; 2 for speed
-  double waviness = 0.15;     // rad, of crack paths
+  double waviness = 0.06;     // rad, of crack paths
   double core_spacing = 4.0;  // crushed core: size of its cells at the hit, in thicknesses; 0: no core
   double least_width = 0.0;   // m, what contact can resolve; cracks keep wider pieces than that
   bool has_energy_guard = true;

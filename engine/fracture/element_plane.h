@@ -22,6 +22,7 @@ struct ElementPlane {
   Vec3 space(const Vec2& flat_point) const {
     return origin + frame.col(0) * flat_point.x() + frame.col(1) * flat_point.y();
   }
+  Vec3 middle() const { return space(flat(Vec2(1.0 / 3.0, 1.0 / 3.0))); }
   Vec3 direction(const Vec2& d) const { return frame.col(0) * d.x() + frame.col(1) * d.y(); }
   Vec2 flat_direction(const Vec3& d) const { return {frame.col(0).dot(d), frame.col(1).dot(d)}; }
 };

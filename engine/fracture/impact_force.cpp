@@ -8,6 +8,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/parallel.h"
 #include "engine/fracture/cell_flaws.h"
+#include "engine/fracture/shell_subject.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/shell_load.h"
 #include "engine/stress/stress_bound.h"
@@ -16,9 +17,6 @@ namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
 
 constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
 // The same, as a share of the unbroken body's size: a mesh finer than that gives the same answer, crumbs
@@ -49,28 +47,6 @@ double energy_left(const Press& press, const Decision& decision) {
 }
 
 }  // namespace
-
-stress::ShellProperties properties_of(const ShellSubject& subject) {
-  stress::ShellProperties p;
-  p.youngs_modulus = subject.material.young;
-  p.poisson_ratio = subject.material.poisson;
-  p.density = subject.material.density;
-  p.thickness = subject.thickness;
-  return p;
-}
-
-stress::ShellSupport support_of(const ShellSubject& subject, const geometry::ShellMesh& mesh) {
-  if (subject.clamped_vertices.empty()) return {};
-  const geometry::ShellElements& elements = *mesh.elements;
-  std::vector<char> vertices(elements.mesh.positions.size(), 0);
-  for (const int v : subject.clamped_vertices) vertices[at(v)] = 1;
-  std::vector<char> edges(elements.topology.edges.size(), 0);
-  for (Size e = 0; e < edges.size(); ++e) {
-    const auto& ends = elements.topology.edges[e];
-    edges[e] = vertices[at(ends[0])] && vertices[at(ends[1])];
-  }
-  return stress::find_support(mesh, vertices, edges);
-}
 
 bool is_collision(const ShellLoad& load) {
   return load.closing_speed > 0.0 && load.effective_mass > 0.0;

@@ -24,11 +24,6 @@ struct Press {
   double energy = 0.0;            // J, kinetic energy behind a collision; else elastic energy
 };
 
-stress::ShellProperties properties_of(const ShellSubject& subject);
-
-/// The support of a mesh of this body; edges between clamped vertices are held in a frame that does not turn.
-stress::ShellSupport support_of(const ShellSubject& subject, const geometry::ShellMesh& mesh);
-
 bool is_collision(const ShellLoad& load);
 
 /// All loads of one impact on one prepared subject. Both must outlive it.

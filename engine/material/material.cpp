@@ -57,8 +57,7 @@ std::vector<Preset> make_presets() {
   Material ornament_glass = glass;
   ornament_glass.name = "ornament_glass";
   ornament_glass.flaw_area = 1e-3;
-  ornament_glass.grain_size = 8e-3;
-  ornament_glass.grain_strength = 0.7;
+  ornament_glass.crack_spacing = 0.4;
   ornament_glass.thickness = 0.5e-3;
 
   Material porcelain;
@@ -107,8 +106,7 @@ std::vector<Preset> make_presets() {
        "loads; "
        "Weibull modulus 5 for weathered glass; flaw_area, crack_spacing fitted by eye"},
       {ornament_glass,
-       "As glass; blown, 0.3 to 0.8 mm thick; flaw_area a tenth of a pane's and the grains (of paint and "
-       "silvering) "
+       "As glass, without grains; blown, 0.3 to 0.8 mm thick; flaw_area a tenth of a pane's and crack_spacing "
        "estimated by eye"},
       {porcelain,
        "Hard glazed porcelain, unpressed: density, E, bending strength by [IEC672] group C 110/120 (at least "

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/hash.h"
-#include "engine/fracture/impact_force.h"
+#include "engine/fracture/shell_subject.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/shell_surface.h"
 #include "engine/world/state.h"

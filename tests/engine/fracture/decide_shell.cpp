@@ -17,7 +17,7 @@ fracture::ShellSubject make_bauble(std::uint64_t seed, double grain_size) {
   const auto elements = test::make_elements(geometry::make_ornament({}, {0.003, 0.3, 1}).value().mesh);
   fracture::ShellSubject subject;
   subject.mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
-  subject.material.flaw_area = 1e-3;
+  subject.material = material::find_preset("ornament_glass").value();
   subject.thickness = 5e-4;
   subject.seed = seed;
   if (grain_size > 0.0)
@@ -58,7 +58,7 @@ std::array<double, 2> radial_and_hoop(const fracture::Decision& decision, const 
 
 }  // namespace
 
-TEST_CASE("a clamped pane breaks into radials first and rings next") {
+TEST_CASE("a pane in its frame breaks into radials first and rings next") {
   double pieces = 0.0;
   std::array<double, 2> first{}, next{};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -67,7 +67,6 @@ TEST_CASE("a clamped pane breaks into radials first and rings next") {
     REQUIRE(decision.verdict.outcome == fracture::Outcome::broke);
     CHECK(decision.verdict.ratio > 1.0);
     CHECK(decision.fracture_energy < decision.elastic_energy);
-    CHECK(decision.verdict.duration == Approx(0.011).epsilon(0.2));
     CHECK(std::abs(total_area(*decision.mesh) - 1.0) < 1e-12);
     CHECK(decision.residual < 1e-4);
     const auto split = fracture::split_shell(*decision.mesh, {1.4e-3});
@@ -110,7 +109,10 @@ TEST_CASE("the speed that breaks a held pane grows as the root of its thickness"
     auto subject = test::make_window(1);
     subject.thickness *= share;
     subject.systems = nullptr;
-    const auto held = fracture::decide_shell(subject, test::steel_ball(1.0));
+    auto ball = test::steel_ball(0.3);
+    ball.loads.front().effective_mass = 20.0;  // so heavy that the pane's own inertia does not matter
+    ball.loads.front().other_inverse_mass = 0.05;
+    const auto held = fracture::decide_shell(subject, ball);
     REQUIRE(held.verdict.outcome == fracture::Outcome::held);
     REQUIRE(held.generations > 0);
     log_thickness.push_back(std::log(subject.thickness));
@@ -119,8 +121,8 @@ TEST_CASE("the speed that breaks a held pane grows as the root of its thickness"
   }
   const double span = log_thickness[2] - log_thickness[0];
   INFO((log_speed[2] - log_speed[0]) / span << " and " << (log_duration[2] - log_duration[0]) / span);
-  CHECK((log_speed[2] - log_speed[0]) / span == Approx(0.5).margin(0.1));
-  CHECK((log_duration[2] - log_duration[0]) / span == Approx(-1.5).margin(0.15));
+  CHECK((log_speed[2] - log_speed[0]) / span == Approx(0.5).margin(0.03));
+  CHECK((log_duration[2] - log_duration[0]) / span == Approx(-1.5).margin(0.03));
 }
 
 TEST_CASE("the same seed gives the same bits") {

@@ -6,7 +6,7 @@
 
 namespace shatterbox::test {
 
-/// A glass pane of 1 m, 4 mm thick, clamped all round; no grains.
+/// A glass pane of 1 m, 4 mm thick, held all round by its border; no grains.
 inline fracture::ShellSubject make_window(std::uint64_t seed, double edge = 0.034) {
   const auto elements = make_pane(1.0, edge);
   fracture::ShellSubject subject;
