@@ -112,16 +112,94 @@ class Descent {
   std::vector<std::pair<int, TightBox>> near_b_;
 };
 
+// Where the vertices of a body are, or go from and to.
+struct Places {
+  const std::vector<Vec3>& from;
+  const std::vector<Vec3>* to;  // none: they stay
+};
+
+// Whether triangles stay apart along the directions of their planes. Boxes about triangles that lie askew are
+// thick; the triangles are not. Along a fixed direction, what goes straight is within what it was at both
+// ends.
+class Planes {
+ public:
+  Planes(const Collider& a, const Places& places_a, const Collider& b, const Places& places_b,
+         const Vec3& way, double margin)
+      : a_(a),
+        b_(b),
+        places_a_(places_a),
+        places_b_(places_b),
+        way_(way),
+        // What rounding may add is far below this share of the margin.
+        apart_from_((margin + a.radius + b.radius) * (1.0 + 1e-5)) {}
+
+  bool are_apart(int ta, int tb) {
+    if (ta != first_.number) first_ = face(a_, places_a_, ta, Vec3::Zero());
+    const Face second = face(b_, places_b_, tb, way_);
+    return separates(first_.normal, first_.start, second.start, first_.end, second.end) ||
+           separates(second.normal, second.start, first_.start, second.end, first_.end);
+  }
+
+ private:
+  using Corners = std::array<Vec3, 3>;
+  struct Face {
+    int number = -1;
+    Corners start, end;
+    Vec3 normal = Vec3::Zero();  // at the start; not of length one
+  };
+
+  static Face face(const Collider& c, const Places& places, int triangle, const Vec3& way) {
+    const auto& t = c.triangles[at(triangle)];
+    Face f;
+    f.number = triangle;
+    f.start = {places.from[at(t[0])], places.from[at(t[1])], places.from[at(t[2])]};
+    f.normal = (f.start[1] - f.start[0]).cross(f.start[2] - f.start[0]);
+    if (places.to)
+      f.end = {(*places.to)[at(t[0])] + way, (*places.to)[at(t[1])] + way, (*places.to)[at(t[2])] + way};
+    return f;
+  }
+
+  // `face` has the normal.
+  bool separates(const Vec3& normal, const Corners& face, const Corners& other, const Corners& face_then,
+                 const Corners& other_then) const {
+    const double b0 = normal.dot(other[0] - face[0]);
+    const double needed_squared = apart_from_ * apart_from_ * normal.squaredNorm();
+    if (b0 * b0 <= needed_squared || needed_squared == 0.0) return false;
+    const double side = b0 > 0.0 ? 1.0 : -1.0;
+    const double least = side * std::min({side * b0, side * normal.dot(other[1] - face[0]),
+                                          side * normal.dot(other[2] - face[0])});
+    if (side * least <= 0.0 || least * least <= needed_squared) return false;
+    if (!places_a_.to) return true;
+    const double most = std::max({0.0, side * normal.dot(face_then[1] - face_then[0]),
+                                  side * normal.dot(face_then[2] - face_then[0])});
+    const double left = std::min({side * normal.dot(other_then[0] - face_then[0]),
+                                  side * normal.dot(other_then[1] - face_then[0]),
+                                  side * normal.dot(other_then[2] - face_then[0])}) -
+                        most;
+    return left > 0.0 && left * left > needed_squared;
+  }
+
+  const Collider &a_, &b_;
+  const Places &places_a_, &places_b_;
+  const Vec3 way_;
+  const double apart_from_;  // m
+  Face first_;
+};
+
 // Features that near triangles own.
-void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Collider& b,
-                   const FeatureBoxes& boxes_b, const TightWay& way, double margin, FeatureList& out) {
+void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Places& places_a, const Collider& b,
+                   const FeatureBoxes& boxes_b, const Places& places_b, const Vec3& relative_way,
+                   double margin, FeatureList& out) {
+  const TightWay way(relative_way);
   Descent descent(a, boxes_a, b, boxes_b, way, margin);
+  Planes planes(a, places_a, b, places_b, relative_way, margin);
   const bool a_has_faces = a.radius == 0.0, b_has_faces = b.radius == 0.0;
   const auto add = [&](FeatureKind kind, int i, const TightBox& box_a, int j, const TightBox& box_b) {
     const float apart = distance_squared(box_a, box_b);
     if (apart <= descent.reach_squared()) out.push_back({kind, apart, i, j});
   };
   descent.run([&](int ta, const TightBox& box_a, int tb, const TightBox& box_b) {
+    if (planes.are_apart(ta, tb)) return;
     for (int k = a.owned_vertex_begin[at(ta)]; b_has_faces && k < a.owned_vertex_begin[at(ta) + 1]; ++k) {
       const int v = a.owned_vertices[at(k)];
       add(FeatureKind::vertex_triangle, v, boxes_a.vertices[at(v)], tb, box_b);
@@ -166,14 +244,15 @@ void refit_boxes(PlacedCollider& placed) {
   refit(*placed.collider, placed.boxes);
 }
 
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from,
-                       const std::vector<Vec3>& turned) {
+void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from, std::vector<Vec3> turned) {
   const double radius = placed.collider->radius;
   placed.swept.vertices.resize(from.size());
   for (std::size_t v = 0; v < from.size(); ++v) {
     placed.swept.vertices[v] = box_of_path(from[v], turned[v], radius);
   }
   refit(*placed.collider, placed.swept);
+  placed.swept_from = from;
+  placed.swept_to = std::move(turned);
 }
 
 void sort_by_bound(FeatureList& features) {
@@ -184,13 +263,15 @@ void sort_by_bound(FeatureList& features) {
 
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out) {
   out.clear();
-  list_features(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), margin, out);
+  list_features(*a.collider, a.boxes, {a.start, nullptr}, *b.collider, b.boxes, {b.start, nullptr},
+                Vec3::Zero(), margin, out);
 }
 
 void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
                          double margin, FeatureList& out) {
   out.clear();
-  list_features(*a.collider, a.swept, *b.collider, b.swept, TightWay(relative_way), margin, out);
+  list_features(*a.collider, a.swept, {a.swept_from, &a.swept_to}, *b.collider, b.swept,
+                {b.swept_from, &b.swept_to}, relative_way, margin, out);
 }
 
 bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius, const Vec3& relative_way,

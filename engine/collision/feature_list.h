@@ -34,9 +34,10 @@ struct FeatureBoxes {
 /// A collider in the world: where its vertices are, and the boxes over that and over where they go.
 struct PlacedCollider {
   const Collider* collider = nullptr;
-  std::vector<Vec3> start;  // |V| x 3, world, m
-  FeatureBoxes boxes;       // over `start`, radius included
-  FeatureBoxes swept;       // over straight paths less the centre's own way, radius included
+  std::vector<Vec3> start;                 // |V| x 3, world, m
+  FeatureBoxes boxes;                      // over `start`, radius included
+  FeatureBoxes swept;                      // over straight paths less the centre's own way, radius included
+  std::vector<Vec3> swept_from, swept_to;  // |V| x 3, world, m: the ends of those paths
 };
 
 /// Fills `placed.boxes` from `placed.start`.
@@ -44,13 +45,13 @@ void refit_boxes(PlacedCollider& placed);
 
 /// Fills `placed.swept` for straight paths from `from` to `turned` (|V| x 3: end positions less the way of
 /// the body's centre).
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from,
-                       const std::vector<Vec3>& turned);
+void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from, std::vector<Vec3> turned);
 
 /// Nearest first; a total order.
 void sort_by_bound(FeatureList& features);
 
-/// All feature pairs that may be within `margin` by their boxes (a superset; each pair once), in any order.
+/// All feature pairs that may be within `margin` by their boxes and the planes of the triangles that own them
+/// (a superset; each pair once), in any order.
 /// Needs `boxes` of both.
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out);
 

@@ -14,6 +14,7 @@
 #include "engine/dynamics/pair_contacts.h"
 #include "engine/dynamics/rest.h"
 #include "engine/dynamics/step_motion.h"
+#include "engine/dynamics/turned_box.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -23,8 +24,9 @@ using body::ShapeKind;
 using collision::Contact;
 using core::at;
 
-constexpr double kOfTouch = 0.01;     // share of its momentum with which what only touches wakes further ones
-constexpr double kBroadSlack = 0.02;  // share of a body's size
+constexpr double kOfTouch = 0.01;  // share of its momentum with which what only touches wakes further ones
+constexpr double kBroadSlack = 0.015;  // share of a body's size
+constexpr double kFelt = 0.004;        // the same: further apart nothing is felt
 
 bool is_same_pose(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
@@ -126,23 +128,33 @@ geometry::Box box_at(const WorkBody& w, const Pose& pose) {
   return {centre - half, centre + half};
 }
 
-// How far a body may end from where it was predicted to and still meet nobody but its pairs, m.
-double broad_reserve(const WorkBody& w, const ContactSettings& settings) {
+// Looks at the way to `end` and what is about it.
+void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
   const double dt = settings.time_step;
-  return 1.1 * (turn_bound(w, w.predicted) + settings.gravity.norm() * dt * dt) + kBroadSlack * 2.0 * w.reach;
+  w.looked_end = end;
+  w.reserve = 1.1 * settings.gravity.norm() * dt * dt + kBroadSlack * 2.0 * w.reach;
+  w.is_looked_straight = w.turn_angle <= kStraightTurn;
+  w.looked = box_at(w, w.start);
+  if (!w.is_active) return;
+  w.looked.include(box_at(w, end));
+  const double grow = w.reserve + (w.is_looked_straight ? 0.0 : 1.1 * turn_bound(w, end));
+  w.looked.low.array() -= grow;
+  w.looked.high.array() += grow;
 }
 
-// Over the whole way from start to `end`, `grow` wider; nobody for planes, which have their own loop.
-collision::SweptBound swept_bound(const WorkBody& w, const Pose& end, double grow) {
-  collision::SweptBound bound;
-  if (w.shape->kind == ShapeKind::plane) return bound;
-  bound.box = box_at(w, w.start);
-  bound.is_moving = w.is_active;
-  if (!w.is_active) return bound;
-  bound.box.include(box_at(w, end));
-  bound.box.low.array() -= grow;
-  bound.box.high.array() += grow;
-  return bound;
+// Whether all that the body meets on its way to its end was found from there.
+bool is_within_looked(const ContactSettings& settings, const WorkBody& w) {
+  const bool is_straight = w.turn_angle <= kStraightTurn;
+  if (is_straight && w.is_looked_straight) {
+    const double stray = (w.end.translation - w.looked_end.translation).norm() +
+                         turn_bound(w.looked_end.rotation, w.end.rotation, w.reach);
+    return stray <= w.reserve - kFelt * 2.0 * w.reach;
+  }
+  if (w.is_looked_straight) return false;
+  const geometry::Box end = box_at(w, w.end);
+  const double gap = 2.0 * settings.kept_gap * w.reach + (is_straight ? 0.0 : turn_bound(w, w.end));
+  return (end.low.array() - gap >= w.looked.low.array()).all() &&
+         (end.high.array() + gap <= w.looked.high.array()).all();
 }
 
 bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& wb) {
@@ -151,26 +163,56 @@ bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& 
   return a.collides_with(b);
 }
 
-std::vector<collision::IndexPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work,
-                                             const std::vector<collision::SweptBound>& bounds) {
-  auto pairs = collision::find_overlapping_pairs(bounds);
-  for (std::size_t p = 0; p < bodies.size(); ++p) {
+struct FoundPair {
+  int a = 0, b = 0;
+  double clearance = -1e300;  // m, between the ways to where the bodies were looked for
+};
+
+void add_pairs_with_planes(const MotionWork& work, std::vector<collision::IndexPair>& pairs) {
+  for (std::size_t p = 0; p < work.bodies.size(); ++p) {
     if (work.bodies[p].shape->kind != ShapeKind::plane) continue;
     const Vec3 normal = work.bodies[p].start.rotation * Vec3::UnitY();
     const double level = normal.dot(work.bodies[p].start.translation);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const auto& box = bounds[i].box;
-      if (box.low.x() > box.high.x()) continue;
+    for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+      if (work.bodies[i].shape->kind == ShapeKind::plane) continue;
+      const auto& box = work.bodies[i].looked;
       const double lowest =
           normal.dot(0.5 * (box.low + box.high)) - normal.cwiseAbs().dot(0.5 * (box.high - box.low));
       if (lowest > level) continue;
       pairs.push_back({static_cast<int>(std::min(p, i)), static_cast<int>(std::max(p, i))});
     }
   }
-  std::erase_if(pairs, [&](const collision::IndexPair& pair) {
+}
+
+// Pairs that may meet if their bodies end within their reserves of where they were looked for.
+std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work) {
+  std::vector<collision::SweptBound> bounds(work.bodies.size());
+  std::vector<TurnedBox> boxes(work.bodies.size());
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    const WorkBody& w = work.bodies[i];
+    if (w.shape->kind == ShapeKind::plane) continue;  // they have their own loop
+    bounds[i] = {w.looked, w.is_active};
+    boxes[i] = turn_box(w.collider->box, w.start, w.looked_end);
+  }
+  auto near = collision::find_overlapping_pairs(bounds);
+  add_pairs_with_planes(work, near);
+  std::erase_if(near, [&](const collision::IndexPair& pair) {
     return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
                      work.bodies[at(pair.b)]);
   });
+  std::vector<double> clearances(near.size(), -1e300);
+  std::vector<char> is_near(near.size(), 1);
+  core::parallel_for(near.size(), 64, [&](std::size_t k) {
+    const WorkBody &a = work.bodies[at(near[k].a)], &b = work.bodies[at(near[k].b)];
+    const bool has_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
+    if (has_plane || !a.is_looked_straight || !b.is_looked_straight) return;
+    const double reserve = a.reserve + b.reserve;
+    clearances[k] = clearance(boxes[at(near[k].a)], boxes[at(near[k].b)], reserve);
+    is_near[k] = clearances[k] <= reserve;
+  });
+  std::vector<FoundPair> pairs;
+  for (std::size_t k = 0; k < near.size(); ++k)
+    if (is_near[k]) pairs.push_back({near[k].a, near[k].b, clearances[k]});
   std::sort(pairs.begin(), pairs.end(),
             [](const auto& x, const auto& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
   return pairs;
@@ -194,8 +236,8 @@ void take_from_shelf(ContactState& state, MotionWork& work) {
 
 // The memory of pairs: of those found, of those of two bodies that both do not move (asleep), and of no
 // others.
-void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::IndexPair>& found,
-                 MotionWork& work, ContactState& state) {
+void match_pairs(const std::vector<Body>& bodies, const std::vector<FoundPair>& found, MotionWork& work,
+                 ContactState& state) {
   std::vector<PairState> matched;
   matched.reserve(found.size());
   const auto is_still = [&](body::BodyId id) {
@@ -215,6 +257,7 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<collision::I
     WorkPair w;
     w.a = pair.a;
     w.b = pair.b;
+    w.clearance = pair.clearance;
     w.state = static_cast<int>(matched.size());
     if (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) == key) {
       matched.push_back(std::move(state.pairs[old++]));
@@ -255,13 +298,14 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.margin =
       2.0 * usual_gap +
       (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));
+  pair.is_apart = pair.clearance > pair.margin;
   if (pair.is_plane || pair.is_analytic) return;
   const double slack = settings.search_slack * pair.size;
   pair.is_fast = predicted > slack;
   const double needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
-  pair.needs_search =
-      !pair.is_fast && (!settings.has_caches || !memory.search ||
-                        memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start) < needed);
+  pair.needs_search = !pair.is_fast && !pair.is_apart &&
+                      (!settings.has_caches || !memory.search ||
+                       memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start) < needed);
 }
 
 // Sleepers that something hits, with its momentum, or touches and could move.
@@ -292,8 +336,8 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
 }
 
 // A pair that was not thought of: without contacts, only to be kept from crossing.
-void add_pair(const std::vector<Body>& bodies, const ContactSettings& settings,
-              const collision::IndexPair& found, ContactState& state, MotionWork& work) {
+void add_pair(const std::vector<Body>& bodies, const ContactSettings& settings, const FoundPair& found,
+              ContactState& state, MotionWork& work) {
   WorkPair pair;
   pair.a = found.a;
   pair.b = found.b;
@@ -310,7 +354,7 @@ void add_pair(const std::vector<Body>& bodies, const ContactSettings& settings,
   classify(bodies, settings, memory, work, pair);
   memory.kept_gap = pair.kept_gap = settings.kept_gap * pair.size;
   pair.threshold = impact_threshold(settings, pair.kept_gap);
-  pair.is_free_certified = false;
+  pair.is_apart = pair.is_free_certified = false;
   if (!is_known) {
     for (WorkPair& other : work.pairs) other.state += other.state >= pair.state ? 1 : 0;
     state.pairs.insert(place, std::move(memory));
@@ -334,13 +378,8 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     anything_moves = anything_moves || work.bodies.back().is_active;
   }
   if (!anything_moves) return;
-  std::vector<collision::SweptBound> bounds;
-  bounds.reserve(bodies.size());
-  for (WorkBody& w : work.bodies) {
-    bounds.push_back(swept_bound(w, w.predicted, broad_reserve(w, settings)));
-    w.looked = bounds.back().box;
-  }
-  match_pairs(bodies, find_pairs(bodies, work, bounds), work, state);
+  for (WorkBody& w : work.bodies) look_about(settings, w.predicted, w);
+  match_pairs(bodies, find_pairs(bodies, work), work, state);
 
   struct Needs {
     bool place = false, boxes = false, swept = false;
@@ -348,6 +387,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   std::vector<Needs> needs(bodies.size());
   for (WorkPair& pair : work.pairs) {
     classify(bodies, settings, state.pairs[at(pair.state)], work, pair);
+    if (pair.is_apart) continue;
     for (const int i : {pair.a, pair.b}) {
       Needs& n = needs[at(i)];
       n.place = true;
@@ -361,7 +401,9 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     if (w.shape->kind == ShapeKind::plane) return;
     if (needs[i].place) place(w);
     if (needs[i].boxes) collision::refit_boxes(w.placed);
-    if (needs[i].swept) sweep(w, w.predicted);
+    if (!needs[i].swept) return;
+    sweep(w, w.predicted);
+    place_at(w, w.predicted, w.predicted_vertices);
   });
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
     find_pair_contacts(settings, work, state.pairs[at(work.pairs[p].state)], work.pairs[p]);
@@ -386,30 +428,19 @@ void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& s
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     WorkBody& w = work.bodies[i];
     if (!w.is_active || w.is_free || w.shape->kind == ShapeKind::plane) continue;
-    geometry::Box end = box_at(w, w.end);
-    const double gap =
-        2.0 * settings.kept_gap * w.reach + (w.turn_angle > kStraightTurn ? turn_bound(w, w.end) : 0.0);
-    const bool is_within = (end.low.array() - gap >= w.looked.low.array()).all() &&
-                           (end.high.array() + gap <= w.looked.high.array()).all();
-    if (is_within) continue;
+    if (is_within_looked(settings, w)) continue;
     has_strayed[i] = 1;
     anyone = true;
-    const double grow = turn_bound(w, w.end) + kBroadSlack * 2.0 * w.reach;
-    end.low.array() -= grow;
-    end.high.array() += grow;
-    w.looked.include(end);
+    look_about(settings, w.end, w);
   }
   if (!anyone) return;
-  std::vector<collision::SweptBound> bounds;
-  bounds.reserve(bodies.size());
-  for (const WorkBody& w : work.bodies) bounds.push_back({w.looked, w.is_active});
-  std::vector<collision::IndexPair> known;
-  for (const WorkPair& pair : work.pairs) known.push_back({pair.a, pair.b});
+  std::vector<FoundPair> known;
+  for (const WorkPair& pair : work.pairs) known.push_back({pair.a, pair.b, 0.0});
   const auto comes_before = [](const auto& x, const auto& y) {
     return std::pair(x.a, x.b) < std::pair(y.a, y.b);
   };
   std::sort(known.begin(), known.end(), comes_before);
-  for (const auto& found : find_pairs(bodies, work, bounds)) {
+  for (const auto& found : find_pairs(bodies, work)) {
     if (!has_strayed[at(found.a)] && !has_strayed[at(found.b)]) continue;
     if (!std::binary_search(known.begin(), known.end(), found, comes_before))
       add_pair(bodies, settings, found, state, work);

@@ -181,9 +181,10 @@ class Guard {
     }
     // Pairs whose last test leaves more than both bodies moved are free still.
     const std::vector<double> moves = open_gaps(openings, settings_.time_step, yielding, work_);
-    mark_due([&](const WorkPair& pair, double& spare) {
+    mark_due([&](WorkPair& pair, double& spare) {
       const double moved = moves[at(pair.a)] + moves[at(pair.b)];
       spare -= moved;
+      pair.moved += moved;
       return moved > 0.0 && spare <= 0.0;
     });
   }
@@ -199,7 +200,11 @@ class Guard {
   }
 
   void mark_due_with(const std::vector<char>& has_moved) {
-    mark_due([&](const WorkPair& pair, double&) { return has_moved[at(pair.a)] || has_moved[at(pair.b)]; });
+    mark_due([&](WorkPair& pair, double&) {
+      if (!has_moved[at(pair.a)] && !has_moved[at(pair.b)]) return false;
+      pair.free_until.clear();
+      return true;
+    });
   }
 
   // The last resort: bodies that are still in each other's way stop on theirs. Ends always: the start is

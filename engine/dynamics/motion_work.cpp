@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace shatterbox::dynamics {
 
@@ -98,7 +99,7 @@ void sweep(WorkBody& body, const Pose& end) {
   place(body);
   std::vector<Vec3> turned;
   place_at(body, {end.rotation, body.start.translation}, turned);
-  collision::refit_swept_boxes(body.placed, body.placed.start, turned);
+  collision::refit_swept_boxes(body.placed, body.placed.start, std::move(turned));
   body.is_swept = true;
   body.swept_end = end;
 }

@@ -48,9 +48,15 @@ struct WorkBody {
   collision::PlacedCollider placed;  // vertices at the start
   bool is_swept = false;             // `placed.swept` is for the way to `swept_end`
   Pose swept_end;
-  geometry::Box looked;                // within it, everything that the body may meet is among the pairs
-  Vec3 predicted_spin = Vec3::Zero();  // rad/s, then
-  Pose predicted;                      // end pose if nothing touches
+  // Everything that the body may meet is among the pairs if it ends within `reserve` of `looked_end`; one
+  // that turns far, within the box.
+  Pose looked_end;
+  double reserve = 0.0;  // m
+  bool is_looked_straight = true;
+  geometry::Box looked;
+  Vec3 predicted_spin = Vec3::Zero();    // rad/s, then
+  Pose predicted;                        // end pose if nothing touches
+  std::vector<Vec3> predicted_vertices;  // |V| x 3, there; of bodies in a fast pair
 };
 
 /// A turn of more than this in a step, rad, is followed in parts: straight paths would cut its corner.
@@ -123,10 +129,16 @@ struct WorkPair {
   bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is
   double motion = 0.0;             // m: bound of the relative motion if nothing touches
   double margin = 0.0;             // m: contacts are felt from this gap on
+  double clearance = -1e300;       // m: the predicted ways stay at least so far apart
+  bool is_apart = false;           // further than the margin: nothing more need be known
   bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
   std::shared_ptr<const FeatureSearch> search;
   std::vector<double> gaps;                       // m, of the first features of `search` at the start
   std::vector<collision::FeatureGap> start_gaps;  // of its features at the start, where it was needed
+  // Of its features, m: until the ends have moved so far in all since the search, counted in `moved`, their
+  // paths are free.
+  std::vector<double> free_until;
+  double moved = 0.0;
   double least_gap = 1e300;  // m, at the start; at least what was looked at if nothing is near
   std::vector<collision::Contact> contacts;
   double work = 0.0;  // J, of its impulses in this substep

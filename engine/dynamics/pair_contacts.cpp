@@ -91,14 +91,12 @@ std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBo
 // Follows the predicted paths of features that are not near yet, and takes the first that meet.
 class Foresight {
  public:
-  Foresight(const WorkBody& a, const WorkBody& b, double usual_gap) : a_(a), b_(b), usual_gap_(usual_gap) {
-    place_at(a, a.predicted, end_a_);
-    place_at(b, b.predicted, end_b_);
-  }
+  Foresight(const WorkBody& a, const WorkBody& b, double usual_gap) : a_(a), b_(b), usual_gap_(usual_gap) {}
 
   void follow(const collision::FeaturePair& features, const collision::FeaturePoints& start,
               const collision::FeatureGap& gap, const Vec3& hint) {
-    const auto end = collision::gather(features, *a_.collider, end_a_, *b_.collider, end_b_);
+    const auto end =
+        collision::gather(features, *a_.collider, a_.predicted_vertices, *b_.collider, b_.predicted_vertices);
     const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap_), hint, &gap);
     if (path.has_hit) hits_.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
   }
@@ -108,7 +106,6 @@ class Foresight {
  private:
   const WorkBody &a_, &b_;
   double usual_gap_;
-  std::vector<Vec3> end_a_, end_b_;
   std::vector<Hit> hits_;
 };
 
@@ -237,6 +234,13 @@ bool is_crossing(const MotionWork& work, const WorkPair& pair) {
 
 void find_pair_contacts(const ContactSettings& settings, const MotionWork& work, PairState& memory,
                         WorkPair& pair) {
+  if (pair.is_apart) {
+    pair.least_gap = pair.clearance;
+    pair.is_free_certified = true;
+    memory.is_exempt = false;
+    adapt_gap(settings, memory, pair);
+    return;
+  }
   if (pair.is_plane) {
     meet_plane(work, pair);
   } else if (pair.is_analytic) {

@@ -19,6 +19,8 @@ using core::at;
 constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr std::size_t kMostHits = 6;
+constexpr double kStrayed = 0.1;  // of the slack of searches
+constexpr double kAmple = 20.0;   // times the kept gap: more room than rounds take
 
 void keep_first(std::vector<PathHit>& hits, double size) {
   std::sort(hits.begin(), hits.end(), [](const PathHit& x, const PathHit& y) {
@@ -61,29 +63,49 @@ bool PathTest::turns_far(const WorkPair& pair) const {
   return work_.bodies[at(pair.a)].straight_parts > 1 || work_.bodies[at(pair.b)].straight_parts > 1;
 }
 
-bool PathTest::needs_search(const WorkPair& pair) const {
-  if (pair.is_plane || pair.is_analytic || turns_far(pair)) return false;
+PathTest::Look PathTest::look_at(const WorkPair& pair, double& clear) const {
+  clear = -1e300;
+  if (pair.is_plane || pair.is_analytic) return Look::listed;
+  if (turns_far(pair)) return Look::turning;
+  clear = clearance(paths_[at(pair.a)].box, paths_[at(pair.b)].box, kAmple * pair.kept_gap);
+  if (clear > pair.kept_gap) return Look::apart;
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-  if (!pair.search) return true;
-  return strays_from(*pair.search, a, a.end, b, b.end) + pair.kept_gap > pair.search->margin;
+  const bool is_known =
+      pair.search && strays_from(*pair.search, a, a.end, b, b.end) + pair.kept_gap <= pair.search->margin;
+  return is_known ? Look::listed : Look::searched;
+}
+
+// Boxes about the ways of the bodies in the pairs that are due.
+void PathTest::box_ways(const std::vector<char>& is_due) {
+  std::vector<char> must_box(work_.bodies.size(), 0);
+  for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+    if (is_due[p]) must_box[at(work_.pairs[p].a)] = must_box[at(work_.pairs[p].b)] = 1;
+  }
+  core::parallel_for(work_.bodies.size(), 32, [&](std::size_t i) {
+    const WorkBody& w = work_.bodies[i];
+    if (must_box[i] && w.shape->kind != ShapeKind::plane)
+      paths_[i].box = turn_box(w.collider->box, w.start, w.end);
+  });
 }
 
 void PathTest::prepare(const std::vector<char>& is_due) {
+  paths_.resize(work_.bodies.size());
+  looks_.resize(work_.pairs.size());
+  clearances_.resize(work_.pairs.size());
+  box_ways(is_due);
+  core::parallel_for(work_.pairs.size(), 16, [&](std::size_t p) {
+    if (is_due[p]) looks_[p] = look_at(work_.pairs[p], clearances_[p]);
+  });
   std::vector<char> must_place(work_.bodies.size(), 0), must_sweep(work_.bodies.size(), 0);
   std::vector<std::size_t> to_search, turning;
   for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-    if (!is_due[p]) continue;
+    if (!is_due[p] || looks_[p] == Look::apart) continue;
     const WorkPair& pair = work_.pairs[p];
     must_place[at(pair.a)] = must_place[at(pair.b)] = 1;
-    if (!pair.is_plane && !pair.is_analytic && turns_far(pair)) {
-      must_sweep[at(pair.a)] = must_sweep[at(pair.b)] = 1;
-      turning.push_back(p);
-    }
-    if (!needs_search(pair)) continue;
+    if (looks_[p] == Look::listed) continue;
     must_sweep[at(pair.a)] = must_sweep[at(pair.b)] = 1;
-    to_search.push_back(p);
+    (looks_[p] == Look::turning ? turning : to_search).push_back(p);
   }
-  paths_.resize(work_.bodies.size());
   core::parallel_for(work_.bodies.size(), 8, [&](std::size_t i) {
     WorkBody& w = work_.bodies[i];
     if (!must_place[i] || w.shape->kind == ShapeKind::plane) return;
@@ -95,11 +117,12 @@ void PathTest::prepare(const std::vector<char>& is_due) {
   core::parallel_for(to_search.size(), 2, [&](std::size_t k) {
     WorkPair& pair = work_.pairs[to_search[k]];
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-    // Wider than needed: openings move the ends a little, and bodies stop on the way.
-    const double margin = 2.0 * pair.kept_gap + settings_.search_slack * pair.size;
+    // Wider than needed: openings move the ends a little.
+    const double margin = 2.0 * pair.kept_gap + kStrayed * settings_.search_slack * pair.size;
     pair.search = search_paths(a, a.end, b, b.end, margin);
     pair.gaps.clear();
     pair.start_gaps.clear();
+    pair.free_until.clear();
   });
 }
 
@@ -167,12 +190,14 @@ std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare)
   std::vector<PathHit> hits;
   spare = 0.0;
   if (stays(work_.bodies[at(pair.a)]) && stays(work_.bodies[at(pair.b)])) return hits;
-  if (pair.is_plane) {
+  if (looks_[pair_number] == Look::apart) {
+    spare = clearances_[pair_number] - kSafe * pair.kept_gap;
+  } else if (pair.is_plane) {
     hits = test_plane(pair, spare);
   } else if (pair.is_analytic) {
     hits = test_solids(pair);
   } else {
-    if (!turns_far(pair))
+    if (looks_[pair_number] != Look::turning)
       hits = test_straight(pair, spare);
     else if (in_parts_[pair_number])
       hits = test_in_parts(pair, spare);
@@ -251,7 +276,12 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
       spare + (search.is_swept ? safe + strays : reach + moved_since(search, a, a.start, b, b.start));
   const auto &ends_a = paths_[at(pair.a)].end, &ends_b = paths_[at(pair.b)].end;
   std::vector<PathHit> hits;
+  pair.free_until.resize(search.features.size(), -1.0);
   for (std::size_t i = 0; i < search.features.size(); ++i) {
+    if (pair.free_until[i] > pair.moved) {
+      spare = std::min(spare, pair.free_until[i] - pair.moved);
+      continue;
+    }
     const auto& features = search.features[i];
     if (features.bound > listed) {
       if (search.is_swept) continue;
@@ -268,6 +298,7 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
     const double least = least_separation(gap.gap, pair);
     const auto path = collision::follow_paths(start, end, least, hint, &gap);
     spare = std::min(spare, path.spare);
+    pair.free_until[i] = path.has_hit ? -1.0 : pair.moved + path.spare;
     if (path.has_hit)
       hits.push_back({path.time, 1.0, collision::contact_at_impact(features, start, path.gap)});
   }

@@ -11,6 +11,7 @@
 #include "engine/collision/contact.h"
 #include "engine/dynamics/contact_settings.h"
 #include "engine/dynamics/motion_work.h"
+#include "engine/dynamics/turned_box.h"
 
 namespace shatterbox::dynamics {
 
@@ -47,13 +48,22 @@ class PathTest {
   // How finely a way is divided: its straight parts are halved as often as the other body asks for.
   static constexpr int kLevels = 7;
   struct Path {
+    TurnedBox box;          // about the whole way, if that is straight
     std::vector<Vec3> end;  // |V| x 3
     std::array<std::vector<Part>, kLevels>
         in_parts;  // in 1, 2, 4, ..; filled as pairs in which one turns far need
   };
 
   bool turns_far(const WorkPair& pair) const;
-  bool needs_search(const WorkPair& pair) const;
+  // What is to be done for a pair.
+  enum class Look : char {
+    apart,     // nothing: boxes tell that its bodies do not meet
+    listed,    // go through the features that were listed
+    searched,  // list them first
+    turning    // one of the two turns far: by parts
+  };
+  Look look_at(const WorkPair& pair, double& clear) const;
+  void box_ways(const std::vector<char>& is_due);
   void divide(const std::vector<std::size_t>& turning);
   int level_of(const WorkPair& pair) const;
   void fill_parts(const WorkBody& body, int level, Path& path) const;
@@ -64,8 +74,10 @@ class PathTest {
 
   const ContactSettings& settings_;
   MotionWork& work_;
-  std::vector<Path> paths_;     // per body
-  std::vector<char> in_parts_;  // per pair in which one turns far
+  std::vector<Path> paths_;         // per body
+  std::vector<char> in_parts_;      // per pair in which one turns far
+  std::vector<Look> looks_;         // per pair
+  std::vector<double> clearances_;  // per pair, m: how far its bodies surely stay apart
 };
 
 }  // namespace shatterbox::dynamics

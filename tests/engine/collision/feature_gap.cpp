@@ -70,6 +70,57 @@ TEST_CASE("a list holds every feature pair within the margin, each once") {
   }
 }
 
+TEST_CASE("a list along paths holds every feature pair that comes within the margin") {
+  core::Random random(23);
+  std::size_t listed = 0, met = 0;
+  for (int n = 0; n < 12; ++n) {
+    const auto a = make_collider(sheet(random, 4)), b = make_collider(sheet(random, 3));
+    PlacedCollider pa, pb;
+    pa.collider = a.get();
+    pb.collider = b.get();
+    pa.start = a->vertices;
+    const Vec3 shift = 0.3 * draw(random) + Vec3(0, 0.4, 0), way_b = 0.6 * draw(random) - Vec3(0, 0.3, 0);
+    for (const Vec3& v : b->vertices) pb.start.push_back(v + shift);
+    // Both turn and bend a little, so that their planes do not stay what they were.
+    std::vector<Vec3> end_a = pa.start, turned_b = pb.start;
+    for (Vec3& v : end_a) v += 0.05 * draw(random);
+    for (Vec3& v : turned_b) v += 0.1 * (v - shift).cross(Vec3(0.4, 1.0, -0.7)) + 0.05 * draw(random);
+    refit_swept_boxes(pa, pa.start, end_a);
+    refit_swept_boxes(pb, pb.start, turned_b);
+    std::vector<Vec3> end_b = turned_b;
+    for (Vec3& v : end_b) v += way_b;
+    const double margin = 0.05;
+    FeatureList list;
+    list_swept_features(pa, pb, way_b, margin, list);
+    std::set<std::uint64_t> keys;
+    for (const auto& f : list) CHECK(keys.insert(f.key()).second);
+    listed += keys.size();
+    const auto must_have = [&](FeatureKind kind, std::size_t count_a, std::size_t count_b) {
+      for (int i = 0; i < static_cast<int>(count_a); ++i) {
+        for (int j = 0; j < static_cast<int>(count_b); ++j) {
+          const FeaturePair pair{kind, 0.0F, i, j};
+          const auto start = gather(pair, *a, pa.start, *b, pb.start),
+                     end = gather(pair, *a, end_a, *b, end_b);
+          double least = 1e300;
+          for (int k = 0; k <= 12; ++k) {
+            FeaturePoints now = start;
+            for (std::size_t v = 0; v < 4; ++v) now.points[v] += k / 12.0 * (end.points[v] - start.points[v]);
+            least = std::min(least, measure(now, Vec3::UnitY()).gap);
+          }
+          if (least > margin) continue;
+          ++met;
+          CHECK(keys.count(pair.key()) == 1);
+        }
+      }
+    };
+    must_have(FeatureKind::vertex_triangle, a->vertices.size(), b->triangles.size());
+    must_have(FeatureKind::triangle_vertex, a->triangles.size(), b->vertices.size());
+    must_have(FeatureKind::edge_edge, a->edges.size(), b->edges.size());
+  }
+  CHECK(met > 500);
+  CHECK(listed < 4 * met);  // and not much more
+}
+
 TEST_CASE("a path that is called free keeps its least separation") {
   core::Random random(5);
   int hits = 0, free = 0;
