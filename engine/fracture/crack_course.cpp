@@ -123,7 +123,7 @@ Vec2 CourseFinder::steer_to_neighbour(const LiveTip& tip, const TipEntry& entry,
   double nearest = reach;
   Vec2 towards = Vec2::Zero();
   present_.visit_near(p, reach, [&](const CrackStretch& s, const Vec3& near, double distance) {
-    if (distance >= nearest || !(distance > 0.0)) return true;
+    if (s.piece != tip.piece || distance >= nearest || !(distance > 0.0)) return true;
     if (s.crack == tip.tip.crack) {
       const double apart =
           s.branch == tip.branch ? tip.branch_length - s.branch_length : tip.branch_length + s.branch_length;

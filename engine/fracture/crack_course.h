@@ -48,6 +48,7 @@ NearestLoad find_nearest_load(const TracerSetup& setup, const Vec3& p);
 struct LiveTip {
   CrackTip tip;
   int branch = 0;
+  int piece = 0;  // that it runs in, of those that there were when the generation began
   double branch_length = 0.0;
   double driven_length = 0.0;                         // m, of the crack, for the stress intensity
   double intensity = 0.0;                             // K of the last step

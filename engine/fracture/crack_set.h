@@ -13,6 +13,7 @@ struct CrackStretch {
   Vec3 begin = Vec3::Zero(), end = Vec3::Zero();  // m
   int crack = 0;
   int branch = 0;            // 0 or 1: which of the crack's two tips made it
+  int piece = 0;             // that it runs in
   double branch_length = 0;  // m, of the branch up to its middle
 };
 

@@ -49,7 +49,7 @@ void CrackTracer::record(const LiveTip& tip, const ElementPlane& plane, const Ve
   const Vec3 end = plane.space(to);
   segments_.push_back({tip.tip.crack, side_id, setup_.generation, is_on_grain, {begin, end}});
   const double length = (end - begin).norm();
-  present_.add({begin, end, tip.tip.crack, tip.branch, tip.branch_length + 0.5 * length});
+  present_.add({begin, end, tip.tip.crack, tip.branch, tip.piece, tip.branch_length + 0.5 * length});
 }
 
 void CrackTracer::arrest(LiveTip& tip) {
@@ -144,12 +144,13 @@ void CrackTracer::run(std::array<LiveTip, 2>& tips, int count) {
     if (tips[at(i)].is_running) arrest(tips[at(i)]);
 }
 
-void CrackTracer::resume(const std::vector<CrackTip>& tips) {
+void CrackTracer::resume(const std::vector<CrackTip>& tips, const std::vector<int>& pieces) {
   for (const CrackTip& old : tips) {
     const auto entry = cutter_.find_stretch(old.element, old.edge, old.parameter);
     if (!entry) continue;  // another crack has met it, or it belongs to another piece
     std::array<LiveTip, 2> live;
     live[0].tip = old;
+    live[0].piece = pieces[at(cutter_.cell(entry->cell).origin)];
     live[0].driven_length = kRestLength * setup_.thickness;
     const auto& stress_here = (*setup_.stresses)[at(cutter_.cell(entry->cell).origin)];
     const Size before = segments_.size();
@@ -171,6 +172,7 @@ bool CrackTracer::is_shielded(const Candidate& candidate) const {
   const double farthest = std::max(spacing * reach, relief);
   bool is_near = false;
   present_.visit_near(p, farthest, [&](const CrackStretch& s, const Vec3&, double distance) {
+    if (s.piece != candidate.piece) return true;  // a crack unloads nothing beyond another one
     const int own = s.crack - setup_.first_crack;
     const double length = own >= 0 ? crack_lengths_[at(own)] : reach;
     is_near = distance < std::max(spacing * std::min(length, reach), std::min(kStripRelief * length, relief));
@@ -212,6 +214,7 @@ bool CrackTracer::try_start(const Candidate& candidate) {
     tip.branch = exit == &*forth ? 0 : 1;
     tip.tip.length = tip.branch_length = 0.5 * length;
     tip.driven_length = length;
+    tip.piece = candidate.piece;
     tip.intensity = 1e300;
     tip.face = worst.face;
     if (exit == &*forth) record(tip, plane, from, to, side_id, false);

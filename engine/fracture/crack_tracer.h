@@ -16,6 +16,7 @@ struct Candidate {
   Vec2 barycentric = Vec2::Zero();
   double overload = 0.0;  // stress / strength, above 1
   int number = 0;         // breaks ties
+  int piece = 0;          // that it is in, of those that the last cracks left
 };
 
 /// Runs cracks through a cutter. One object a generation.
@@ -23,8 +24,9 @@ class CrackTracer {
  public:
   CrackTracer(ShellCutter& cutter, TracerSetup setup);
 
-  /// Lets tips of earlier generations run on. Those that cannot stay open.
-  void resume(const std::vector<CrackTip>& tips);
+  /// Lets tips of earlier generations run on. Those that cannot stay open. `pieces`: of each cell of the mesh
+  /// that the cutter was made from.
+  void resume(const std::vector<CrackTip>& tips, const std::vector<int>& pieces);
   /// Starts cracks at the candidates, most overloaded first, not too near to each other.
   void nucleate(std::vector<Candidate> candidates);
 

@@ -9,6 +9,7 @@
 #include "engine/fracture/crushed_core.h"
 #include "engine/fracture/impact_force.h"
 #include "engine/fracture/shell_subject.h"
+#include "engine/fracture/split_shell.h"
 #include "engine/stress/shell_stress.h"
 
 namespace shatterbox::fracture {
@@ -79,6 +80,8 @@ class Decider {
     fits_ = stress::fit_stresses(
         *mesh_, contacts(),
         stress::cell_stresses(subject_.systems->stiffness(), *mesh_, force_.displacement()));
+    int piece_count = 0;
+    pieces_ = label_pieces(mesh_->cells.size(), contacts(), piece_count);
     stresses_.clear();
     for (const stress::LinearStress& fit : fits_) stresses_.push_back(fit.mean);
   }
@@ -102,8 +105,9 @@ class Decider {
     // places in it there are as many as cells: they count only for a piece that has no flaw of its own.
     std::vector<Candidate> candidates, sound;
     Verdict& verdict = decision_.verdict;
-    const auto consider = [&](std::vector<Candidate>& found, int element, const Vec2& place, double tension,
+    const auto consider = [&](std::vector<Candidate>& found, Size cell, const Vec2& place, double tension,
                               double strength, int number) {
+      const int element = mesh.cells[cell].element;
       const double overload = tension / strength;
       if (is_first && overload > verdict.ratio) {
         verdict.ratio = overload;
@@ -111,7 +115,7 @@ class Decider {
         verdict.strength = strength;
         verdict.place = position_in_element(elements(), element, place);
       }
-      if (overload > 1.0) found.push_back({element, place, overload, number});
+      if (overload > 1.0) found.push_back({element, place, overload, number, pieces_[cell]});
     };
     for (Size c = 0; c < mesh.cells.size(); ++c) {
       const int element = mesh.cells[c].element;
@@ -122,7 +126,7 @@ class Decider {
         has_flaw = true;
         const Vec2 place = stress::place_in_frame(elements(), element, frame, flaw.barycentric);
         const double tension = stress::worst_stress(fits_[c].at(place)).principal.first;
-        consider(candidates, element, flaw.barycentric, tension, flaw.strength,
+        consider(candidates, c, flaw.barycentric, tension, flaw.strength,
                  static_cast<int>(&flaw - flaws.flaws.data()));
       }
       if (has_flaw) continue;
@@ -131,7 +135,7 @@ class Decider {
       for (int i = 0; i < corners; ++i)
         middle += mesh.corners[at(mesh.cells[c].first_corner + i)].barycentric;
       const double tension = stress::worst_stress(fits_[c].mean).principal.first;
-      consider(sound, element, middle / corners, tension, flaws.greatest_strength,
+      consider(sound, c, middle / corners, tension, flaws.greatest_strength,
                static_cast<int>(flaws.flaws.size()) + static_cast<int>(c));
     }
     return candidates.empty() ? sound : candidates;
@@ -188,7 +192,7 @@ class Decider {
       const auto start = Clock::now();
       ShellCutter cutter(*mesh_);
       CrackTracer tracer(cutter, tracer_setup(generation));
-      tracer.resume(tips);
+      tracer.resume(tips, pieces_);
       tracer.nucleate(std::move(candidates_));
       decision_.generation_bound_active = false;
       if (!take_over(tracer, tips)) break;
@@ -300,6 +304,7 @@ class Decider {
   std::vector<geometry::CellContact> contacts_;      // of the cracked mesh
   std::vector<stress::LinearStress> fits_;           // of this generation
   std::vector<stress::CellStress> stresses_;         // their means
+  std::vector<int> pieces_;                          // that its cells are in
   std::vector<Candidate> candidates_;
   int next_crack_ = 0;
 };

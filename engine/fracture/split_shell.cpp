@@ -20,28 +20,6 @@ Size at(int i) {
 constexpr int kMergePasses = 8;
 constexpr double kSamePlace = 1e-9;  // of a side
 
-/// Flood fill: the number of the piece of each cell, numbered by their first cells.
-std::vector<int> label_pieces(Size cell_count, const std::vector<CellContact>& contacts, int& piece_count) {
-  std::vector<int> parent(cell_count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&parent](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
-  for (const CellContact& contact : contacts) {
-    const int a = find(contact.cell_a);
-    const int b = find(contact.cell_b);
-    if (a != b) parent[at(std::max(a, b))] = std::min(a, b);
-  }
-  std::vector<int> label(cell_count, -1);
-  piece_count = 0;
-  for (Size c = 0; c < cell_count; ++c) {
-    const int root = find(static_cast<int>(c));
-    label[c] = root == static_cast<int>(c) ? piece_count++ : label[at(root)];
-  }
-  return label;
-}
-
 /// A crack face in its element, as a stretch of material space.
 struct Face {
   int element = 0, id = 0, cell = 0, side = 0;
@@ -225,6 +203,27 @@ class Merger {
 };
 
 }  // namespace
+
+std::vector<int> label_pieces(Size cell_count, const std::vector<CellContact>& contacts, int& piece_count) {
+  std::vector<int> parent(cell_count);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&parent](int i) {
+    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
+    return i;
+  };
+  for (const CellContact& contact : contacts) {
+    const int a = find(contact.cell_a);
+    const int b = find(contact.cell_b);
+    if (a != b) parent[at(std::max(a, b))] = std::min(a, b);
+  }
+  std::vector<int> label(cell_count, -1);
+  piece_count = 0;
+  for (Size c = 0; c < cell_count; ++c) {
+    const int root = find(static_cast<int>(c));
+    label[c] = root == static_cast<int>(c) ? piece_count++ : label[at(root)];
+  }
+  return label;
+}
 
 ShellSplit split_shell(const ShellMesh& mesh, const SplitSettings& settings) {
   return split_shell(mesh, find_cell_contacts(mesh), settings);

@@ -1,6 +1,7 @@
 // Split: one cut mesh into its connected pieces, none dropped. Flood fill over the contacts of cells.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "engine/geometry/shell_mesh.h"
@@ -17,6 +18,10 @@ struct ShellSplit {
   int merged_count = 0;      // pieces that joined a neighbour because nothing could resolve them
   double merged_area = 0.0;  // m2
 };
+
+/// Flood fill: the number of the piece of each cell, numbered by their first cells.
+std::vector<int> label_pieces(std::size_t cell_count, const std::vector<geometry::CellContact>& contacts,
+                              int& piece_count);
 
 /// The pieces of a mesh. Their areas sum to the mesh's. A piece below the least width is joined, before the
 /// split, to the neighbour with the longest common crack: that crack becomes closed material again. Pieces

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "tests/sandbox/run/running.h"
 
@@ -35,6 +38,27 @@ double worst_ratio(const nlohmann::json& report) {
   return worst;
 }
 
+/// m, mean height along z of the vertices of an object in an OBJ file.
+double mean_z(const std::filesystem::path& path, const std::string& object) {
+  std::ifstream file(path);
+  std::string line;
+  bool is_inside = false;
+  double sum = 0.0;
+  int count = 0;
+  while (std::getline(file, line)) {
+    std::istringstream words(line);
+    std::string word, name;
+    words >> word;
+    if (word == "o" && words >> name) is_inside = name.rfind(object + "#", 0) == 0;
+    double x = 0.0, y = 0.0, z = 0.0;
+    if (word != "v" || !is_inside || !(words >> x >> y >> z)) continue;
+    sum += z;
+    ++count;
+  }
+  REQUIRE(count > 0);
+  return sum / count;
+}
+
 }  // namespace
 
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
@@ -63,6 +87,7 @@ TEST_CASE("window: breaks where the ball hits, and the ball goes on, a slow ball
   const Folder folder;
   const auto broken = play(folder, "window --seconds 0.6 --meshes m --fps 20");
   CHECK(broken["pieces"].get<int>() >= 20);
+  CHECK(mean_z(folder / "m" / "frame_000011.obj", "ball") < -0.5);
   check_breaks(broken);
   const auto place = broken["breaks"][0]["place"];
   CHECK(std::hypot(place[0].get<double>() - 0.06, place[1].get<double>() - 0.05) < 0.03);

@@ -105,6 +105,28 @@ TEST_CASE("the star of first cracks has its centre where the ball hit") {
   }
 }
 
+TEST_CASE("the first cracks run from the hit to the frame, and none breaks out along it") {
+  double ends = 0.0, along = 0.0, across = 0.0;  // means; m
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto decision = fracture::decide_shell(test::make_window(seed), test::steel_ball(10.0));
+    REQUIRE(decision.mesh);
+    for (const auto& segment : decision.segments) {
+      for (const Vec3& end : segment.ends)
+        if (segment.generation == 0 && end.cwiseAbs().maxCoeff() > 0.5 - 1e-9) ends += 1.0 / 3.0;
+      const Vec3 middle = 0.5 * (segment.ends[0] + segment.ends[1]);
+      const Vec3 step = (segment.ends[1] - segment.ends[0]).cwiseAbs();
+      const bool is_by_side = std::abs(middle.x()) > 0.35 && std::abs(middle.y()) < 0.3;
+      const bool is_by_top = std::abs(middle.y()) > 0.35 && std::abs(middle.x()) < 0.3;
+      if (segment.generation > 0 || (!is_by_side && !is_by_top)) continue;
+      along += (is_by_side ? step.y() : step.x()) / 3.0;
+      across += (is_by_side ? step.x() : step.y()) / 3.0;
+    }
+  }
+  INFO(ends << " reach the frame; near it " << along << " m along, " << across << " m across");
+  CHECK(ends >= 8.0);
+  CHECK(across > along);
+}
+
 TEST_CASE("a ball of twice the speed makes more pieces and more crack") {
   const Count slow = count_pieces(6.0, 0.034, 3);
   const Count fast = count_pieces(12.0, 0.034, 3);
