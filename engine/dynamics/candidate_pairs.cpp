@@ -6,15 +6,14 @@
 #include <utility>
 
 #include "engine/collision/analytic_contact.h"
-#include "engine/collision/broad_phase.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/pair_contacts.h"
+#include "engine/dynamics/pair_search.h"
 #include "engine/dynamics/rest.h"
 #include "engine/dynamics/step_motion.h"
-#include "engine/dynamics/turned_box.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -25,8 +24,6 @@ using collision::Contact;
 using core::at;
 
 constexpr double kOfTouch = 0.01;  // share of its momentum with which what only touches wakes further ones
-constexpr double kBroadSlack = 0.015;  // share of a body's size
-constexpr double kFelt = 0.004;        // the same: further apart nothing is felt
 
 bool is_same_pose(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
@@ -118,104 +115,6 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
     w.turn_angle = w.shape->kind == ShapeKind::sphere ? 0.0 : dt * std::max(w.spin.norm(), spin.norm());
   }
   return w;
-}
-
-geometry::Box box_at(const WorkBody& w, const Pose& pose) {
-  const auto& box = w.collider->box;
-  const Mat3 r = pose.rotation.toRotationMatrix();
-  const Vec3 centre = pose.translation + r * (0.5 * (box.low + box.high));
-  const Vec3 half = r.cwiseAbs() * (0.5 * (box.high - box.low));
-  return {centre - half, centre + half};
-}
-
-// Looks at the way to `end` and what is about it.
-void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
-  const double dt = settings.time_step;
-  w.looked_end = end;
-  w.reserve = 1.1 * settings.gravity.norm() * dt * dt + kBroadSlack * 2.0 * w.reach;
-  w.is_looked_straight = w.turn_angle <= kStraightTurn;
-  w.looked = box_at(w, w.start);
-  if (!w.is_active) return;
-  w.looked.include(box_at(w, end));
-  const double grow = w.reserve + (w.is_looked_straight ? 0.0 : 1.1 * turn_bound(w, end));
-  w.looked.low.array() -= grow;
-  w.looked.high.array() += grow;
-}
-
-// Whether all that the body meets on its way to its end was found from there.
-bool is_within_looked(const ContactSettings& settings, const WorkBody& w) {
-  const bool is_straight = w.turn_angle <= kStraightTurn;
-  if (is_straight && w.is_looked_straight) {
-    const double stray = (w.end.translation - w.looked_end.translation).norm() +
-                         turn_bound(w.looked_end.rotation, w.end.rotation, w.reach);
-    return stray <= w.reserve - kFelt * 2.0 * w.reach;
-  }
-  if (w.is_looked_straight) return false;
-  const geometry::Box end = box_at(w, w.end);
-  const double gap = 2.0 * settings.kept_gap * w.reach + (is_straight ? 0.0 : turn_bound(w, w.end));
-  return (end.low.array() - gap >= w.looked.low.array()).all() &&
-         (end.high.array() + gap <= w.looked.high.array()).all();
-}
-
-bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& wb) {
-  if (!a.is_dynamic() && !b.is_dynamic()) return false;
-  if (!wa.is_active && !wb.is_active) return false;
-  return a.collides_with(b);
-}
-
-struct FoundPair {
-  int a = 0, b = 0;
-  double clearance = -1e300;  // m, between the ways to where the bodies were looked for
-};
-
-void add_pairs_with_planes(const MotionWork& work, std::vector<collision::IndexPair>& pairs) {
-  for (std::size_t p = 0; p < work.bodies.size(); ++p) {
-    if (work.bodies[p].shape->kind != ShapeKind::plane) continue;
-    const Vec3 normal = work.bodies[p].start.rotation * Vec3::UnitY();
-    const double level = normal.dot(work.bodies[p].start.translation);
-    for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-      if (work.bodies[i].shape->kind == ShapeKind::plane) continue;
-      const auto& box = work.bodies[i].looked;
-      const double lowest =
-          normal.dot(0.5 * (box.low + box.high)) - normal.cwiseAbs().dot(0.5 * (box.high - box.low));
-      if (lowest > level) continue;
-      pairs.push_back({static_cast<int>(std::min(p, i)), static_cast<int>(std::max(p, i))});
-    }
-  }
-}
-
-// Pairs that may meet if their bodies end within their reserves of where they were looked for.
-std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work) {
-  std::vector<collision::SweptBound> bounds(work.bodies.size());
-  std::vector<TurnedBox> boxes(work.bodies.size());
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    const WorkBody& w = work.bodies[i];
-    if (w.shape->kind == ShapeKind::plane) continue;  // they have their own loop
-    bounds[i] = {w.looked, w.is_active};
-    boxes[i] = turn_box(w.collider->box, w.start, w.looked_end);
-  }
-  auto near = collision::find_overlapping_pairs(bounds);
-  add_pairs_with_planes(work, near);
-  std::erase_if(near, [&](const collision::IndexPair& pair) {
-    return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
-                     work.bodies[at(pair.b)]);
-  });
-  std::vector<double> clearances(near.size(), -1e300);
-  std::vector<char> is_near(near.size(), 1);
-  core::parallel_for(near.size(), 64, [&](std::size_t k) {
-    const WorkBody &a = work.bodies[at(near[k].a)], &b = work.bodies[at(near[k].b)];
-    const bool has_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
-    if (has_plane || !a.is_looked_straight || !b.is_looked_straight) return;
-    const double reserve = a.reserve + b.reserve;
-    clearances[k] = clearance(boxes[at(near[k].a)], boxes[at(near[k].b)], reserve);
-    is_near[k] = clearances[k] <= reserve;
-  });
-  std::vector<FoundPair> pairs;
-  for (std::size_t k = 0; k < near.size(); ++k)
-    if (is_near[k]) pairs.push_back({near[k].a, near[k].b, clearances[k]});
-  std::sort(pairs.begin(), pairs.end(),
-            [](const auto& x, const auto& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
-  return pairs;
 }
 
 // A step that is taken again looks at pairs that stand where they stood.

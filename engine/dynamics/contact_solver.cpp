@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/index.h"
+#include "engine/dynamics/contact_friction.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -217,59 +218,10 @@ class IslandSolver {
     }
   }
 
-  // What friction holds is brought back to where it was when that began: what sweeps leave over would add up.
-  Vec2 way_back(const SolverContact& c) const {
-    if (!is_before_drift_ || !c.can_creep) return Vec2::Zero();
-    const Vec3 crept = c.change - c.held_from;
-    Vec2 back(c.tangent_u.dot(crept), c.tangent_v.dot(crept));
-    const double length = back.norm(), most = kMostBack * c.kept_gap;
-    back *= 0.2 / step_;
-    return length > most ? Vec2(back * (most / length)) : back;
-  }
-
-  // Friction on the present normal impulse, in a circular cone.
-  void rub(SolverContact& c, Vec3& u, Vec3& change) {
-    if (c.friction <= 0.0) return;
-    const double bound = c.friction * (c.impulse[0] + change[0]);
-    const Vec2 held(c.impulse[1], c.impulse[2]), slip = Vec2(u[1], u[2]) + way_back(c);
-    const double kuu = c.response(1, 1), kvv = c.response(2, 2), kuv = c.response(1, 2);
-    Vec2 wanted =
-        held - Vec2(kvv * slip[0] - kuv * slip[1], kuu * slip[1] - kuv * slip[0]) / (kuu * kvv - kuv * kuv);
-    if (wanted.squaredNorm() > bound * bound) {
-      // It slides: friction is against the slip, whatever the body's own directions.
-      wanted = held - slip * (2.0 / (kuu + kvv));
-      const double length = wanted.norm();
-      if (length > bound) wanted *= bound / length;
-    }
-    change[1] = wanted[0] - c.impulse[1];
-    change[2] = wanted[1] - c.impulse[2];
-  }
-
-  // Rolling friction: a couple that slows the part of the relative spin along the tangents. What it rolls on
-  // is a patch of about this radius, whose friction also slows the spin about the normal.
-  void resist_rolling(SolverContact& c) {
-    if (c.rolling <= 0.0 || c.impulse[0] <= 0.0) return;
-    WorkBody &a = body(c.a), &b = body(c.b);
-    const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
-    Vec3 wanted = c.rolling_impulse;
-    for (int k = 0; k < 3; ++k) {
-      double response = 0.0;
-      if (a.inverse_mass > 0.0) response += axes[k].dot(a.inverse_inertia * axes[k]);
-      if (b.inverse_mass > 0.0) response += axes[k].dot(b.inverse_inertia * axes[k]);
-      if (response > 0.0) wanted[k] -= axes[k].dot(a.spin - b.spin) / response;
-    }
-    const double bound = c.rolling * c.impulse[0], twist = kPatch * c.friction * bound;
-    wanted[0] = std::clamp(wanted[0], -twist, twist);
-    if (const double length = wanted.tail<2>().norm(); length > bound) wanted.tail<2>() *= bound / length;
-    const Vec3 change = wanted - c.rolling_impulse;
-    const Vec3 couple = change[0] * axes[0] + change[1] * axes[1] + change[2] * axes[2];
-    for (WorkBody* w : {&a, &b}) {
-      if (w->inverse_mass <= 0.0) continue;
-      const Vec3 turn = w->inverse_inertia * couple;
-      w->spin += w == &a ? turn : Vec3(-turn);
-      w->stirred += w->reach * turn.lpNorm<1>();
-    }
-    c.rolling_impulse = wanted;
+  // Friction on the normal impulse that `change` leads to, and at the pose that its own drift is to mend.
+  void rub(const SolverContact& c, const Vec3& velocity, Vec3& change) const {
+    const Vec2 back = is_before_drift_ ? way_back(c, step_) : Vec2(Vec2::Zero());
+    change.tail<2>() = friction_change(c, velocity.tail<2>() + back, c.impulse[0] + change[0]);
   }
 
   // A contact whose bodies have hardly changed since it was last seen would hardly change them: sweeps pass
@@ -292,7 +244,7 @@ class IslandSolver {
     rub(c, u, change);
     note_left_over(c, change);
     apply(c, change, before);
-    resist_rolling(c);
+    resist_rolling(c, body(c.a), body(c.b));
     return change[0] > 0.0 ? target - before[0] : -change[0] * c.response(0, 0);
   }
 
@@ -451,7 +403,7 @@ class IslandSolver {
     rub(c, u, change);
     note_left_over(c, change);
     apply(c, change, before);
-    resist_rolling(c);
+    resist_rolling(c, body(c.a), body(c.b));
     return std::abs(change[0]) * c.response(0, 0);
   }
 
@@ -480,7 +432,6 @@ class IslandSolver {
 
   static constexpr double kTouching = 0.05;    // of the kept gap
   static constexpr double kSliding = 0.999;    // of the friction that there can be
-  static constexpr double kMostBack = 0.1;     // of the kept gap: creep beyond it does not count
   static constexpr double kResting = 1e-3;     // of the threshold: closing that is left at rest
   static constexpr double kLooseRest = 0.1;    // the same, where no contact is strained
   static constexpr double kStrain = 8.0;       // times the lighter body's weight
@@ -490,10 +441,9 @@ class IslandSolver {
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = 1200;
-  static constexpr double kPatch = 2.0 / 3.0;  // mean arm of friction over a patch, of its radius
-  static constexpr double kBounced = 1e-9;     // of the speed: error of a bounce
-  static constexpr double kStill = 0.25;       // of what a sweep may leave
-  static constexpr double kFastSpin = 0.005;   // rad a substep
+  static constexpr double kBounced = 1e-9;    // of the speed: error of a bounce
+  static constexpr double kStill = 0.25;      // of what a sweep may leave
+  static constexpr double kFastSpin = 0.005;  // rad a substep
 
   const ContactSettings& settings_;
   const Island& island_;
