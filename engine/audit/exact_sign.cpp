@@ -1,13 +1,10 @@
 #include "engine/audit/exact_sign.h"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace shatterbox::audit {
 namespace {
-
-constexpr double kUnit = 0.5 * std::numeric_limits<double>::epsilon();
 
 /// A number as a sum of doubles that do not overlap, the least first; empty is zero.
 using Expansion = std::vector<double>;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "engine/audit/exact_sign.h"
 
 namespace shatterbox::audit {
 namespace {
 
-constexpr double kUnit = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double kSplit = 0.4876;  // not a half: scenes are made of round numbers
 constexpr int kMostParts = 2000;
 

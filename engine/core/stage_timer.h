@@ -1,11 +1,12 @@
 // Wall-clock time by named stage, for the report. Times never enter the state.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "engine/core/clock.h"
 
 namespace shatterbox::core {
 
@@ -34,19 +35,15 @@ class StageTimer {
  private:
   class Booking {
    public:
-    Booking(StageTimer& timer, std::string_view name)
-        : timer_(timer), name_(name), start_(std::chrono::steady_clock::now()) {}
+    Booking(StageTimer& timer, std::string_view name) : timer_(timer), name_(name), start_(Clock::now()) {}
     Booking(const Booking&) = delete;
     Booking& operator=(const Booking&) = delete;
-    ~Booking() {
-      const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start_;
-      timer_.add(name_, spent.count());
-    }
+    ~Booking() { timer_.add(name_, milliseconds_since(start_)); }
 
    private:
     StageTimer& timer_;
     std::string_view name_;
-    std::chrono::steady_clock::time_point start_;
+    Clock::time_point start_;
   };
 
   std::vector<Stage> stages_;

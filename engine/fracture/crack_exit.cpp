@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::fracture {
 namespace {
 
 using geometry::SideKind;
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kSnap = 0.05;      // of an edge or of sqrt(2 area): vertices are passed by at this distance
 constexpr double kJoin = 0.3;       // thicknesses: cuts nearer to each other than this become one

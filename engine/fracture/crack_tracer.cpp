@@ -4,15 +4,14 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::fracture {
 namespace {
 
 using geometry::SideKind;
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kRestLength = 4.0;  // thicknesses: length that drives a crack on after a rest
 // A crack right across a strip that the first cracks left unloads it that many of its lengths far.

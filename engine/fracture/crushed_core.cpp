@@ -6,6 +6,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/hash.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -13,9 +14,7 @@ namespace {
 using geometry::ShellCorner;
 using geometry::SideKind;
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kLeastDistance = 0.75;  // of seeds, share of the local cell size
 constexpr double kDartsPerCell = 8.0;    // for the smallest cells

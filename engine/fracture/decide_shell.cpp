@@ -1,9 +1,10 @@
 #include "engine/fracture/decide_shell.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "engine/core/clock.h"
 #include "engine/core/hash.h"
+#include "engine/core/index.h"
 #include "engine/fracture/cell_flaws.h"
 #include "engine/fracture/crack_tracer.h"
 #include "engine/fracture/crushed_core.h"
@@ -16,9 +17,7 @@ namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kCoreOverload = 5.0;       // stress over strength above which the core is crushed
 constexpr double kCoreReach = 6.0;          // patch radii
@@ -27,10 +26,8 @@ constexpr double kFlat = 1e6;               // body sizes: a greater radius of c
 constexpr double kWaveLength = 0.14;        // of the paths' noise, share of the body's size
 constexpr double kGrowthThatCounts = 0.04;  // of the cracks' length: a generation that adds less is the last
 
-using Clock = std::chrono::steady_clock;
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::milliseconds_since;
 
 class Decider {
  public:

@@ -5,15 +5,14 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/random.h"
 
 namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kLinesPerSquare = 4.0;  // mean number of lines through one square of a family's grid
 constexpr double kFlawsPerArea = 243.0;  // 3^5: up to three times the strength for m = 5

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/random.h"
 #include "engine/fracture/flaws.h"
 
@@ -13,14 +14,12 @@ namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kCandidatesPerSeed = 8.0;  // darts thrown for every seed that is wanted
-constexpr double kLeastDistance = 0.7;      // of seeds, share of the spacing
+constexpr double kLeastSpacing = 0.7;       // of seeds, share of the spacing
 constexpr double kWeightScatter = 0.15;
-constexpr double kVertexMargin = 0.1;  // energy lead of a vertex's grain, share of its shortest edge
+constexpr double kVertexLead = 0.1;  // energy lead of a vertex's grain, share of its shortest edge
 
 /// Points in cubes of a given side, for neighbours within one side. Cubes in a total order, never hashed.
 class CubeGrid {
@@ -88,7 +87,7 @@ std::vector<GrainSeed> scatter_grain_seeds(const geometry::ShellElements& elemen
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });
-  const double least = kLeastDistance * spacing;
+  const double least = kLeastSpacing * spacing;
   CubeGrid grid(least);
   for (const SurfacePoint& dart : darts) {
     const Vec3 x = position_in_element(elements, dart.element, dart.barycentric);
@@ -132,7 +131,7 @@ GrainField make_grain_field(const geometry::ShellElements& elements, std::vector
       if (energies[i] <= least + 2.5 * greatest_weight * scales[v].longest)
         kept[v].push_back(static_cast<int>(i));
     }
-    const double margin = kVertexMargin * scales[v].shortest;
+    const double margin = kVertexLead * scales[v].shortest;
     winners[v] = {best, std::min(least, second - margin)};
   }
   field.first_of_element.push_back(0);

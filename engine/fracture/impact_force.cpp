@@ -1,11 +1,12 @@
 #include "engine/fracture/impact_force.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <Eigen/Eigenvalues>
 
+#include "engine/core/clock.h"
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/fracture/cell_flaws.h"
 #include "engine/fracture/shell_subject.h"
@@ -17,6 +18,7 @@ namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
+using core::at;
 
 constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in element sizes
 // The same, as a share of the unbroken body's size: a mesh finer than that gives the same answer, crumbs
@@ -30,10 +32,8 @@ constexpr double kSpinSafety = 4.0;        // by which a bound exceeds the estim
 // begins below the screening that it ends at.
 constexpr double kRimCompliance = 8.0;
 
-using Clock = std::chrono::steady_clock;
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::milliseconds_since;
 
 /// Of a plate against bending, N m.
 double plate_stiffness(const stress::ShellProperties& p) {

@@ -5,13 +5,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr int kMostGroups = 24;        // pieces that share one load; the lightest beyond that carry nothing
 constexpr double kLeastWeight = 0.01;  // nor do those with less than this share of the patch

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/index.h"
 #include "engine/fracture/element_plane.h"
 
 namespace shatterbox::fracture {
@@ -10,9 +11,7 @@ namespace {
 using geometry::ShellCorner;
 using geometry::SideKind;
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kLeastPart = 1e-6;  // of an element's area
 

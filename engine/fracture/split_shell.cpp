@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::fracture {
 namespace {
 
@@ -13,9 +15,7 @@ using geometry::ShellCorner;
 using geometry::ShellMesh;
 using geometry::SideKind;
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr int kMergePasses = 8;
 constexpr double kSamePlace = 1e-9;  // of a side

@@ -13,9 +13,7 @@ namespace {
 constexpr double kFlat = 1e-12;
 constexpr int kMostPasses = 16;
 
-std::size_t index(int number) {
-  return static_cast<std::size_t>(number);
-}
+using core::at;
 
 /// Numbers of the corners that begin the longest and the shortest edge, with their lengths.
 struct Extremes {
@@ -28,7 +26,7 @@ struct Extremes {
 Extremes find_extremes(const TriangleMesh& mesh, const Triangle& t) {
   std::array<double, 3> length{};
   for (std::size_t i = 0; i < 3; ++i)
-    length[i] = (mesh.positions[index(t[(i + 1) % 3])] - mesh.positions[index(t[i])]).norm();
+    length[i] = (mesh.positions[at(t[(i + 1) % 3])] - mesh.positions[at(t[i])]).norm();
   const auto longest = std::max_element(length.begin(), length.end());
   const auto shortest = std::min_element(length.begin(), length.end());
   return {static_cast<std::size_t>(longest - length.begin()),
@@ -71,7 +69,7 @@ class Round {
     if (e.shortest_length <= kFlat * e.longest_length) {
       const int a = corners[e.shortest];
       const int b = corners[(e.shortest + 1) % 3];
-      joined_[index(std::max(a, b))] = std::min(a, b);
+      joined_[at(std::max(a, b))] = std::min(a, b);
       return true;
     }
     return !divides_ || divide_neighbour(t, e.longest);
@@ -81,13 +79,13 @@ class Round {
   bool divide_neighbour(std::size_t t, std::size_t longest) {
     const int edge = topology_.triangle_edges[t][longest];
     if (topology_.triangle_count(edge) != 2) return true;  // a border: nothing to divide
-    const auto begin = index(topology_.first_triangle[index(edge)]);
+    const auto begin = at(topology_.first_triangle[at(edge)]);
     const int one = topology_.edge_triangles[begin];
-    const auto other = index(one == static_cast<int>(t) ? topology_.edge_triangles[begin + 1] : one);
+    const auto other = at(one == static_cast<int>(t) ? topology_.edge_triangles[begin + 1] : one);
     if (is_touched_[other]) return false;
     is_touched_[other] = 1;
     const int middle = mesh_.triangles[t][(longest + 2) % 3];
-    const auto& ends = topology_.edges[index(edge)];
+    const auto& ends = topology_.edges[at(edge)];
     Triangle& neighbour = mesh_.triangles[other];
     if (std::find(neighbour.begin(), neighbour.end(), middle) != neighbour.end()) return true;
     Triangle second = neighbour;
@@ -111,7 +109,7 @@ class Round {
     source_.insert(source_.end(), added_source_.begin(), added_source_.end());
     for (Triangle& t : mesh_.triangles)
       for (int& v : t)
-        while (joined_[index(v)] != v) v = joined_[index(v)];
+        while (joined_[at(v)] != v) v = joined_[at(v)];
   }
 
   TriangleMesh& mesh_;
@@ -131,9 +129,9 @@ double flatness(const TriangleMesh& mesh, const Triangle& triangle) {
   const double longest = find_extremes(mesh, triangle).longest_length;
   if (longest == 0.0) return 0.0;
   // Divided first, so that the product neither underflows nor overflows.
-  const Vec3& origin = mesh.positions[index(triangle[0])];
-  const Vec3 a = (mesh.positions[index(triangle[1])] - origin) / longest;
-  const Vec3 b = (mesh.positions[index(triangle[2])] - origin) / longest;
+  const Vec3& origin = mesh.positions[at(triangle[0])];
+  const Vec3 a = (mesh.positions[at(triangle[1])] - origin) / longest;
+  const Vec3 b = (mesh.positions[at(triangle[2])] - origin) / longest;
   return a.cross(b).norm();
 }
 

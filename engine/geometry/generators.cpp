@@ -8,11 +8,10 @@
 
 #include "engine/core/elementary.h"
 #include "engine/geometry/irregular.h"
+#include "engine/geometry/profile.h"
 
 namespace shatterbox::geometry {
 namespace {
-
-constexpr double kRowHeight = 0.8660254037844386;  // of an equilateral triangle
 
 std::string metres(double value) {
   std::ostringstream text;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "engine/core/index.h"
 #include "engine/geometry/edge_topology.h"
 #include "engine/geometry/flat_triangles.h"
 #include "engine/geometry/mass_properties.h"
@@ -16,9 +17,7 @@ namespace {
 constexpr double kMostCoordinate =
     1e60;  // m: areas and inertias of anything larger leave the range of a double
 
-std::size_t index(int number) {
-  return static_cast<std::size_t>(number);
-}
+using core::at;
 
 std::string at_place(const Vec3& place) {
   std::ostringstream text;
@@ -84,19 +83,19 @@ class Mender {
   /// Sets the place to a vertex of the given mesh, and says it.
   std::string say_vertex(MeshFinding& finding, int given_vertex) const {
     finding.vertex = given_vertex;
-    finding.place = given_.positions[index(given_vertex)];
+    finding.place = given_.positions[at(given_vertex)];
     return "vertex " + std::to_string(given_vertex + 1) + " at " + at_place(finding.place);
   }
 
   std::string say_triangle(MeshFinding& finding, int given_triangle) const {
-    const Triangle& t = given_.triangles[index(given_triangle)];
+    const Triangle& t = given_.triangles[at(given_triangle)];
     finding.triangle = given_triangle;
     finding.place =
-        (given_.positions[index(t[0])] + given_.positions[index(t[1])] + given_.positions[index(t[2])]) / 3.0;
+        (given_.positions[at(t[0])] + given_.positions[at(t[1])] + given_.positions[at(t[2])]) / 3.0;
     return "triangle " + std::to_string(given_triangle + 1) + " at " + at_place(finding.place);
   }
 
-  const Vec3& at(int vertex) const { return mesh_.positions[index(vertex)]; }
+  const Vec3& position(int vertex) const { return mesh_.positions[at(vertex)]; }
 
   bool test_empty() {
     if (!given_.triangles.empty()) return true;
@@ -120,7 +119,7 @@ class Mender {
     finding.vertex = first;
     finding.sentence = counted(count, "vertex has a coordinate", "vertices have coordinates") +
                        " that is no number or absurdly large, first vertex " + std::to_string(first + 1) +
-                       " at " + at_place(given_.positions[index(first)]) +
+                       " at " + at_place(given_.positions[at(first)]) +
                        ". Export the mesh again, or correct the file there.";
     return false;
   }
@@ -151,7 +150,7 @@ class Mender {
   void count_unused() {
     std::vector<std::uint8_t> is_used(given_.positions.size(), 0);
     for (const Triangle& t : given_.triangles)
-      for (const int v : t) is_used[index(v)] = 1;
+      for (const int v : t) is_used[at(v)] = 1;
     const int count = static_cast<int>(std::count(is_used.begin(), is_used.end(), 0));
     if (count == 0) return;
     MeshFinding& finding = report(MeshFault::unused_vertices, Severity::mended, count);
@@ -169,7 +168,7 @@ class Mender {
       if (first[v] != static_cast<int>(v) && count++ == 0) place = static_cast<int>(v);
     if (count == 0) return;
     for (Triangle& t : mesh_.triangles)
-      for (int& v : t) v = first[index(v)];
+      for (int& v : t) v = first[at(v)];
     MeshFinding& finding = report(MeshFault::duplicate_vertices, Severity::mended, count);
     const std::string words = say_vertex(finding, place);
     finding.sentence = counted(count, "vertex lies", "vertices lie") + " exactly on another one (first " +
@@ -202,16 +201,15 @@ class Mender {
     std::vector<Triangle> sorted = mesh_.triangles;
     for (Triangle& t : sorted) std::sort(t.begin(), t.end());
     std::sort(order.begin(), order.end(), [&](int a, int b) {
-      return sorted[index(a)] != sorted[index(b)] ? sorted[index(a)] < sorted[index(b)] : a < b;
+      return sorted[at(a)] != sorted[at(b)] ? sorted[at(a)] < sorted[at(b)] : a < b;
     });
     std::vector<std::uint8_t> is_kept(mesh_.triangles.size(), 1);
     for (std::size_t i = 1; i < order.size(); ++i)
-      if (sorted[index(order[i])] == sorted[index(order[i - 1])]) is_kept[index(order[i])] = 0;
+      if (sorted[at(order[i])] == sorted[at(order[i - 1])]) is_kept[at(order[i])] = 0;
     const int count = static_cast<int>(std::count(is_kept.begin(), is_kept.end(), 0));
     if (count == 0) return;
     MeshFinding& finding = report(MeshFault::duplicate_triangles, Severity::mended, count);
-    const auto first =
-        index(static_cast<int>(std::find(is_kept.begin(), is_kept.end(), 0) - is_kept.begin()));
+    const auto first = at(static_cast<int>(std::find(is_kept.begin(), is_kept.end(), 0) - is_kept.begin()));
     const std::string words = say_triangle(finding, triangle_source_[first]);
     finding.sentence = counted(count, "triangle has", "triangles have") +
                        " the same corners as another one (first " + words + "): dropped.";
@@ -221,7 +219,7 @@ class Mender {
   void drop_unused() {
     std::vector<std::uint8_t> is_used(mesh_.positions.size(), 0);
     for (const Triangle& t : mesh_.triangles)
-      for (const int v : t) is_used[index(v)] = 1;
+      for (const int v : t) is_used[at(v)] = 1;
     std::size_t kept = 0;
     for (std::size_t v = 0; v < is_used.size(); ++v)
       if (is_used[v]) vertex_source_[kept++] = vertex_source_[v];
@@ -244,15 +242,15 @@ class Mender {
       if (topology_.triangle_count(static_cast<int>(e)) > 2 && count++ == 0) first = static_cast<int>(e);
     if (count == 0) return true;
     MeshFinding& finding = report(MeshFault::non_manifold_edges, Severity::refused, count);
-    const auto& ends = topology_.edges[index(first)];
-    finding.vertex = vertex_source_[index(ends[0])];
+    const auto& ends = topology_.edges[at(first)];
+    finding.vertex = vertex_source_[at(ends[0])];
     finding.triangle =
-        triangle_source_[index(topology_.edge_triangles[index(topology_.first_triangle[index(first)])])];
-    finding.place = 0.5 * (at(ends[0]) + at(ends[1]));
+        triangle_source_[at(topology_.edge_triangles[at(topology_.first_triangle[at(first)])])];
+    finding.place = 0.5 * (position(ends[0]) + position(ends[1]));
     finding.sentence = counted(count, "edge belongs", "edges belong") +
                        " to more than two triangles, first the edge from vertex " +
                        std::to_string(finding.vertex + 1) + " to vertex " +
-                       std::to_string(vertex_source_[index(ends[1])] + 1) + " at " + at_place(finding.place) +
+                       std::to_string(vertex_source_[at(ends[1])] + 1) + " at " + at_place(finding.place) +
                        " (" + std::to_string(topology_.triangle_count(first)) +
                        " triangles). A shell is a single sheet: take the inner wall out, or make two bodies.";
     return false;
@@ -303,10 +301,10 @@ class Mender {
                         std::vector<std::uint8_t>& is_turned) {
     for (const int edge : topology_.triangle_edges[t]) {
       if (topology_.triangle_count(edge) != 2) continue;
-      const auto begin = index(topology_.first_triangle[index(edge)]);
+      const auto begin = at(topology_.first_triangle[at(edge)]);
       const int one = topology_.edge_triangles[begin];
-      const auto other = index(one == static_cast<int>(t) ? topology_.edge_triangles[begin + 1] : one);
-      const auto& ends = topology_.edges[index(edge)];
+      const auto other = at(one == static_cast<int>(t) ? topology_.edge_triangles[begin + 1] : one);
+      const auto& ends = topology_.edges[at(edge)];
       const bool agrees =
           direction_along(mesh_.triangles[t], ends) != direction_along(mesh_.triangles[other], ends);
       const bool wanted = agrees ? is_turned[t] : !is_turned[t];
@@ -330,24 +328,24 @@ class Mender {
   void split_fans() {
     std::vector<std::vector<std::size_t>> around(mesh_.positions.size());
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-      for (const int v : mesh_.triangles[t]) around[index(v)].push_back(t);
+      for (const int v : mesh_.triangles[t]) around[at(v)].push_back(t);
     int count = 0;
     int first = -1;
     const int vertices = static_cast<int>(mesh_.positions.size());
     for (int v = 0; v < vertices; ++v) {
-      std::vector<std::size_t> rest = around[index(v)];
+      std::vector<std::size_t> rest = around[at(v)];
       bool is_split = false;
       for (int fan = 0; !rest.empty(); ++fan) {
         const std::vector<std::size_t> members = take_fan(rest, v);
         if (fan == 0) continue;
         is_split = true;
         const int copy = static_cast<int>(mesh_.positions.size());
-        mesh_.positions.push_back(Vec3(mesh_.positions[index(v)]));
-        vertex_source_.push_back(vertex_source_[index(v)]);
+        mesh_.positions.push_back(Vec3(mesh_.positions[at(v)]));
+        vertex_source_.push_back(vertex_source_[at(v)]);
         for (const std::size_t t : members)
           std::replace(mesh_.triangles[t].begin(), mesh_.triangles[t].end(), v, copy);
       }
-      if (is_split && count++ == 0) first = vertex_source_[index(v)];
+      if (is_split && count++ == 0) first = vertex_source_[at(v)];
     }
     if (count == 0) return;
     MeshFinding& finding = report(MeshFault::non_manifold_vertices, Severity::mended, count);
@@ -383,7 +381,7 @@ class Mender {
         report(MeshFault::loose_parts, options_.allow_loose_parts ? Severity::noted : Severity::refused,
                diagnosis_.part_count);
     const auto second = std::find(part_.begin(), part_.end(), 1) - part_.begin();
-    const std::string words = say_triangle(finding, triangle_source_[index(static_cast<int>(second))]);
+    const std::string words = say_triangle(finding, triangle_source_[at(static_cast<int>(second))]);
     finding.sentence =
         "The mesh has " + std::to_string(diagnosis_.part_count) + " loose parts (the second begins with " +
         words + ")" +

@@ -8,9 +8,8 @@ namespace shatterbox::geometry {
 namespace {
 
 constexpr int kSamples = 1024;
-constexpr double kRowHeight = 0.8660254037844386;  // of an equilateral triangle
-constexpr double kLeastRing = 8.0;                 // edges of the narrowest ring
-constexpr double kGrading = 0.3;                   // growth of the edge length per metre of distance
+constexpr double kLeastRing = 8.0;  // edges of the narrowest ring
+constexpr double kGrading = 0.3;    // growth of the edge length per metre of distance
 
 }  // namespace
 

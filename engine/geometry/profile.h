@@ -8,6 +8,8 @@
 
 namespace shatterbox::geometry {
 
+inline constexpr double kRowHeight = 0.8660254037844386;  // of an equilateral triangle
+
 class Profile {
  public:
   /// Segments must have a length; `edge_length` is the size wanted where nothing narrow is near.

@@ -14,7 +14,6 @@
 namespace shatterbox::geometry {
 namespace {
 
-constexpr double kRowHeight = 0.8660254037844386;  // of an equilateral triangle
 constexpr int kQuadrature = 512;
 constexpr int kLeastCount = 6;  // vertices of a ring: one round a point
 

@@ -5,15 +5,13 @@
 #include <numeric>
 
 #include "engine/core/disjoint_sets.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::geometry {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 /// A side of a cell that lies on an element's edge: the stretch of the edge, from its lower-numbered vertex.
 struct Stretch {

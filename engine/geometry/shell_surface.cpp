@@ -5,14 +5,13 @@
 #include <numeric>
 
 #include "engine/core/disjoint_sets.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::geometry {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kTouch = 1e-6;          // share of an edge that counts as contact, as in find_cell_contacts
 constexpr double kMitreSoftness = 0.02;  // bounds how far a sharp corner retreats along its bisector
@@ -29,7 +28,7 @@ struct BorderPoint {
 
 /// A polygon's side on an element's edge, or on a closed facet (then `edge` is -1 and positions are
 /// compared).
-struct Stretch {
+struct SideStretch {
   int edge, cell, side;
   double begin, end;  // parameters along the edge
   bool is_forward;    // the side runs from begin to end
@@ -81,15 +80,15 @@ class SurfaceBuilder {
         stretches_.push_back({edge, static_cast<int>(c), s, std::min(p, q), std::max(p, q), p < q});
       }
     }
-    std::sort(stretches_.begin(), stretches_.end(), [](const Stretch& a, const Stretch& b) {
+    std::sort(stretches_.begin(), stretches_.end(), [](const SideStretch& a, const SideStretch& b) {
       return std::array{a.edge, a.cell, a.side} < std::array{b.edge, b.cell, b.side};
     });
-    const auto id = [this](const Stretch& s) {
+    const auto id = [this](const SideStretch& s) {
       const ShellCell& cell = mesh_.cells[at(s.cell)];
       return std::array{cell.element, corner(cell, s.side).side_id, s.cell, s.side};
     };
     std::sort(facets_.begin(), facets_.end(),
-              [&id](const Stretch& a, const Stretch& b) { return id(a) < id(b); });
+              [&id](const SideStretch& a, const SideStretch& b) { return id(a) < id(b); });
   }
 
   /// Calls `action(i, j)` for every ordered pair of different stretches on one edge.
@@ -131,8 +130,8 @@ class SurfaceBuilder {
   void insert_neighbours_corners() {
     added_.resize(mesh_.cells.size());
     for_neighbours([this](Size i, Size j) {
-      const Stretch& a = stretches_[i];
-      const Stretch& b = stretches_[j];
+      const SideStretch& a = stretches_[i];
+      const SideStretch& b = stretches_[j];
       for (const double q : {b.begin, b.end})
         if (q > a.begin && q < a.end) {
           const ShellCell& cell = mesh_.cells[at(a.cell)];
@@ -142,7 +141,7 @@ class SurfaceBuilder {
               {barycentric_on_edge(elements_, cell.element, local_edge, q), a.side, key});
         }
     });
-    const auto insert = [this](const Stretch& a, const Stretch& b) {
+    const auto insert = [this](const SideStretch& a, const SideStretch& b) {
       const ShellCell& cell = mesh_.cells[at(a.cell)];
       const ShellCell& other = mesh_.cells[at(b.cell)];
       for (int end = 0; end < 2; ++end) {
@@ -151,7 +150,7 @@ class SurfaceBuilder {
         if (t > 1e-9 && t < 1.0 - 1e-9) added_[at(a.cell)].push_back({point, a.side, t});
       }
     };
-    for_facet_pairs([&insert](const Stretch& a, const Stretch& b) {
+    for_facet_pairs([&insert](const SideStretch& a, const SideStretch& b) {
       insert(a, b);
       insert(b, a);
     });
@@ -192,13 +191,13 @@ class SurfaceBuilder {
     touches_.assign(stretches_.size(), 0);
     for_neighbours([this](Size i, Size j) {
       if (i > j) return;
-      const Stretch& a = stretches_[i];
-      const Stretch& b = stretches_[j];
+      const SideStretch& a = stretches_[i];
+      const SideStretch& b = stretches_[j];
       const double from = std::max(a.begin, b.begin);
       const double to = std::min(a.end, b.end);
       if (to - from <= kTouch) return;
       touches_[i] = touches_[j] = 1;
-      const auto parameter = [this](const Stretch& s, int node) {
+      const auto parameter = [this](const SideStretch& s, int node) {
         const ShellCell& cell = mesh_.cells[at(s.cell)];
         return edge_parameter(elements_, cell.element, corner(cell, s.side).side_id,
                               nodes_[at(node)].barycentric);
@@ -208,7 +207,7 @@ class SurfaceBuilder {
         for (const int m : nodes_b)
           if (parameter(a, n) == parameter(b, m)) welds_->unite(n, m);
     });
-    for_facet_pairs([this](const Stretch& a, const Stretch& b) {
+    for_facet_pairs([this](const SideStretch& a, const SideStretch& b) {
       const std::vector<int> nodes_b = side_nodes(b.cell, b.side);
       for (const int n : side_nodes(a.cell, a.side))
         for (const int m : nodes_b)
@@ -427,8 +426,8 @@ class SurfaceBuilder {
 
   const ShellMesh& mesh_;
   const ShellElements& elements_;
-  std::vector<Stretch> stretches_;
-  std::vector<Stretch> facets_;
+  std::vector<SideStretch> stretches_;
+  std::vector<SideStretch> facets_;
   std::vector<char> touches_;  // per stretch: material goes on there
   std::vector<std::vector<BorderPoint>> added_;
   std::vector<BorderPoint> nodes_;

@@ -7,14 +7,13 @@
 #include <mutex>
 #include <numeric>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 // METIS draws from the C library's one generator: two threads at once would change each other's answer.
 std::mutex metis_mutex;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/front_tiles.h"
 
@@ -13,10 +14,7 @@ namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 /// A pivot this small beside its unfactored diagonal is rounding.
 constexpr double kLeastPivot = 1e-15;

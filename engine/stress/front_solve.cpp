@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/core/index.h"
 #include "engine/stress/front_tiles.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 template <int kLanes>
 class LaneSolver {

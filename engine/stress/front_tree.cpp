@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
+#include "engine/core/index.h"
 #include "engine/stress/supernodes.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 class TreeBuilder {
  public:

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/stress/shell_stiffness.h"
 
 namespace shatterbox::stress {
@@ -14,9 +15,7 @@ using Size = std::size_t;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 int find_root(std::vector<int>& parent, int i) {
   while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];

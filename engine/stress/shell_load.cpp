@@ -7,15 +7,13 @@
 #include <span>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 Vec3 corner_position(const geometry::ShellMesh& mesh, const geometry::ShellCell& cell, int corner) {
   const Vec2& barycentric = mesh.corners[at(cell.first_corner + corner)].barycentric;

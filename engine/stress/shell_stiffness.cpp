@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/elimination_order.h"
 
@@ -12,9 +13,7 @@ namespace {
 using Size = std::size_t;
 using Strain = Eigen::Matrix<double, 6, kElementDofs, Eigen::RowMajor>;
 
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 /// Corners of an element in its own plane, in units of the shell.
 std::array<Vec2, 3> flatten(const geometry::ShellElements& elements, int element, const Mat3& frame,

@@ -4,16 +4,14 @@
 #include <array>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 /// A plane stress in the axes `along` and its left-hand normal, from those of the frame; the other way for
 /// `back`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/elimination_order.h"
 #include "engine/stress/front_tiles.h"
@@ -11,12 +12,7 @@ namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
-
-constexpr Size kMostLanes = 4;
+using core::at;
 
 /// product += element's matrix times x, one vector.
 void add_product(const double* entry, const SystemCell& cell, const double* x, double* product) {

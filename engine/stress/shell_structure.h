@@ -16,6 +16,8 @@
 
 namespace shatterbox::stress {
 
+inline constexpr std::size_t kMostLanes = 4;  // vectors that are multiplied or solved together
+
 /// Places of one cell's unknowns and the share of its element's stiffness.
 struct SystemCell {
   int element = 0;

@@ -2,14 +2,13 @@
 
 #include <array>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 std::vector<int> list_flags(const std::vector<char>& flags) {
   std::vector<int> list;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/shell_system_state.h"
 
@@ -10,10 +11,7 @@ namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr int kIterations = 40;        // of the refinement; 1 to 3 do for a body without mechanisms
 constexpr double kSplitShift = 1e6;    // of s^2 over a part's shift: below, about, the first frequency

@@ -13,7 +13,7 @@
 
 namespace shatterbox::stress {
 
-inline constexpr std::size_t kMostLanes = SolveLanes::kMost;
+static_assert(kMostLanes == SolveLanes::kMost);
 
 /// Everything in units of the shell (ShellStiffness), vectors in the order of the mesh's degrees of freedom.
 struct ShellSystem::State {

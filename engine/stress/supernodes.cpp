@@ -1,13 +1,12 @@
 #include "engine/stress/supernodes.h"
 
+#include "engine/core/index.h"
+
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
-
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 /// Elements by places in the order of elimination, ascending; absent nodes at the end as -1.
 std::vector<ElementNodes> place_elements(const NodeGraph& graph, const std::vector<int>& place) {

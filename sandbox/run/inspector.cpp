@@ -1,13 +1,14 @@
 #include "sandbox/run/inspector.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "engine/core/clock.h"
 
 namespace shatterbox::sandbox::run {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using core::Clock;
 
 std::string name_of(const world::World& world, body::BodyId id) {
   const auto bodies = world.bodies();
@@ -26,7 +27,7 @@ void Inspector::begin_step(const world::World& world) {
   if (!record_.has_audit) return;
   const auto start = Clock::now();
   audit_.begin_step(world.bodies());
-  record_.audit_time += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  record_.audit_time += core::milliseconds_since(start);
 }
 
 void Inspector::end_step(const world::World& world) {
@@ -42,7 +43,7 @@ void Inspector::end_step(const world::World& world) {
     record_.audit_names.push_back(name_of(world, record_.audit.findings[i].a));
     record_.audit_names.push_back(name_of(world, record_.audit.findings[i].b));
   }
-  record_.audit_time += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  record_.audit_time += core::milliseconds_since(start);
 }
 
 }  // namespace shatterbox::sandbox::run

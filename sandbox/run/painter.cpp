@@ -1,7 +1,6 @@
 #include "sandbox/run/painter.h"
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
@@ -11,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/clock.h"
 #include "engine/core/hash.h"
 #include "render/output/image_file.h"
 #include "render/output/video_file.h"
@@ -19,12 +19,9 @@ namespace shatterbox::sandbox::run {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using core::Clock;
+using core::milliseconds_since;
 constexpr std::size_t kMostWaiting = 2;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 }  // namespace
 

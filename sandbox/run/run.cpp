@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
 
+#include "engine/core/clock.h"
 #include "engine/core/parallel.h"
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/obj_frames.h"
@@ -27,11 +27,8 @@ namespace shatterbox::sandbox::run {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::milliseconds_since;
 
 int refuse(const scene::Problems& problems) {
   fmt::print(stderr, "{}\n", scene::describe(problems));
