@@ -1,27 +1,12 @@
 #include "render/output/video_plain.h"
 
 #include <cstdint>
-#include <memory>
 #include <system_error>
 
-extern "C" {
-#include <libavcodec/packet.h>
-#include <libavformat/avformat.h>
-}
+#include "render/output/video_libav.h"
 
 namespace shatterbox::render {
 namespace {
-
-struct Closer {
-  void operator()(AVFormatContext* p) const {
-    if (p->oformat == nullptr) return avformat_close_input(&p);
-    if (p->pb != nullptr) avio_closep(&p->pb);
-    avformat_free_context(p);
-  }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-};
-template <typename T>
-using Owned = std::unique_ptr<T, Closer>;
 
 int write_header(AVFormatContext& to) {
   AVDictionary* options = nullptr;
@@ -86,9 +71,7 @@ Status write_plain_mp4(const std::filesystem::path& fragmented, const std::files
   if (code >= 0) return {};
   std::error_code ignored;
   std::filesystem::remove(plain, ignored);
-  char words[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(code, words, sizeof words);
-  return {words};
+  return {in_words(code)};
 }
 
 }  // namespace shatterbox::render

@@ -7,7 +7,7 @@
 namespace shatterbox::render::pass {
 namespace {
 
-constexpr int kSide = 16;           // pixels; the backdrop runs straight between the corners of such squares
+constexpr int kSquare = 16;         // pixels; the backdrop runs straight between the corners of such squares
 constexpr int kSteps = 16384;       // of the table: a fifth of a level where it is steepest
 constexpr float kShoulder = 0.72F;  // as common/tone.glsl
 
@@ -67,12 +67,13 @@ class Painter {
       : block_(block),
         width_(static_cast<int>(block.viewport.x)),
         height_(static_cast<int>(block.viewport.y)),
-        across_((width_ + kSide - 1) / kSide),
+        across_((width_ + kSquare - 1) / kSquare),
         drop_(block.ground_place.x - block.eye_exposure.y),
         floor_(glm::vec3(block.floor_sun + block.floor_sky)) {
-    for (int y = 0; y <= (height_ + kSide - 1) / kSide; ++y) {
+    for (int y = 0; y <= (height_ + kSquare - 1) / kSquare; ++y) {
       for (int x = 0; x <= across_; ++x) {
-        corners_.push_back(backdrop_at(block, {std::min(x * kSide, width_), std::min(y * kSide, height_)}));
+        corners_.push_back(
+            backdrop_at(block, {std::min(x * kSquare, width_), std::min(y * kSquare, height_)}));
       }
     }
   }
@@ -86,8 +87,8 @@ class Painter {
       const Row row{
           glm::vec3(block_.view_forward) + up * glm::vec3(block_.view_up) - glm::vec3(block_.view_right),
           side};
-      for (int x = 0; x < width_; x += kSide) {
-        const int count = std::min(kSide, width_ - x);
+      for (int x = 0; x < width_; x += kSquare) {
+        const int count = std::min(kSquare, width_ - x);
         paint_run(row, x, y, count, whole, to);
         to += 4 * static_cast<std::ptrdiff_t>(count);
       }
@@ -103,7 +104,7 @@ class Painter {
     const float rise = row.ray.y, rise_step = row.step.y;
     const float into = row.ray.x * way.x + row.ray.z * way.y,
                 into_step = row.step.x * way.x + row.step.z * way.y;
-    for (int k = 0; k < kSide; ++k) {
+    for (int k = 0; k < kSquare; ++k) {
       const float x = static_cast<float>(first + k) + 0.5F;
       const float y_here = rise + x * rise_step, into_here = into + x * into_step;
       const float nearness = into_here > 0.0F ? y_here / (drop_ * into_here) : least;
@@ -133,7 +134,7 @@ class Painter {
   // `count` pixels of one square's row.
   void paint_run(const Row& row, int x, int y, int count, const std::array<std::uint8_t, 3>& whole,
                  std::uint8_t* to) const {
-    float fades[kSide];
+    float fades[kSquare];
     find_fades(row, x, fades);
     const bool is_checkered = block_.ground_colour.w > 0.0F;
     if (!is_checkered && std::max(fades[0], fades[count - 1]) == 0.0F) {  // it is monotonous along a row
@@ -143,9 +144,9 @@ class Painter {
       return;
     }
     const std::vector<std::uint8_t>& codes = srgb_codes();
-    const int low = y / kSide * kSide, high = std::min(low + kSide, height_);
+    const int low = y / kSquare * kSquare, high = std::min(low + kSquare, height_);
     const float height = (static_cast<float>(y - low) + 0.5F) / static_cast<float>(high - low);
-    const auto at = static_cast<std::size_t>(y / kSide * (across_ + 1) + x / kSide);
+    const auto at = static_cast<std::size_t>(y / kSquare * (across_ + 1) + x / kSquare);
     const std::size_t above = at + static_cast<std::size_t>(across_) + 1;
     const float exposure = block_.eye_exposure.w;
     const glm::vec3 from = exposure * glm::mix(corners_[at], corners_[above], height);
@@ -163,10 +164,10 @@ class Painter {
       }
       return;
     }
-    unsigned steps[3][kSide];  // nothing to press: channel by channel, several pixels at once
+    unsigned steps[3][kSquare];  // nothing to press: channel by channel, several pixels at once
     for (int i = 0; i < 3; ++i) {
       const float start = from[i] - floor[i], more = step[i], ground = floor[i];
-      for (int k = 0; k < kSide; ++k) {
+      for (int k = 0; k < kSquare; ++k) {
         steps[i][k] = step_of(ground + (start + more * (static_cast<float>(k) + 0.5F)) * fades[k]);
       }
     }

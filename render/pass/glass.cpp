@@ -6,8 +6,6 @@
 
 namespace shatterbox::render::pass {
 
-constexpr int kTileDepth = 1;  // the uniform's place in tile.vert
-
 GlassPass::GlassPass(int samples_across)
     : samples_across_(samples_across),
       side_("SIDE " + std::to_string(samples_across)),

@@ -15,8 +15,6 @@ std::vector<std::string> with(std::vector<std::string> defines, std::initializer
   return defines;
 }
 
-// The uniforms' places in tile.vert.
-constexpr int kTileDepth = 1, kLeastNeed = 2, kMostNeed = 3;
 // As dimming_tiles.frag tells tiles apart.
 constexpr int kChangesSlowly = 1, kHasEdge = 2;
 

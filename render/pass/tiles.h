@@ -11,6 +11,9 @@
 
 namespace shatterbox::render::pass {
 
+// The uniforms' places in tile.vert.
+inline constexpr int kTileDepth = 1, kLeastNeed = 2, kMostNeed = 3;
+
 class Tiles {
  public:
   Tiles(int width, int height);

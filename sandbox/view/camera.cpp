@@ -4,13 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "sandbox/view/to_glm.h"
+
 namespace shatterbox::sandbox::view {
 
 namespace {
-
-glm::vec3 to_glm(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
 
 /// Position, target and field of view as one point of a space in which the path runs.
 Eigen::Matrix<double, 7, 1> point_of(const scene::CameraKey& key) {

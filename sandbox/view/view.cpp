@@ -6,6 +6,7 @@
 
 #include "engine/core/hash.h"
 #include "sandbox/view/looks.h"
+#include "sandbox/view/to_glm.h"
 
 namespace shatterbox::sandbox::view {
 
@@ -13,20 +14,6 @@ namespace {
 
 constexpr double kSlabWidth = 40.0;  // m: how much of a tilted plane is drawn
 constexpr double kSlabDepth = 0.4;   // m
-
-glm::vec3 to_glm(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-glm::mat4 to_glm(const Pose& pose) {
-  const Mat3 rotation = pose.rotation.toRotationMatrix();
-  glm::mat4 matrix(1.0F);
-  for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row) matrix[column][row] = static_cast<float>(rotation(row, column));
-  }
-  matrix[3] = glm::vec4(to_glm(pose.translation), 1.0F);
-  return matrix;
-}
 
 bool is_level(const body::Body& body) {
   const Vec3 normal = body.pose.rotation * Vec3::UnitY();
