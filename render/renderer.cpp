@@ -25,15 +25,6 @@
 namespace shatterbox::render {
 namespace {
 
-struct Level {
-  int samples_across;  // a pixel has as many down
-  int shadow_map, shadow_taps;
-  int occlusion_taps, occlusion_scale;
-};
-Level level_of(Quality quality) {
-  return quality == Quality::full ? Level{2, 1024, 14, 6, 2} : Level{1, 512, 5, 6, 3};
-}
-
 // Times what happened since the last mark, after waiting for it; nothing at all while off.
 class PassClock {
  public:
@@ -79,6 +70,15 @@ void check_size(Size size) {
 
 // Members are made in this order and gone in the reverse: the context outlives all that lives in it.
 struct Renderer::Rooms {
+  struct Level {
+    int samples_across;  // a pixel has as many down
+    int shadow_map, shadow_taps;
+    int occlusion_taps, occlusion_scale;
+  };
+  static Level level_of(Quality quality) {
+    return quality == Quality::full ? Level{2, 1024, 14, 6, 2} : Level{1, 512, 5, 6, 3};
+  }
+
   Size size;
   Quality quality;
   Level level;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/core/elementary.h"
+#include "engine/geometry/generator_faults.h"
 #include "engine/geometry/generators.h"
 
 namespace shatterbox::geometry {
@@ -15,15 +16,9 @@ constexpr double kHollow = 0.6;    // how far sections go over to a V towards th
 constexpr double kRocker = 0.12;   // rise of the keel towards the ends, share of the depth
 
 std::optional<std::string> find_boat_fault(const BoatSizes& sizes) {
-  const auto fault = [](const char* what, double value) -> std::optional<std::string> {
-    if (std::isfinite(value) && value > 0.0 && value < 1e9) return std::nullopt;
-    std::ostringstream text;
-    text << "a boat's " << what << " must be greater than 0 m (it is " << value << " m)";
-    return text.str();
-  };
-  if (auto f = fault("length", sizes.length)) return f;
-  if (auto f = fault("beam", sizes.beam)) return f;
-  if (auto f = fault("depth", sizes.depth)) return f;
+  if (auto fault = find_size_fault("a boat's length", sizes.length)) return fault;
+  if (auto fault = find_size_fault("a boat's beam", sizes.beam)) return fault;
+  if (auto fault = find_size_fault("a boat's depth", sizes.depth)) return fault;
   if (sizes.beam > sizes.length) return "a boat's beam must not be greater than its length";
   if (!(std::isfinite(sizes.sheer) && sizes.sheer >= 0.0 && sizes.sheer <= sizes.length))
     return "a boat's sheer must be from 0 m to its length";

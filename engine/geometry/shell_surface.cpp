@@ -6,6 +6,8 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/geometry/ear_clipping.h"
+#include "engine/geometry/shell_kerf.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -13,11 +15,7 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kTouch = 1e-6;          // share of an edge that counts as contact, as in find_cell_contacts
-constexpr double kMitreSoftness = 0.02;  // bounds how far a sharp corner retreats along its bisector
-constexpr double kLeastAreaKept = 0.4;   // of a triangle, after the kerf
-constexpr int kPropagations = 3;         // rounds in which vertices near a crack move along with it
-constexpr int kHalvings = 10;            // rounds in which a kerf that is still too wide is halved
+constexpr double kTouch = 1e-6;  // share of an edge that counts as contact, as in find_cell_contacts
 
 /// A point on the border of a cell's polygon: a corner, or a place where a neighbour has a corner.
 struct BorderPoint {
@@ -34,18 +32,6 @@ struct SideStretch {
   bool is_forward;    // the side runs from begin to end
 };
 
-/// What the border of a surface vertex asks of its kerf.
-struct BorderNormal {
-  int vertex;
-  Vec3 inward;    // unit, in the cell's plane
-  bool is_crack;  // false: the rim of the whole shell, along which the vertex slides
-  int element, side_id;
-};
-
-double cross2(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 class SurfaceBuilder {
  public:
   explicit SurfaceBuilder(const ShellMesh& mesh) : mesh_(mesh), elements_(*mesh.elements) {}
@@ -57,7 +43,7 @@ class SurfaceBuilder {
     weld();
     triangulate();
     place_vertices();
-    stand_back(kerf);
+    surface_.least_kerf = kerf > 0.0 ? stand_back(surface_.mesh, collect_normals(), kerf) : kerf;
     return std::move(surface_);
   }
 
@@ -227,47 +213,18 @@ class SurfaceBuilder {
     for (Size c = 0; c < mesh_.cells.size(); ++c) triangulate_cell(static_cast<int>(c));
   }
 
-  /// Clips the best-shaped ear again and again; never one that leaves only a line behind.
   void triangulate_cell(int c) {
     const ShellCell& cell = mesh_.cells[at(c)];
     const Triangle& element = elements_.mesh.triangles[at(cell.element)];
     const Mat3 frame = facet_frame(elements_, cell.element);
     const Vec3& origin = elements_.mesh.positions[at(element[0])];
-    std::vector<int> ring;
+    const int begin = first_node_[at(c)];
     std::vector<Vec2> flat;
-    for (int n = first_node_[at(c)]; n < first_node_[at(c) + 1]; ++n) {
+    for (int n = begin; n < first_node_[at(c) + 1]; ++n) {
       const Vec3 p = position_in_element(elements_, cell.element, nodes_[at(n)].barycentric) - origin;
-      ring.push_back(n);
       flat.emplace_back(frame.col(0).dot(p), frame.col(1).dot(p));
     }
-    double left = 0.0;
-    for (Size i = 2; i < flat.size(); ++i) left += cross2(flat[i - 1] - flat[0], flat[i] - flat[0]);
-    const double least = 1e-12 * left;
-    while (ring.size() >= 3) {
-      Size best = ring.size();
-      double best_quality = 0.0;
-      double best_area = 0.0;
-      for (Size i = 0; i < ring.size(); ++i) {
-        const Vec2& p = flat[(i + ring.size() - 1) % ring.size()];
-        const Vec2& q = flat[i];
-        const Vec2& r = flat[(i + 1) % ring.size()];
-        const double area = cross2(q - p, r - p);
-        if (!(area > least) || (ring.size() > 3 && !(left - area > least))) continue;
-        const double quality = area / ((q - p).squaredNorm() + (r - q).squaredNorm() + (p - r).squaredNorm());
-        if (quality > best_quality) {
-          best = i;
-          best_quality = quality;
-          best_area = area;
-        }
-      }
-      if (best == ring.size()) return;  // what is left has no area
-      const Size before = (best + ring.size() - 1) % ring.size();
-      const Size after = (best + 1) % ring.size();
-      add_triangle(c, {ring[before], ring[best], ring[after]});
-      left -= best_area;
-      ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(best));
-      flat.erase(flat.begin() + static_cast<std::ptrdiff_t>(best));
-    }
+    for (const Triangle& t : clip_ears(flat)) add_triangle(c, {begin + t[0], begin + t[1], begin + t[2]});
   }
 
   /// The polygon's side that the straight line between two nodes lies on, -1 for a line through the inside.
@@ -328,100 +285,6 @@ class SurfaceBuilder {
     std::stable_sort(normals.begin(), normals.end(),
                      [](const BorderNormal& a, const BorderNormal& b) { return a.vertex < b.vertex; });
     return normals;
-  }
-
-  /// The retreat of one vertex from all its crack faces, along the rim where it lies on one; zero at a tip.
-  static Vec3 retreat(const BorderNormal* first, const BorderNormal* last, double kerf) {
-    Mat3 matrix = kMitreSoftness * Mat3::Identity();
-    Vec3 right = Vec3::Zero();
-    for (const BorderNormal* n = first; n != last; ++n) {
-      for (const BorderNormal* m = n + 1; m != last; ++m)
-        if (n->is_crack && m->is_crack && n->element == m->element && n->side_id == m->side_id &&
-            n->inward.dot(m->inward) < -0.5)
-          return Vec3::Zero();  // both lips of one cut meet here
-      matrix += n->inward * n->inward.transpose();
-      if (n->is_crack) right += kerf * n->inward;
-    }
-    return matrix.inverse() * right;
-  }
-
-  void stand_back(double kerf) {
-    surface_.least_kerf = kerf;
-    if (!(kerf > 0.0)) return;
-    const std::vector<BorderNormal> normals = collect_normals();
-    std::vector<Vec3> shift(at(vertex_count_), Vec3::Zero());
-    std::vector<char> is_border(at(vertex_count_), 0);
-    for (Size first = 0; first < normals.size();) {
-      Size last = first;
-      bool has_crack = false;
-      for (; last < normals.size() && normals[last].vertex == normals[first].vertex; ++last)
-        has_crack = has_crack || normals[last].is_crack;
-      is_border[at(normals[first].vertex)] = 1;
-      if (has_crack)
-        shift[at(normals[first].vertex)] = retreat(normals.data() + first, normals.data() + last, kerf);
-      first = last;
-    }
-    limit(shift, is_border);
-    report_least_kerf(normals, shift, kerf);
-    for (Size v = 0; v < shift.size(); ++v) surface_.mesh.positions[v] += shift[v];
-  }
-
-  /// Keeps every triangle's orientation and at least kLeastAreaKept of its area. Vertices inside first move
-  /// along with the crack, so that slivers beside it do not narrow the kerf; what still does not fit is
-  /// halved.
-  void limit(std::vector<Vec3>& shift, const std::vector<char>& is_border) {
-    std::vector<int> bad = collapsed(shift);
-    for (int round = 0; round < kPropagations + kHalvings && !bad.empty(); ++round) {
-      for (const int t : bad) {
-        const Triangle& triangle = surface_.mesh.triangles[at(t)];
-        if (round >= kPropagations) {
-          for (const int v : triangle) shift[at(v)] *= round + 1 < kPropagations + kHalvings ? 0.5 : 0.0;
-          continue;
-        }
-        Vec3 largest = Vec3::Zero();
-        for (const int v : triangle)
-          if (shift[at(v)].squaredNorm() > largest.squaredNorm()) largest = shift[at(v)];
-        for (const int v : triangle)
-          if (!is_border[at(v)] && shift[at(v)].squaredNorm() < largest.squaredNorm()) shift[at(v)] = largest;
-      }
-      bad = collapsed(shift);
-    }
-    // The last resort: the vertices of a triangle that still collapses stay where they were, and so do those
-    // around it.
-    for (int round = 0; round < 100 && !bad.empty(); ++round) {
-      for (const int t : bad)
-        for (const int v : surface_.mesh.triangles[at(t)]) shift[at(v)].setZero();
-      bad = collapsed(shift);
-    }
-  }
-
-  std::vector<int> collapsed(const std::vector<Vec3>& shift) const {
-    std::vector<int> bad;
-    const std::vector<Vec3>& x = surface_.mesh.positions;
-    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t) {
-      const auto [i, j, k] = surface_.mesh.triangles[t];
-      if (shift[at(i)].isZero(0.0) && shift[at(j)].isZero(0.0) && shift[at(k)].isZero(0.0)) continue;
-      const Vec3 before = (x[at(j)] - x[at(i)]).cross(x[at(k)] - x[at(i)]);
-      const Vec3 after = (x[at(j)] + shift[at(j)] - x[at(i)] - shift[at(i)])
-                             .cross(x[at(k)] + shift[at(k)] - x[at(i)] - shift[at(i)]);
-      if (!(after.dot(before) >= kLeastAreaKept * before.squaredNorm())) bad.push_back(static_cast<int>(t));
-    }
-    return bad;
-  }
-
-  void report_least_kerf(const std::vector<BorderNormal>& normals, const std::vector<Vec3>& shift,
-                         double kerf) {
-    for (Size n = 0; n < normals.size(); ++n) {
-      if (!normals[n].is_crack) continue;
-      Size first = n;
-      while (first > 0 && normals[first - 1].vertex == normals[n].vertex) --first;
-      Size last = n + 1;
-      while (last < normals.size() && normals[last].vertex == normals[n].vertex) ++last;
-      if (retreat(normals.data() + first, normals.data() + last, kerf).isZero(0.0)) continue;  // a tip
-      surface_.least_kerf =
-          std::min(surface_.least_kerf, shift[at(normals[n].vertex)].dot(normals[n].inward));
-    }
-    surface_.least_kerf = std::max(surface_.least_kerf, 0.0);
   }
 
   const ShellMesh& mesh_;

@@ -65,8 +65,8 @@ void read_settings(const TomlValue& table, SceneDescription& scene, Problems& pr
       static_cast<int>(reader.whole_number("most_generations", 1, 100).value_or(world.most_generations));
   world.has_sleep = reader.truth("sleep").value_or(world.has_sleep);
   const auto contact = reader.choice("contact", {"default", "paper"});
-  world.contact = contact.value_or("default") == "paper" ? world::ContactScheme::paper
-                                                         : world::ContactScheme::standard;
+  world.contact =
+      contact.value_or("default") == "paper" ? world::ContactScheme::paper : world::ContactScheme::standard;
   const TomlValue* window = reader.value("stress_window");
   if (window != nullptr && !(window->is_text() && window->text == "auto")) {
     if (window->is_text()) {

@@ -117,7 +117,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("compliances have the same bits for one and two threads, alone or in company, and groups do not mix") {
+TEST_CASE(
+    "compliances have the same bits for one and two threads, alone or in company, and groups do not mix") {
   const Elements elements = icosphere(4);
   const auto stiffness = make_shell_stiffness(elements, glass());
   const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);

@@ -1,0 +1,102 @@
+#include "engine/geometry/winding.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "engine/core/index.h"
+#include "engine/geometry/mass_properties.h"
+
+namespace shatterbox::geometry {
+namespace {
+
+using core::at;
+
+/// +1 if the triangle runs along the edge from its lesser to its greater vertex, -1 otherwise.
+int direction_along(const Triangle& t, const std::array<int, 2>& edge) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (t[i] == edge[0] && t[(i + 1) % 3] == edge[1]) return 1;
+  return -1;
+}
+
+/// The walk over the edges, part by part.
+class WindingWalk {
+ public:
+  WindingWalk(const TriangleMesh& mesh, const EdgeTopology& topology)
+      : mesh_(mesh), topology_(topology), is_turned_(mesh.triangles.size(), 0) {
+    winding_.part.assign(mesh.triangles.size(), -1);
+  }
+
+  /// Which triangles to turn; none on a one-sided surface.
+  std::vector<std::uint8_t> run(Winding& winding) {
+    for (std::size_t seed = 0; seed < is_turned_.size() && winding_.one_sided_triangle < 0; ++seed)
+      if (winding_.part[seed] < 0) walk_part(seed);
+    if (winding_.one_sided_triangle >= 0) {
+      winding_.part_count = 0;
+      is_turned_.assign(is_turned_.size(), 0);
+    }
+    winding = std::move(winding_);
+    return std::move(is_turned_);
+  }
+
+ private:
+  void walk_part(std::size_t seed) {
+    std::vector<std::size_t> members{seed};
+    winding_.part[seed] = winding_.part_count++;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      if (!visit_neighbours(members, members[i])) return;
+    const auto minority =
+        std::count_if(members.begin(), members.end(), [&](std::size_t t) { return is_turned_[t]; });
+    if (2 * static_cast<std::size_t>(minority) > members.size())
+      for (const std::size_t t : members) is_turned_[t] = !is_turned_[t];
+  }
+
+  /// False where the surface turns out to have one side.
+  bool visit_neighbours(std::vector<std::size_t>& members, std::size_t t) {
+    for (const int edge : topology_.triangle_edges[t]) {
+      if (topology_.triangle_count(edge) != 2) continue;
+      const auto begin = at(topology_.first_triangle[at(edge)]);
+      const int one = topology_.edge_triangles[begin];
+      const auto other = at(one == static_cast<int>(t) ? topology_.edge_triangles[begin + 1] : one);
+      const auto& ends = topology_.edges[at(edge)];
+      const bool agrees =
+          direction_along(mesh_.triangles[t], ends) != direction_along(mesh_.triangles[other], ends);
+      const bool wanted = agrees ? is_turned_[t] : !is_turned_[t];
+      if (winding_.part[other] < 0) {
+        winding_.part[other] = winding_.part[t];
+        is_turned_[other] = wanted;
+        members.push_back(other);
+      } else if (static_cast<bool>(is_turned_[other]) != wanted) {
+        winding_.one_sided_triangle = static_cast<int>(other);
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const TriangleMesh& mesh_;
+  const EdgeTopology& topology_;
+  std::vector<std::uint8_t> is_turned_;
+  Winding winding_;
+};
+
+}  // namespace
+
+Winding make_windings_agree(TriangleMesh& mesh, const EdgeTopology& topology) {
+  Winding winding;
+  const std::vector<std::uint8_t> is_turned = WindingWalk(mesh, topology).run(winding);
+  if (winding.one_sided_triangle >= 0) return winding;
+  for (std::size_t t = 0; t < is_turned.size(); ++t) {
+    if (!is_turned[t]) continue;
+    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    if (winding.turned_count++ == 0) winding.first_turned = static_cast<int>(t);
+  }
+  winding.is_closed = std::none_of(topology.edges.begin(), topology.edges.end(),
+                                   [&, e = 0](const auto&) mutable { return topology.is_boundary(e++); });
+  winding.was_inside_out = winding.is_closed && winding.part_count == 1 && enclosed_volume(mesh) < 0.0;
+  if (winding.was_inside_out)
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return winding;
+}
+
+}  // namespace shatterbox::geometry

@@ -1,0 +1,26 @@
+// Which way round the triangles of a surface run, and making neighbours agree.
+#pragma once
+
+#include <vector>
+
+#include "engine/geometry/edge_topology.h"
+#include "engine/geometry/triangle_mesh.h"
+
+namespace shatterbox::geometry {
+
+struct Winding {
+  std::vector<int> part;        // per triangle: the connected part it belongs to
+  int part_count = 0;           // 0 if one-sided
+  int one_sided_triangle = -1;  // where a way round comes back on the other side (a Moebius strip); else -1
+  int turned_count = 0;         // triangles that ran against their neighbours
+  int first_turned = -1;        // the first of them
+  bool is_closed = false;       // no border edge
+  bool was_inside_out = false;  // one closed part that enclosed a negative volume
+};
+
+/// Turns triangles so that neighbours agree, of each part the smaller half; then all, if they are one closed
+/// part and inside out. `topology` of the triangles given, no edge with more than two. A one-sided surface is
+/// left as it is.
+Winding make_windings_agree(TriangleMesh& mesh, const EdgeTopology& topology);
+
+}  // namespace shatterbox::geometry

@@ -1,0 +1,145 @@
+#include "sandbox/scene/read_shell.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "sandbox/scene/nearest_name.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+const std::vector<std::string> kShapes{"ornament", "sphere", "bowl", "pane", "boat"};
+const std::vector<std::string> kLaterShapes{"vase", "bottle", "egg", "slab", "bricks"};
+const std::vector<std::string> kShapeKeys{
+    "radius", "neck_radius", "neck_height", "cap",  "foot_radius", "foot_height", "height",
+    "width",  "edge_length", "length",      "beam", "depth",       "sheer"};
+
+/// Where a mesh file named in a scene lies: as it is, or beside the scene.
+std::string find_mesh_file(const std::string& file, const std::string& scene_file) {
+  namespace fs = std::filesystem;
+  const fs::path path(file);
+  if (path.is_absolute()) return file;
+  return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
+}
+
+std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDescription& scene) {
+  const TomlValue* value = reader.value("mesh");
+  MeshFileShape shape;
+  std::vector<const TomlValue*> names;
+  if (value->is_array()) {
+    for (const TomlValue& item : value->items) names.push_back(&item);
+  } else {
+    names.push_back(value);
+  }
+  for (const TomlValue* name : names) {
+    if (!name->is_text()) {
+      reader.add_problem(name->place,
+                         fmt::format("mesh must be the name of a file, but is {}", kind_in_words(*name)),
+                         "write mesh = \"file.obj\", or a list of files that are one body");
+      return std::nullopt;
+    }
+    shape.files.push_back(find_mesh_file(name->text, scene.file));
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(shape.files.back(), code)) {
+      reader.add_problem(name->place, fmt::format("there is no mesh file {}", shape.files.back()),
+                         "files are looked for beside the scene; .obj, .ply and .stl are read");
+    }
+  }
+  if (names.empty()) reader.add_problem_at("mesh", "mesh names no file");
+  return shape;
+}
+
+ShellShape read_shape(TableReader& reader, const std::string& shape) {
+  const auto set = [&reader](const char* key, double& target, const Range& range) {
+    target = reader.number(key, range).value_or(target);
+  };
+  if (shape == "ornament") {
+    geometry::OrnamentSizes sizes;
+    sizes.has_cap = true;
+    set("radius", sizes.radius, positive("m"));
+    sizes.neck_radius = 0.225 * sizes.radius;
+    sizes.neck_height = 0.2 * sizes.radius;
+    set("neck_radius", sizes.neck_radius, positive("m"));
+    set("neck_height", sizes.neck_height, positive("m"));
+    sizes.has_cap = reader.truth("cap").value_or(sizes.has_cap);
+    return sizes;
+  }
+  if (shape == "bowl") {
+    geometry::BowlSizes sizes;
+    set("radius", sizes.rim_radius, positive("m"));
+    sizes.foot_radius = 0.44 * sizes.rim_radius;
+    sizes.foot_height = 0.075 * sizes.rim_radius;
+    sizes.height = 0.875 * sizes.rim_radius;
+    set("foot_radius", sizes.foot_radius, positive("m"));
+    set("foot_height", sizes.foot_height, not_negative("m"));
+    set("height", sizes.height, positive("m"));
+    return sizes;
+  }
+  if (shape == "pane") {
+    PaneShape sizes;
+    set("width", sizes.width, positive("m"));
+    set("height", sizes.height, positive("m"));
+    return sizes;
+  }
+  if (shape == "boat") {
+    geometry::BoatSizes sizes;
+    set("length", sizes.length, positive("m"));
+    sizes.beam = 0.4 * sizes.length;
+    sizes.depth = 0.2 * sizes.length;
+    sizes.sheer = 0.1 * sizes.length;
+    set("beam", sizes.beam, positive("m"));
+    set("depth", sizes.depth, positive("m"));
+    set("sheer", sizes.sheer, not_negative("m"));
+    return sizes;
+  }
+  SphereShape sizes;
+  set("radius", sizes.radius, positive("m"));
+  return sizes;
+}
+
+}  // namespace
+
+const std::vector<std::string>& shape_keys() {
+  return kShapeKeys;
+}
+
+ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
+  ShellForm form;
+  if (reader.has("mesh") && reader.has("shape")) {
+    reader.add_problem_at("shape", "a body has either a mesh or a shape, not both", "remove one of them");
+  }
+  if (reader.has("mesh")) {
+    if (auto files = read_mesh_files(reader, scene)) form.shape = std::move(*files);
+    reader.foreign(kShapeKeys, "sizes belong to a shape; a mesh takes scale or size = [x, y, z]");
+    form.size = reader.vector("size", positive("m"));
+    reader.value("shape");
+  } else {
+    const auto shape = reader.choice("shape", kShapes, kLaterShapes);
+    if (!reader.has("shape")) {
+      reader.add_problem(reader.table().place,
+                         fmt::format("{} has neither a mesh nor a shape", reader.what()),
+                         fmt::format("add mesh = \"file.obj\", or shape = one of {}", quoted_list(kShapes)));
+    }
+    reader.value("mesh");
+    form.shape = read_shape(reader, shape.value_or("sphere"));
+    form.edge_length = reader.number("edge_length", positive("m"));
+    if (shape) {
+      reader.foreign(kShapeKeys, fmt::format("it is no size of shape \"{}\"", *shape));
+    } else {
+      for (const std::string& key : kShapeKeys) reader.value(key);  // one fault is enough
+    }
+    form.size = reader.vector("size", positive("m"));
+  }
+  form.scale = reader.number_or_vector("scale", positive()).value_or(form.scale);
+  if (form.size && reader.has("scale")) {
+    reader.add_problem_at("size", "a body has either a scale or a size, not both", "remove one of them");
+  }
+  form.up_is_z = reader.choice("up", {"y", "z"}).value_or("y") == "z";
+  form.thickness = reader.number("thickness", positive("m"));
+  form.is_breakable = reader.truth("breakable").value_or(true);
+  return form;
+}
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,207 @@
+// Shadows, occlusion and the floor where geometry and arithmetic foretell them.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "render/output/compare.h"
+#include "render/renderer.h"
+#include "tests/render/frames.h"
+
+using namespace shatterbox::render;
+using namespace shatterbox::render::testing;
+
+TEST_CASE("the shadow lies where the sun puts it, and only there") {
+  Frame frame = plain_frame();
+  frame.camera.position = {0.0F, 6.0F, 6.0F};
+  frame.camera.target = {0.0F, 0.0F, 0.0F};
+  frame.lights.sun_direction = {1.0F, 1.0F, 0.0F};
+  frame.draws = {at(make_box(1, glm::vec3(0.5F)), {0.0F, 1.5F, 0.0F})};
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image with = renderer.render(frame);
+    frame.lights.casts_shadow = false;
+    const Image without = renderer.render(frame);
+    frame.lights.casts_shadow = true;
+    const glm::ivec2 middle = pixel_of(frame, {-1.5F, 0.0F, 0.0F});
+    CHECK(green(with, middle) < green(without, middle) - 40);
+    for (const glm::vec3 lit : {glm::vec3(1.5F, 0, 0), glm::vec3(-1.5F, 0, 0.9F), glm::vec3(-2.6F, 0, 0)}) {
+      CHECK(green(with, pixel_of(frame, lit)) == green(without, pixel_of(frame, lit)));
+    }
+  }
+}
+
+TEST_CASE("the floor fades into the backdrop evenly in one over the distance into the picture") {
+  for (const float height : {0.15F, 1.0F, 6.0F}) {
+    Frame frame;
+    frame.camera.position = {0.5F, height, 5.0F};
+    frame.camera.target = {0.0F, 0.3F, 0.0F};
+    frame.camera.vertical_fov = 40.0F;
+    frame.backdrop = {glm::vec3(0.5F), glm::vec3(0.5F), 0.0F, 0.0F};
+    frame.ground->colour = glm::vec3(0.0F);
+    frame.ground->fade_from = 3.0F;
+    frame.ground->fade_to = 20.0F;
+    const glm::vec2 way = glm::normalize(glm::vec2(-0.5F, -5.0F));  // level, from the eye to the target
+    const glm::mat4 world_from_clip =
+        glm::inverse(glm::perspective(glm::radians(40.0F), 320.0F / 180.0F, 0.1F, 100.0F) *
+                     glm::lookAt(frame.camera.position, frame.camera.target, frame.camera.up));
+    Renderer renderer(kSize, Quality::preview);
+    const Image image = renderer.render(frame);
+    int most = 0;
+    for (int y = 0; y < 180; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const glm::vec4 far =
+            world_from_clip * glm::vec4((static_cast<float>(x) + 0.5F) / 160.0F - 1.0F,
+                                        1.0F - (static_cast<float>(y) + 0.5F) / 90.0F, 1.0F, 1.0F);
+        const glm::vec3 ray = glm::vec3(far) / far.w - frame.camera.position;
+        const glm::vec3 p = frame.camera.position - ray * (height / ray.y);
+        const double into = glm::dot(glm::vec2(p.x - 0.5F, p.z - 5.0F), way);
+        const double share =
+            ray.y < 0.0F ? std::clamp((1.0 / 3.0 - 1.0 / into) / (1.0 / 3.0 - 1.0 / 20.0), 0.0, 1.0) : 1.0;
+        most =
+            std::max(most, std::abs(green(image, {x, y}) - srgb(0.5 * share * share * (3.0 - 2.0 * share))));
+      }
+    }
+    CHECK(most <= 2);
+  }
+}
+
+TEST_CASE("a sweep goes from the floor's colour into a darker wall of its hue, without an edge") {
+  for (const float height : {0.4F, 2.0F, 5.0F}) {
+    Frame frame = plain_frame();
+    frame.camera.position.y = height;
+    frame.ground->colour = {0.5F, 0.3F, 0.1F};
+    frame.backdrop = {glm::vec3(0.0F), glm::vec3(0.0F), 0.0F, 0.0F, 1.0F};
+    for (const Quality quality : {Quality::preview, Quality::full}) {
+      Renderer renderer(kSize, quality);
+      const Image image = renderer.render(frame);
+      int steepest = 0, brightening = 0;
+      for (int y = 1; y < 180; ++y) {
+        steepest = std::max(steepest, green(image, {160, y}) - green(image, {160, y - 1}));
+        brightening = std::max(brightening, green(image, {160, y - 1}) - green(image, {160, y}));
+        CHECK(std::abs(green(image, {10, y}) - green(image, {310, y})) <= 1);  // level
+      }
+      CHECK(steepest <= 6);
+      CHECK(brightening <= 1);
+      CHECK(green(image, {160, 0}) < green(image, {160, 179}) - 20);
+      CHECK(image.at(160, 0)[0] > image.at(160, 0)[2] + 20);  // still brown
+    }
+  }
+}
+
+TEST_CASE("a checkered floor's squares lie where their size says, painted or under a shadow's edge") {
+  Frame frame = plain_frame();
+  frame.camera.position = {0.25F, 4.0F, 4.0F};
+  frame.camera.target = {0.25F, 0.0F, 0.0F};
+  frame.ground->checker = 0.5F;
+  frame.ground->colour = glm::vec3(0.2F);
+  frame.lights.sun_direction = {0.0F, 1.0F, 0.0F};
+  for (const bool has_shadow : {false, true}) {
+    if (has_shadow) frame.draws = {at(make_box(1, {0.2F, 0.01F, 0.2F}), {0.25F, 2.0F, 0.25F})};
+    for (const Quality quality : {Quality::preview, Quality::full}) {
+      Renderer renderer(kSize, quality);
+      const Image image = renderer.render(frame);
+      const auto light_at = [&](float x, float z) {
+        return linear(green(image, pixel_of(frame, {x, 0.0F, z})));
+      };
+      const double bright = light_at(0.05F, 0.45F), dark = light_at(0.55F, 0.45F);
+      CHECK(std::min(bright, dark) / std::max(bright, dark) == Approx(0.72).epsilon(0.03));
+      CHECK(light_at(0.55F, -0.05F) == Approx(bright).epsilon(0.03));
+      CHECK(light_at(0.05F, -0.05F) == Approx(dark).epsilon(0.03));
+    }
+  }
+}
+
+TEST_CASE("a low slab darkens the floor at its foot, and not far from it") {
+  Frame frame;
+  frame.camera = {glm::vec3(0, 0.6F, 1.0F), glm::vec3(0), glm::vec3(0, 1, 0), 25.0F};
+  frame.lights.sun_strength = 0.0F;
+  frame.draws = {at(make_box(1, {0.2F, 0.006F, 0.1F}), {0.0F, 0.003F, 0.0F})};  // two pixels high
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image with = renderer.render(frame);
+    frame.draws.clear();
+    const Image without = renderer.render(frame);
+    frame.draws = {at(make_box(1, {0.2F, 0.006F, 0.1F}), {0.0F, 0.003F, 0.0F})};
+    const auto darker = [&](glm::vec3 p) {
+      return green(without, pixel_of(frame, p)) - green(with, pixel_of(frame, p));
+    };
+    CHECK(darker({0.0F, 0.0F, 0.055F}) >= 4);
+    CHECK(darker({0.0F, 0.0F, 0.13F}) <= 1);
+    CHECK(darker({0.25F, 0.0F, 0.0F}) <= 1);
+  }
+}
+
+TEST_CASE("the shadow of a pane of glass is even and light") {
+  Frame frame;
+  frame.camera = {glm::vec3(0, 6, 0.01F), glm::vec3(0), glm::vec3(0, 0, -1), 40.0F};
+  frame.lights.sun_direction = {1.0F, 1.0F, 0.3F};
+  auto pane = std::make_shared<Mesh>();
+  pane->id = 1;
+  pane->thickness = 0.01F;
+  pane->positions = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+  pane->triangles = {{0, 1, 2}, {0, 2, 3}};
+  frame.draws = {at(pane, {2.0F, 2.5F, 0.6F}, glass())};
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image image = renderer.render(frame);
+    const glm::ivec2 middle = pixel_of(frame, {-0.5F, 0, -0.15F}), lit = pixel_of(frame, {-2.4F, 0, -1.2F});
+    int least = 255, most = 0;
+    for (int y = -12; y <= 12; ++y) {
+      for (int x = -12; x <= 12; ++x) {
+        const int here = green(image, middle + glm::ivec2(x, y));
+        least = std::min(least, here);
+        most = std::max(most, here);
+      }
+    }
+    CHECK(most - least <= 2);
+    CHECK(most < green(image, lit) - 8);
+    CHECK(least > green(image, lit) - 40);
+  }
+}
+
+TEST_CASE("a lit plane that casts shadows has none of its own") {
+  Frame frame;
+  frame.ground.reset();
+  frame.backdrop.vignette = 0.0F;
+  frame.lights.softbox_strength = 0.0F;
+  for (const glm::vec3 sun : {glm::vec3(0, 1, 0), glm::vec3(0.5F, 1, 0.2F), glm::vec3(2.0F, 1, 1.0F)}) {
+    frame.lights.sun_direction = sun;
+    frame.camera = {glm::vec3(0, 8, 0.01F), glm::vec3(0), glm::vec3(0, 0, -1), 30.0F};
+    Look look = matt(glm::vec3(0.4F));
+    look.roughness = 1.0F;
+    frame.draws = {at(make_box(1, {20.0F, 0.2F, 20.0F}), {0, -0.1F, 0}, look)};
+    for (const Quality quality : {Quality::preview, Quality::full}) {
+      Renderer renderer(kSize, quality);
+      const Image image = renderer.render(frame);
+      frame.lights.casts_shadow = false;
+      const Image unshadowed = renderer.render(frame);
+      frame.lights.casts_shadow = true;
+      CHECK(compare(image, unshadowed).most <= 2);
+    }
+  }
+}
+
+TEST_CASE("a lit ball has no specks of shadow on its lit side") {
+  Frame frame = plain_frame();
+  frame.camera = {glm::vec3(2, 2, 4), glm::vec3(0, 0.5F, 0), glm::vec3(0, 1, 0), 30.0F};
+  frame.draws = {at(make_sphere(1, 0.5F, 64), {0, 0.5F, 0})};
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image with = renderer.render(frame);
+    frame.lights.casts_shadow = false;
+    const Image without = renderer.render(frame);
+    frame.lights.casts_shadow = true;
+    const glm::vec3 sun = glm::normalize(frame.lights.sun_direction);
+    int looked_at = 0;
+    for (int i = 0; i < 400; ++i) {
+      const float a = 0.7F * static_cast<float>(i), y = static_cast<float>(i) / 200.0F - 1.0F;
+      const glm::vec3 n(std::sqrt(1 - y * y) * std::cos(a), y, std::sqrt(1 - y * y) * std::sin(a));
+      const glm::vec3 p = glm::vec3(0, 0.5F, 0) + 0.5F * n;
+      if (glm::dot(n, sun) < 0.25F || glm::dot(n, glm::normalize(frame.camera.position - p)) < 0.2F) continue;
+      ++looked_at;
+      CHECK(std::abs(green(with, pixel_of(frame, p)) - green(without, pixel_of(frame, p))) <= 2);
+    }
+    CHECK(looked_at > 50);
+  }
+}
