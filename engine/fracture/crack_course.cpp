@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "engine/core/index.h"
 
 namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kLeastEntry =
     0.156;                         // sine of the least angle at which a crack leaves an edge, about 9 degrees
@@ -21,10 +20,6 @@ constexpr double kTurnLength = 6.0;  // thicknesses, over which a crack turns to
 constexpr double kParallel = 0.9;    // cosine above which two cracks count as side by side
 constexpr double kJoinPull = 0.8;    // how hard a crack turns to one that it is about to touch
 constexpr double kLeadsAway = 0.1;   // sine of the angle above which a crack leads away from one beside it
-
-Vec2 left_of(const Vec2& d) {
-  return {-d.y(), d.x()};
-}
 
 Vec2 turned(const Vec2& d, double angle) {
   const double c = core::cos(angle);

@@ -17,10 +17,6 @@ constexpr double kRestLength = 4.0;  // thicknesses: length that drives a crack 
 // A crack right across a strip that the first cracks left unloads it that many of its lengths far.
 constexpr double kStripRelief = 1.5;
 
-Vec2 left_of(const Vec2& d) {
-  return {-d.y(), d.x()};
-}
-
 }  // namespace
 
 CrackTracer::CrackTracer(ShellCutter& cutter, TracerSetup setup)

@@ -56,4 +56,9 @@ inline std::vector<ElementPlane> make_element_planes(const geometry::ShellElemen
   return planes;
 }
 
+/// `d` turned by a right angle to its left.
+inline Vec2 left_of(const Vec2& d) {
+  return {-d.y(), d.x()};
+}
+
 }  // namespace shatterbox::fracture

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "engine/core/index.h"
+
 namespace shatterbox::fracture {
 namespace {
 
 using Size = std::size_t;
-Size at(int i) {
-  return static_cast<Size>(i);
-}
+using core::at;
 
 constexpr double kStraight = 1e-3;  // of its length: how wide a support may be and still be a line
 
