@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "engine/core/index.h"
 #include "engine/geometry/edge_topology.h"
 
 namespace shatterbox::geometry {
