@@ -256,7 +256,8 @@ class IslandSolver {
   // Sweeps alone carry a heavy body on light ones only after as many of them as the masses differ. Where
   // plain ones do not end it, they go on to and fro as nonlinear conjugate gradients: what two sweeps
   // changed is the negative gradient, and a share of the way so far is gone once more, until the changes
-  // grow.
+  // grow. Only loads on something solid ask for it: a surface that is jammed between others would be pressed
+  // harder by every sweep and be no stiller.
   void begin_course() {
     course_square_ = 0.0;
     course_.assign(island_.contacts.size(), Vec3::Zero());
@@ -309,7 +310,7 @@ class IslandSolver {
         const std::size_t k = i < count ? i : 2 * count - 1 - i;
         SolverContact& c = contact(k);
         excess = std::max(excess, visit_contact(k, c));
-        has_strain = has_strain || std::min(c.impulse[0], c.warm[0]) > c.strained_from;
+        has_strain = has_strain || (c.has_sides && std::min(c.impulse[0], c.warm[0]) > c.strained_from);
       }
       const double enough = round + 1 < how.plain ? how.enough : how.loose;
       if (excess < (has_strain ? how.tight : enough)) return;
