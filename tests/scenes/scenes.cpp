@@ -97,6 +97,15 @@ TEST_CASE("window: breaks where the ball hits, and the ball goes on, a slow ball
   CHECK(worst_ratio(held) < 1.0);
 }
 
+TEST_CASE("window: shards that jam between held ones are not pressed against them without end") {
+  const auto report = play(Folder(), "window --seed 1 --seconds 1.1");
+  double after = 0.0;
+  for (const auto& row : report["impacts"])
+    if (row["time"].get<double>() > 0.5) after = std::max(after, row["impulse_ns"].get<double>());
+  CHECK(after > 0.01);
+  CHECK(after < 15.0);  // N s: less than the ball's blow; it was 4760
+}
+
 TEST_CASE("bowl: breaks into a few large pieces, a low drop is held") {
   const Folder folder;
   const auto broken = play(folder, "bowl --seconds 1");
