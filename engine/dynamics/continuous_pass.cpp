@@ -21,15 +21,14 @@ namespace {
 using collision::Contact;
 using core::at;
 
-constexpr double kSafeShare = 1e-3;  // share of the kept gap
-constexpr int kLastRounds = 6;       // in which bodies only keep what they have
+constexpr int kLastRounds = 6;  // in which bodies only keep what they have
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 constexpr int kPatience = 2;         // rounds without fewer hits
 constexpr int kMostPartialCuts = 5;  // before whole steps are taken back
 
 double wanted_separation(double gap, double kept_gap) {
-  const double safe = kSafeShare * kept_gap;
+  const double safe = kSafe * kept_gap;
   return gap > 4.0 * safe ? std::max(2.0 * safe, 0.5 * std::min(gap, kept_gap)) : 0.96 * gap;
 }
 
@@ -127,7 +126,7 @@ class Guard {
       const bool can_act =
           work_.bodies[at(pair.a)].inverse_mass > 0.0 || work_.bodies[at(pair.b)].inverse_mass > 0.0;
       // Solids roll and slip on from where they met; surfaces that lie on each other only need room.
-      const double deep = pair.is_analytic ? kSafeShare * pair.kept_gap : -kDeep * pair.kept_gap;
+      const double deep = pair.is_analytic ? kSafe * pair.kept_gap : -kDeep * pair.kept_gap;
       const bool is_deep = std::any_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
         return gap_on_way(pair, work_, hit.contact, hit.knot) < deep;
       });

@@ -48,6 +48,19 @@ void add_pairs_with_planes(const MotionWork& work, std::vector<collision::IndexP
   }
 }
 
+// Boxes about the ways of the bodies in these pairs; of the others none.
+std::vector<TurnedBox> box_ways(const MotionWork& work, const std::vector<collision::IndexPair>& pairs) {
+  std::vector<char> is_wanted(work.bodies.size(), 0);
+  for (const auto& pair : pairs) is_wanted[at(pair.a)] = is_wanted[at(pair.b)] = 1;
+  std::vector<TurnedBox> boxes(work.bodies.size());
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    const WorkBody& w = work.bodies[i];
+    if (is_wanted[i] && w.shape->kind != ShapeKind::plane)
+      boxes[i] = turn_box(w.collider->box, w.start, w.looked_end);
+  }
+  return boxes;
+}
+
 }  // namespace
 
 void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
@@ -79,12 +92,10 @@ bool is_within_looked(const ContactSettings& settings, const WorkBody& w) {
 
 std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work) {
   std::vector<collision::SweptBound> bounds(work.bodies.size());
-  std::vector<TurnedBox> boxes(work.bodies.size());
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const WorkBody& w = work.bodies[i];
     if (w.shape->kind == ShapeKind::plane) continue;  // they have their own loop
     bounds[i] = {w.looked, w.is_active};
-    boxes[i] = turn_box(w.collider->box, w.start, w.looked_end);
   }
   auto near = collision::find_overlapping_pairs(bounds);
   add_pairs_with_planes(work, near);
@@ -92,6 +103,7 @@ std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionW
     return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
                      work.bodies[at(pair.b)]);
   });
+  const std::vector<TurnedBox> boxes = box_ways(work, near);
   std::vector<double> clearances(near.size(), -1e300);
   std::vector<char> is_near(near.size(), 1);
   core::parallel_for(near.size(), 64, [&](std::size_t k) {

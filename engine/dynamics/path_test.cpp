@@ -16,7 +16,6 @@ namespace {
 using body::ShapeKind;
 using core::at;
 
-constexpr double kSafe = 1e-3;   // least separation after the pass, share of the kept gap
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr std::size_t kMostHits = 6;
 constexpr double kStrayed = 0.1;  // of the slack of searches

@@ -15,6 +15,9 @@
 
 namespace shatterbox::dynamics {
 
+/// Least separation after the continuous pass, share of the kept gap.
+inline constexpr double kSafe = 1e-3;
+
 struct PathHit {
   double time = 1.0;           // share of the step that is certainly free
   double knot = 1.0;           // share of the step at the end of the straight part in which they meet

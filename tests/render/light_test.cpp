@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 #include "render/output/compare.h"
 #include "render/renderer.h"
@@ -10,6 +11,17 @@
 
 using namespace shatterbox::render;
 using namespace shatterbox::render::testing;
+
+namespace {
+
+std::pair<Image, Image> with_and_without_shadow(Renderer& renderer, Frame frame) {
+  frame.lights.casts_shadow = true;
+  Image with = renderer.render(frame);
+  frame.lights.casts_shadow = false;
+  return {std::move(with), renderer.render(frame)};
+}
+
+}  // namespace
 
 TEST_CASE("the shadow lies where the sun puts it, and only there") {
   Frame frame = plain_frame();
@@ -19,10 +31,7 @@ TEST_CASE("the shadow lies where the sun puts it, and only there") {
   frame.draws = {at(make_box(1, glm::vec3(0.5F)), {0.0F, 1.5F, 0.0F})};
   for (const Quality quality : {Quality::preview, Quality::full}) {
     Renderer renderer(kSize, quality);
-    const Image with = renderer.render(frame);
-    frame.lights.casts_shadow = false;
-    const Image without = renderer.render(frame);
-    frame.lights.casts_shadow = true;
+    const auto [with, without] = with_and_without_shadow(renderer, frame);
     const glm::ivec2 middle = pixel_of(frame, {-1.5F, 0.0F, 0.0F});
     CHECK(green(with, middle) < green(without, middle) - 40);
     for (const glm::vec3 lit : {glm::vec3(1.5F, 0, 0), glm::vec3(-1.5F, 0, 0.9F), glm::vec3(-2.6F, 0, 0)}) {
@@ -173,11 +182,8 @@ TEST_CASE("a lit plane that casts shadows has none of its own") {
     frame.draws = {at(make_box(1, {20.0F, 0.2F, 20.0F}), {0, -0.1F, 0}, look)};
     for (const Quality quality : {Quality::preview, Quality::full}) {
       Renderer renderer(kSize, quality);
-      const Image image = renderer.render(frame);
-      frame.lights.casts_shadow = false;
-      const Image unshadowed = renderer.render(frame);
-      frame.lights.casts_shadow = true;
-      CHECK(compare(image, unshadowed).most <= 2);
+      const auto [with, without] = with_and_without_shadow(renderer, frame);
+      CHECK(compare(with, without).most <= 2);
     }
   }
 }
@@ -188,10 +194,7 @@ TEST_CASE("a lit ball has no specks of shadow on its lit side") {
   frame.draws = {at(make_sphere(1, 0.5F, 64), {0, 0.5F, 0})};
   for (const Quality quality : {Quality::preview, Quality::full}) {
     Renderer renderer(kSize, quality);
-    const Image with = renderer.render(frame);
-    frame.lights.casts_shadow = false;
-    const Image without = renderer.render(frame);
-    frame.lights.casts_shadow = true;
+    const auto [with, without] = with_and_without_shadow(renderer, frame);
     const glm::vec3 sun = glm::normalize(frame.lights.sun_direction);
     int looked_at = 0;
     for (int i = 0; i < 400; ++i) {
