@@ -11,6 +11,7 @@
 #include "engine/fracture/cell_flaws.h"
 #include "engine/fracture/shell_subject.h"
 #include "engine/stress/contact_duration.h"
+#include "engine/stress/loaded_parts.h"
 #include "engine/stress/shell_load.h"
 #include "engine/stress/stress_bound.h"
 
@@ -88,16 +89,25 @@ double ImpactForce::spin_stress() const {
   return 0.75 * subject_.material.density * rim_speed * rim_speed * size / subject_.thickness;
 }
 
+bool ImpactForce::is_spinning() const {
+  return spin_stress() > kSpinThatCounts * subject_.material.strength;
+}
+
 std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
-  // Loads add up, so do the roots of their energies.
-  double root_energy = 0.0;
+  if (impact_.given_duration) return std::nullopt;
+  // Loads add up: so do the roots of collisions' energies, and the forces of resting contact.
+  double root_energy = 0.0, contact_force = 0.0;
   for (const Press& press : presses_) {
     const ShellLoad& load = *press.load;
-    if (!is_collision(load) || impact_.given_duration) return std::nullopt;
-    root_energy += core::sqrt(0.5 * load.effective_mass) * load.closing_speed;
+    if (is_collision(load))
+      root_energy += core::sqrt(0.5 * load.effective_mass) * load.closing_speed;
+    else
+      contact_force += load.impulse / impact_.contact_average;
   }
   const stress::ShellFigures& figures = subject_.systems->figures();
-  const double spin = kSpinSafety * spin_stress();
+  const double width = std::max(subject_.thickness, settings_.least_width);
+  const double constant = kSpinSafety * spin_stress() +
+                          stress::bending_bound(subject_.thickness, width, figures.reach, contact_force);
   const double energy = root_energy * root_energy;
   const double per_root_area = stress::stress_bound(properties_of(subject_), 1.0, energy);
   Bound worst;
@@ -105,7 +115,7 @@ std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
     const double area = figures.stressed_areas[c];
     if (!(area > 0.0)) return std::nullopt;
     const double strength = weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(c));
-    const double stress = per_root_area / core::sqrt(area) + spin;
+    const double stress = per_root_area / core::sqrt(area) + constant;
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
   }
@@ -189,14 +199,13 @@ void ImpactForce::complete(Decision& decision) {
 /// The displacement under all forces and the spin at once.
 bool ImpactForce::solve_together(const geometry::ShellMesh& mesh, Decision& decision, std::string& problem) {
   const auto start = Clock::now();
-  const bool is_spinning = spin_stress() > kSpinThatCounts * subject_.material.strength;
   bool is_solved = true;
-  if (!is_cracked_ && has_lead_ && presses_.size() == 1 && !is_spinning) {
+  if (!is_cracked_ && has_lead_ && presses_.size() == 1 && !is_spinning()) {
     displacement_ = presses_.front().force * lead_.displacement;
   } else {
     VecX load = VecX::Zero(mesh.degree_of_freedom_count());
     for (Size i = 0; i < presses_.size(); ++i) load += presses_[i].force * answers_[i].load;
-    if (is_spinning)
+    if (is_spinning())
       load += stress::centrifugal_load(*subject_.systems->shared_stiffness(), mesh, impact_.spin_material,
                                        subject_.systems->figures().mass.centre);
     stress::ShellSolution solution;
@@ -331,6 +340,15 @@ void ImpactForce::find_groups(const geometry::ShellMesh& mesh,
                      [&](Size i) { groups_[i] = find_press_groups(mesh, contacts, presses_[i].contact); });
 }
 
+/// The mesh without the parts that no load is on: nothing moves there, so they need no factor.
+geometry::ShellMesh ImpactForce::pressed_parts(const geometry::ShellMesh& mesh) const {
+  if (is_spinning()) return mesh;  // which is a load on all of it
+  std::vector<const VecX*> forces;
+  for (const PressGroups& groups : groups_)
+    for (const VecX& force : groups.forces) forces.push_back(&force);
+  return stress::loaded_parts(mesh, forces);
+}
+
 bool ImpactForce::settle(Decision& decision, std::string& problem) {
   const stress::ShellFigures& figures = subject_.systems->figures();
   core::parallel_for(2, 1, [&](Size part) {
@@ -396,14 +414,10 @@ bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
                                std::string& problem) {
   prepare_cracked();
   const auto start = Clock::now();
-  System system = core::Error{""};
-  core::parallel_for(2, 1, [&](Size part) {
-    if (part == 0)
-      system = stress::ShellSystem::make(subject_.systems->shared_stiffness(), mesh,
-                                         stress::screening_of(exponent_), support_of(subject_, mesh));
-    else
-      find_groups(mesh, contacts);
-  });
+  find_groups(mesh, contacts);
+  const System system =
+      stress::ShellSystem::make(subject_.systems->shared_stiffness(), pressed_parts(mesh),
+                                stress::screening_of(exponent_), support_of(subject_, mesh));
   decision.factor_ms += milliseconds_since(start);
   ++decision.factorisations;
   if (!use(system, problem)) return false;

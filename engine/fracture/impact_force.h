@@ -34,8 +34,8 @@ class ImpactForce {
   /// Places the loads. False, and `problem` says why, if there is nothing to press or to be pressed.
   bool prepare(std::string& problem);
 
-  /// Stress bound over strength, at the worst place, if the kinetic energy can break nothing; none if a solve
-  /// has to tell.
+  /// Stress bound over strength, at the worst place, if kinetic energy and resting contact can break nothing;
+  /// none if a solve has to tell.
   struct Bound {
     double stress = 0.0, strength = 0.0;  // Pa
   };
@@ -63,6 +63,8 @@ class ImpactForce {
  private:
   using System = stress::ShellSystemCache::System;
   double spin_stress() const;
+  bool is_spinning() const;
+  geometry::ShellMesh pressed_parts(const geometry::ShellMesh& mesh) const;
   std::optional<std::size_t> find_lead() const;
   bool use(const System& system, std::string& problem);
   bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);

@@ -20,6 +20,16 @@ ShellFigures make_shell_figures(const ShellStiffness& stiffness, const geometry:
     }
     figures.size = (high - low).maxCoeff();
   }
+  if (!mesh.cells.empty()) {
+    Vec3 low = Vec3::Constant(1e300), high = -low;
+    for (const geometry::ShellCell& cell : mesh.cells)
+      for (const int vertex : mesh.elements->mesh.triangles[static_cast<std::size_t>(cell.element)]) {
+        const Vec3& p = positions[static_cast<std::size_t>(vertex)];
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+      }
+    figures.reach = (high - low).norm();
+  }
   figures.mean_edge_length = mean_edge_length(mesh);
   figures.stressed_areas = stressed_areas(mesh, figures.contacts);
   return figures;

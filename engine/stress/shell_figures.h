@@ -15,6 +15,7 @@ struct ShellFigures {
   VecX lumped_mass;                             // |dof|, kg and kg m2
   geometry::MassProperties mass;                // of the material, kg, m
   double size = 0.0;                            // m, greatest side of the bounding box of the uncut elements
+  double reach = 0.0;                           // m, diagonal of the box of the elements with cells
   double mean_edge_length = 0.0;                // m, of the elements with cells
   std::vector<double> stressed_areas;           // |cells|, m2: see stress_bound.h
 };

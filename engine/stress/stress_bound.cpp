@@ -61,6 +61,10 @@ double least_stressed_area(const geometry::ShellMesh& mesh,
   return areas.empty() ? 0.0 : *std::min_element(areas.begin(), areas.end());
 }
 
+double bending_bound(double thickness, double width, double reach, double force) {
+  return 6.0 * force * reach / (width * thickness * thickness);
+}
+
 double stress_bound(const ShellProperties& properties, double least_area, double energy) {
   const double nu = properties.poisson_ratio;
   if (!(energy > 0.0) || !(least_area > 0.0)) return 0.0;

@@ -24,4 +24,9 @@ std::vector<double> stressed_areas(const geometry::ShellMesh& mesh,
 /// most the kinetic energy m_eff v^2 / 2 before it. The stress of a spin or another load comes on top.
 double stress_bound(const ShellProperties& properties, double least_area, double energy);
 
+/// Stress of a strip of `thickness` and `width` that is bent by `force` (N) over its whole length `reach`,
+/// Pa: 6 F l / (b t^2). No shell of that size, nowhere narrower than that, has more under forces that sum to
+/// it.
+double bending_bound(double thickness, double width, double reach, double force);
+
 }  // namespace shatterbox::stress

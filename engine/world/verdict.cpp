@@ -4,6 +4,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/stress/contact_duration.h"
+#include "engine/stress/stress_bound.h"
 
 namespace shatterbox::world {
 namespace {
@@ -98,8 +99,7 @@ double total_force(const std::vector<Load>& loads) {
 double bending_bound(const body::Body& body, double force) {
   const double thickness = body.shape->thickness;
   const double reach = 2.0 * body.shape->bounding_radius;
-  const double width = std::max(thickness, reach * kLeastWidth);
-  return 6.0 * force * reach / (thickness * thickness * width);
+  return stress::bending_bound(thickness, std::max(thickness, reach * kLeastWidth), reach, force);
 }
 
 std::vector<Load> gather_by_place(const std::vector<Load>& loads, double radius) {

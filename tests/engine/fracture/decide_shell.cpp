@@ -101,6 +101,28 @@ TEST_CASE("a slow ball does not break the pane, and the verdict says how near it
   CHECK(tap.generations == 0);
 }
 
+TEST_CASE(
+    "resting contact too weak to break anything needs no solve beside a tap, and has less than its bound") {
+  const auto subject = test::make_window(1);
+  const auto press = [&](double force) {
+    auto impact = test::steel_ball(1e-4);
+    fracture::ShellLoad rest;
+    rest.point_material = Vec3(0.2, -0.1, 0.0);
+    rest.direction = -Vec3::UnitZ();
+    rest.impulse = force * impact.contact_average;
+    impact.loads.push_back(rest);
+    return fracture::decide_shell(subject, impact);
+  };
+  const auto light = press(0.05);
+  CHECK(light.verdict.outcome == fracture::Outcome::held);
+  CHECK(light.generations == 0);
+  const auto heavy = press(5.0);
+  REQUIRE(heavy.generations > 0);
+  CHECK(heavy.verdict.stress < 100.0 * light.verdict.stress);
+  // What rests adds to the bound: without it the tap's is lower.
+  CHECK(fracture::decide_shell(subject, test::steel_ball(1e-4)).verdict.stress < light.verdict.stress);
+}
+
 TEST_CASE("the speed that breaks a held pane grows as the root of its thickness") {
   // Compliance ~ t^-3, so T ~ t^-3/2; peak force F = V sqrt(m / C) ~ V t^3/2; bending stress ~ F / t^2 ~ V
   // t^-1/2.

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "engine/stress/shell_stress.h"
+#include "engine/stress/shell_support.h"
 #include "engine/stress/shell_system.h"
 #include "tests/engine/stress/meshes.h"
 
@@ -73,6 +74,36 @@ TEST_CASE("no stress exceeds what its energy allows") {
       CAPTURE(thickness, closest);
       REQUIRE(closest > 0.03);
     }
+}
+
+TEST_CASE("a strip bent over its length reaches its bound, anything broader stays below") {
+  // Held at x = 0, pushed down at x = 1 all along its end: 6 F l / (b t^2) where it is held.
+  const double length = 1.0, thickness = 0.01, force = 3.0;
+  for (const double width : {0.1, 0.6}) {
+    const geometry::ShellMesh mesh = geometry::make_shell_mesh(grid(60, width > 0.5 ? 12 : 6, length, width));
+    ShellProperties properties;
+    properties.thickness = thickness;
+    properties.poisson_ratio = 0.0;
+    const auto& elements = *mesh.elements;
+    std::vector<char> vertices(elements.mesh.positions.size(), 0), edges(elements.topology.edges.size(), 0);
+    double count = 0.0;
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      vertices[v] = elements.mesh.positions[v].x() < 1e-9;
+      count += elements.mesh.positions[v].x() > length - 1e-9;
+    }
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      edges[e] = vertices[static_cast<std::size_t>(elements.topology.edges[e][0])] &&
+                 vertices[static_cast<std::size_t>(elements.topology.edges[e][1])];
+    VecX load = VecX::Zero(mesh.degree_of_freedom_count());
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      if (elements.mesh.positions[v].x() > length - 1e-9)
+        load(vertex_dof(static_cast<int>(v)) + 2) = -force / count;
+    const auto stiffness = make_shell_stiffness(mesh.elements, properties);
+    const auto system = ShellSystem::make(stiffness, mesh, 0.0, find_support(mesh, vertices, edges)).value();
+    const double worst = worst_of(cell_stresses(*stiffness, mesh, system->solve(load).displacement));
+    REQUIRE(worst == Approx(bending_bound(thickness, width, length, force)).epsilon(0.05));
+    REQUIRE(worst < bending_bound(thickness, 0.09, length, force));
+  }
 }
 
 TEST_CASE("no energy, no stress") {
