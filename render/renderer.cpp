@@ -11,6 +11,7 @@
 #include "render/context/context.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/framebuffer.h"
+#include "render/pass/changes.h"
 #include "render/pass/floor.h"
 #include "render/pass/frame_block.h"
 #include "render/pass/glass.h"
@@ -20,6 +21,7 @@
 #include "render/pass/overlay.h"
 #include "render/pass/shadow.h"
 #include "render/pass/surface.h"
+#include "render/pass/tile_reset.h"
 #include "render/pass/tiles.h"
 
 namespace shatterbox::render {
@@ -88,6 +90,8 @@ struct Renderer::Rooms {
   gpu::Buffer block;  // of the values
   pass::MeshStore meshes;
   pass::Tiles tiles;
+  pass::Changes changes;
+  pass::TileReset reset;
   pass::FloorPass floor;
   pass::ShadowPass shadow;
   pass::SurfacePass surface;
@@ -95,8 +99,10 @@ struct Renderer::Rooms {
   pass::LightPass light;
   pass::GlassPass glass;
   std::vector<std::uint8_t> rgba;  // as read back; kept, since new pages cost more than the reading
+  Image kept;                      // the last picture, without what is written on it
+  bool is_kept = false;            // that, and all that the passes keep, is whole
   PassTimes times;
-  bool is_timed = false, has_shadow = false;
+  bool is_timed = false;
 
   Rooms(Size size_, Quality quality_)
       : size(size_),
@@ -104,11 +110,13 @@ struct Renderer::Rooms {
         level(level_of(quality_)),
         drawn(size.width, size.height, 1, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT32F),
         tiles(size.width, size.height),
+        changes(size.width, size.height, level.occlusion_scale),
         floor(size.width, size.height),
         shadow(level.shadow_map),
-        surface(size.width, size.height, level.samples_across),
-        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale),
-        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale),
+        surface(size.width, size.height, level.samples_across, reset),
+        occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale,
+                  reset),
+        light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale, reset),
         glass(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
@@ -117,52 +125,63 @@ struct Renderer::Rooms {
   }
   ~Rooms() { context.make_current(); }
 
-  void fill_block(const Frame& frame) {
+  // What the frame is, and what of the last picture still holds.
+  void prepare(const Frame& frame) {
+    if (!is_kept) {
+      meshes.forget();
+      shadow.forget();
+      changes.forget();
+    }
+    is_kept = false;
     values = pass::make_frame_block(frame, size.width, size.height);
     meshes.prepare(frame, values.clip_from_world, 2.0F * values.view_ray.y / static_cast<float>(size.height));
     shadow.fit(frame, meshes, values);
     tiles.find(meshes, values);
-    has_shadow = values.sun_radiance.w > 0.0F;
+    changes.find(meshes, values, tiles.near_marks());
+  }
+
+  void lay_floor() {
+    tiles.select(changes);
     block.assign(std::span<const pass::FrameBlock>(&values, 1));
     block.bind_uniform(0);
     meshes.bind_vertices();  // core GL draws nothing without an array, even where none is read
-    floor.run(values, drawn);
+    floor.run(values, drawn, changes.lit().is_all, tiles.rectangles(tiles.changed_light()));
   }
 
   void draw(PassClock& clock) {
-    if (has_shadow) shadow.run(meshes, values);
+    if (values.sun_radiance.w > 0.0F) shadow.run(meshes, values);
     clock.mark("shadow");
-    surface.run(meshes);
-    if (tiles.glass().count > 0) surface.run_glass(meshes);
+    if (!changes.bodies().is_none()) surface.run(meshes, tiles, changes);
+    const bool has_glass = tiles.glass().count > 0;
+    if (has_glass && !changes.glass().is_none()) surface.run_glass(meshes, tiles, changes);
     clock.mark("surface");
-    occlusion.run(surface.opaque(), tiles);
+    if (!changes.occluded().is_none()) occlusion.run(surface.opaque(), tiles, changes.occluded());
     clock.mark("occlusion");
     shadow.bind();
     occlusion.bind();
-    light.dim(tiles);
+    light.dim(tiles, changes.lit());
     clock.mark("dimming");
     surface.opaque().bind(4, 5);
     meshes.bind_paints();
     light.run(surface.opaque(), drawn, tiles, meshes.pattern_kinds(), values.ground_colour.w > 0.0F);
     clock.mark("light");
-    if (tiles.glass().count > 0) glass.run(surface, drawn, tiles, meshes.pattern_kinds());
+    if (has_glass) glass.run(surface, drawn, tiles, meshes.pattern_kinds());
     clock.mark("glass");
   }
 
-  Image read_back() {
+  void read_back() {
     const auto width = static_cast<std::size_t>(size.width), height = static_cast<std::size_t>(size.height);
     rgba.resize(width * height * 4);
+    if (kept.pixels.empty()) kept = Image(size.width, size.height);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn.name());
     glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-    Image image(size.width, size.height);
     for (std::size_t y = 0; y < height; ++y) {  // GL's rows run from below
       const std::uint8_t* from = rgba.data() + (height - 1 - y) * width * 4;
-      std::uint8_t* to = image.pixels.data() + y * width * 3;
+      std::uint8_t* to = kept.pixels.data() + y * width * 3;
       for (std::size_t x = 0; x + 1 < width; ++x)
         std::memcpy(to + 3 * x, from + 4 * x, 4);  // the next overwrites the fourth
       std::memcpy(to + 3 * (width - 1), from + 4 * (width - 1), 3);
     }
-    return image;
   }
 };
 
@@ -178,19 +197,30 @@ Image Renderer::render(const Frame& frame) {
   Rooms& r = *rooms_;
   r.context.make_current();
   PassClock clock(r.is_timed, r.times);
-  r.fill_block(frame);
+  r.prepare(frame);
+  if (!r.changes.is_nothing()) r.lay_floor();
   clock.mark("upload");
-  r.draw(clock);
-  Image image = r.read_back();
+  if (!r.changes.is_nothing()) {
+    r.draw(clock);
+    r.read_back();
+  }
+  Image image = r.kept;
   clock.mark("read back");
   pass::draw_overlay(image, frame);
   clock.mark("overlay");
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     throw std::runtime_error("OpenGL error " + std::to_string(error) + " while drawing a frame");
   }
+  r.is_kept = true;
   return image;
 }
 
+void Renderer::forget() {
+  rooms_->is_kept = false;
+}
+double Renderer::drawn_share() const {
+  return rooms_->changes.lit_share();
+}
 Size Renderer::size() const {
   return rooms_->size;
 }

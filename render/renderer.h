@@ -1,5 +1,6 @@
 // The door of render: Frame in, Image out. Off-screen, on the CPU (OSMesa, llvmpipe).
-// One renderer belongs to the thread that made it; the same frame gives the same bytes.
+// One renderer belongs to the thread that made it; the same frame gives the same bytes. What has not changed
+// since the last frame is not drawn again: that picture is kept.
 #pragma once
 #include <memory>
 #include <string>
@@ -39,6 +40,9 @@ class Renderer {
 
   // RGB8, row 0 on top. Throws std::invalid_argument for a null mesh or an index out of range.
   Image render(const Frame& frame);
+
+  void forget();               // the next frame is drawn wholly, as by a renderer that has drawn none
+  double drawn_share() const;  // of the last picture: 0 if all of it was kept, 1 if none
 
   Size size() const;
   Quality quality() const;

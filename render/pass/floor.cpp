@@ -43,7 +43,8 @@ void FloorPass::find_whole_colour(const FrameBlock& block) {
   std::copy_n(bytes.begin(), 3, whole_bytes_.begin());
 }
 
-void FloorPass::run(const FrameBlock& block, const gpu::Framebuffer& target) {
+void FloorPass::run(const FrameBlock& block, const gpu::Framebuffer& target, bool is_all,
+                    std::span<const glm::uvec4> rectangles) {
   static_assert(sizeof(FrameBlock) % sizeof(glm::vec4) == 0);  // no padding to compare
   const FrameBlock wanted = without_bodies(block);
   if (!kept_of_ || std::memcmp(&*kept_of_, &wanted, sizeof wanted) != 0) {
@@ -55,8 +56,12 @@ void FloorPass::run(const FrameBlock& block, const gpu::Framebuffer& target) {
                         GL_UNSIGNED_BYTE, bytes_.data());
     kept_of_ = wanted;
   }
-  glBlitNamedFramebuffer(kept_.name(), target.name(), 0, 0, kept_.width(), kept_.height(), 0, 0,
-                         kept_.width(), kept_.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const auto copy = [&](int left, int bottom, int right, int top) {
+    glBlitNamedFramebuffer(kept_.name(), target.name(), left, bottom, right, top, left, bottom, right, top,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  };
+  if (is_all) return copy(0, 0, kept_.width(), kept_.height());
+  for (const glm::ivec4 r : rectangles) copy(r.x, r.y, r.z, r.w);
 }
 
 }  // namespace shatterbox::render::pass

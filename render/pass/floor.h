@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/gpu/framebuffer.h"
@@ -16,9 +17,10 @@ namespace shatterbox::render::pass {
 class FloorPass {
  public:
   FloorPass(int width, int height);
-  // Paints the empty floor if it is not the one kept, and copies it over the target's colours. The block must
-  // be bound.
-  void run(const FrameBlock& block, const gpu::Framebuffer& target);
+  // Paints the empty floor if it is not the one kept, and copies it over the target's colours: over all of
+  // them, or over the rectangles (left, bottom, right, top; pixels). The block must be bound.
+  void run(const FrameBlock& block, const gpu::Framebuffer& target, bool is_all,
+           std::span<const glm::uvec4> rectangles);
 
  private:
   void find_whole_colour(const FrameBlock& block);

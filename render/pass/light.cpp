@@ -2,7 +2,6 @@
 
 #include <glad/gl.h>
 
-#include <array>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -20,7 +19,8 @@ constexpr int kChangesSlowly = 1, kHasEdge = 2;
 
 }  // namespace
 
-LightPass::LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale)
+LightPass::LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale,
+                     const TileReset& reset)
     : samples_across_(samples_across),
       defines_({"SHADOW_TAPS " + std::to_string(shadow_taps), "SIDE " + std::to_string(samples_across),
                 "OCCLUSION_SCALE " + std::to_string(occlusion_scale)}),
@@ -30,7 +30,8 @@ LightPass::LightPass(int width, int height, int shadow_taps, int samples_across,
       need_target_({&need_}, nullptr),
       dim_("tile.vert", "dimming.frag", defines_),
       dim_occluded_("tile.vert", "dimming.frag", with(defines_, {"NO_SHADOW", "IF_OCCLUDED"})),
-      reduce_("full_screen.vert", "dimming_tiles.frag") {
+      reduce_("full_screen.vert", "dimming_tiles.frag"),
+      reset_(&reset) {
   const auto floor = [&](std::initializer_list<const char*> more) {
     return gpu::Program("tile.vert", "floor.frag", with(with(defines_, {"IF_NEEDED"}), more));
   };
@@ -50,12 +51,12 @@ const gpu::Program& LightPass::bodies(unsigned pattern_kinds) {
   return program;
 }
 
-void LightPass::dim(const Tiles& tiles) const {
+void LightPass::dim(const Tiles& tiles, const Changes::Marks& changed) const {
+  constexpr unsigned kUndimmed = 0xffffU;  // as dimming.glsl packs it
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   dimming_target_.bind();
-  const std::array<unsigned, 4> undimmed = {0xffffU, 0U, 0U, 0U};  // as dimming.glsl packs it
-  glClearBufferuiv(GL_COLOR, 0, undimmed.data());
+  reset_->reset_value(changed, tiles.changed_light(), kUndimmed);
   dim_.use();
   Tiles::draw(tiles.shaded());
   dim_occluded_.use();

@@ -10,15 +10,17 @@
 #include "render/gpu/program.h"
 #include "render/gpu/texture.h"
 #include "render/pass/surface.h"
+#include "render/pass/tile_reset.h"
 #include "render/pass/tiles.h"
 
 namespace shatterbox::render::pass {
 
 class LightPass {
  public:
-  LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale);
+  LightPass(int width, int height, int shadow_taps, int samples_across, int occlusion_scale,
+            const TileReset& reset);
   // What the floor sees of sun and sky, at each second pixel; shadow and occlusion must be bound.
-  void dim(const Tiles& tiles) const;
+  void dim(const Tiles& tiles, const Changes::Marks& changed) const;
   // Into `drawn`, which shows the empty floor; with several samples a pixel its depth is used for the cover.
   // `opaque` must be bound.
   void run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles, unsigned pattern_kinds,
@@ -40,6 +42,7 @@ class LightPass {
   gpu::Framebuffer dimming_target_, need_target_;
   gpu::Framebuffer on_opaque_;  // the picture with the bodies' depth; for one sample a pixel
   gpu::Program dim_, dim_occluded_, reduce_, cover_;
+  const TileReset* reset_;                   // outlives the pass
   FloorPrograms between_, at_pixels_;        // the second in full quality only
   std::map<unsigned, gpu::Program> bodies_;  // by pattern kinds
 };

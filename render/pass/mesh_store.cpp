@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -28,70 +29,11 @@ struct DrawRow {
   glm::uvec4 rows;
 };
 
-// Four texels as common/paint.glsl reads them: colour, roughness | metalness, coat, its roughness,
-// transmission | pattern colour, kind + metalness / 2 | pattern centre, size.
-struct PaintRow {
-  glm::vec4 paint, finish, pattern, place;
-};
-constexpr float kHeatMap = 8.0F;  // a pattern kind of its own
-constexpr int kRowsAbreast = 256;
 constexpr float kLeastPixels = 0.25F;     // bodies of a smaller radius are not drawn
 constexpr float kSeenPixels = 0.4F;       // a surface may be off by so much
 constexpr float kLeastTolerance = 1e-7F;  // m; nothing is simplified for eyes so near
 constexpr int kAsGiven = -1000;           // a level of its own: not simplified
 constexpr GLuint kRowAttribute = 5;
-
-PaintRow to_paint(const Look& look, Face face) {
-  PaintRow row{};
-  row.place = glm::vec4(look.pattern_centre, std::max(look.pattern_size, 1e-9F));
-  switch (face) {
-    case Face::outside: {
-      const float metal =
-          std::clamp(look.pattern_metalness, 0.0F, 1.0F) * 0.499F;  // stays below the next kind
-      row.paint = glm::vec4(look.outside, look.roughness);
-      row.finish = {look.metalness, look.clear_coat, look.clear_coat_roughness, look.transmission};
-      row.pattern = glm::vec4(look.pattern_colour, static_cast<float>(look.pattern) + metal);
-      if (look.pattern == Pattern::none) row.pattern.w = 0.0F;
-      break;
-    }
-    case Face::inside:
-      row.paint = glm::vec4(look.inside, look.inside_roughness);
-      row.finish = {look.inside_metalness, 0.5F * look.clear_coat, look.clear_coat_roughness,
-                    look.transmission};
-      break;
-    case Face::crack:  // rims of glass scatter
-      row.paint = glm::vec4(look.crack, look.crack_roughness);
-      row.finish = {0.0F, 0.0F, 0.1F, 0.25F * look.transmission};
-      break;
-  }
-  return row;
-}
-
-// A colour of its own for each piece: hues by the golden ratio, two lightnesses.
-glm::vec3 piece_colour(std::uint32_t index) {
-  const double turn = static_cast<double>(index) * 0.6180339887498949;
-  const auto hue = static_cast<float>(turn - std::floor(turn));
-  glm::vec3 c;
-  for (int k = 0; k < 3; ++k) {
-    const float x = hue + static_cast<float>((3 - k) % 3) / 3.0F;
-    c[k] = std::clamp(std::abs((x - std::floor(x)) * 6.0F - 3.0F) - 1.0F, 0.0F, 1.0F);
-  }
-  return glm::mix(glm::vec3(0.30F), c * c, 0.66F) * ((index & 1U) == 0 ? 0.85F : 0.5F);
-}
-
-void lay_over(PaintRow& row, const Draw& draw, const Overlay& overlay, Face face) {
-  if (overlay.kind == OverlayKind::pieces && draw.colour_index != Draw::kNoColour) {
-    const glm::vec3 own = piece_colour(draw.colour_index);
-    row.paint = glm::vec4(face == Face::crack ? glm::mix(own, glm::vec3(0.85F), 0.7F) : own, 0.5F);
-    row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.0F};
-    row.pattern.w = 0.0F;
-  }
-  if (overlay.kind == OverlayKind::stress && draw.scalars != nullptr && face != Face::crack) {
-    row.paint.w = 0.5F;
-    row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.5F * row.finish.w};
-    row.pattern.w = kHeatMap;
-  }
-}
 
 unsigned create_vertex_array() {
   GLuint name = 0;
@@ -137,6 +79,20 @@ int level_of(const Draw& draw, glm::vec3 centre_body, float radius, glm::vec3 ey
   return tolerance > kLeastTolerance ? static_cast<int>(std::floor(std::log2(tolerance))) : kAsGiven;
 }
 
+bool have_equal_scalars(const Item& a, const Item& b) {
+  if (a.scalars == b.scalars) return true;
+  return a.scalars && b.scalars && a.scalars->size() == b.scalars->size() &&
+         std::memcmp(a.scalars->data(), b.scalars->data(), a.scalars->size() * sizeof(float)) == 0;
+}
+
+// Their paints apart. To the bit: what is equal draws the same.
+bool is_drawn_alike(const Item& a, const Item& b) {
+  return a.stored_id == b.stored_id && a.is_glass == b.is_glass && a.is_on_screen == b.is_on_screen &&
+         a.casts_shadow == b.casts_shadow &&
+         std::memcmp(&a.world_from_body, &b.world_from_body, sizeof a.world_from_body) == 0 &&
+         have_equal_scalars(a, b);
+}
+
 }  // namespace
 
 MeshStore::MeshStore() : vertex_array_(create_vertex_array()) {}
@@ -174,91 +130,109 @@ void MeshStore::drop_unseen() {
   std::erase_if(meshes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
 }
 
-std::uint32_t MeshStore::add_paints(const Draw& draw, const Overlay& overlay) {
-  constexpr std::size_t kFloats = sizeof(PaintRow) / sizeof(float);
-  const auto first = static_cast<std::uint32_t>(paint_rows_.size() / kFloats);
-  const std::vector<Look> plain(1);
-  for (const Look& look : draw.looks.empty() ? plain : draw.looks) {
-    for (const Face face : {Face::outside, Face::inside, Face::crack}) {
-      PaintRow row = to_paint(look, face);
-      lay_over(row, draw, overlay, face);
-      if (row.pattern.w >= 1.0F) pattern_kinds_ |= 1U << static_cast<unsigned>(row.pattern.w);
-      const auto* values = reinterpret_cast<const float*>(&row);
-      paint_rows_.insert(paint_rows_.end(), values, values + kFloats);
-    }
+Item MeshStore::make_item(const Draw& draw, const Frame& frame, float pixel_slope) {
+  if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
+  if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
+    throw std::invalid_argument("mesh " + std::to_string(draw.mesh->id) + ": scalars must be one a vertex");
   }
-  return first;
+  Levels& levels = find_or_measure(*draw.mesh);
+  levels.last_frame = frame_;
+  const glm::vec3 eye = frame.camera.position;
+  Item item;
+  if (frame.overlay.kind == OverlayKind::stress) item.scalars = draw.scalars;
+  const int level = item.scalars ? kAsGiven : level_of(draw, levels.centre, levels.radius, eye, pixel_slope);
+  item.stored = &find_or_upload(*draw.mesh, level, levels);
+  item.mesh_id = draw.mesh->id;
+  item.stored_id = item.stored->id;
+  item.world_from_body = draw.world_from_body;
+  const DrawnMesh& shape = item.stored->shape;
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec3 corner((i & 1) ? shape.box_most.x : shape.box_least.x,
+                           (i & 2) ? shape.box_most.y : shape.box_least.y,
+                           (i & 4) ? shape.box_most.z : shape.box_least.z);
+    item.box_world.at[i] = glm::vec3(draw.world_from_body * glm::vec4(corner, 1.0F));
+  }
+  const float scale = glm::length(glm::vec3(draw.world_from_body[0]));
+  item.centre_world = glm::vec3(draw.world_from_body * glm::vec4(shape.centre, 1.0F));
+  item.radius = shape.radius * scale;
+  item.eye_distance = glm::distance(item.centre_world, eye);
+  item.rim_pixels = draw.mesh->thickness * scale / std::max(pixel_slope * item.eye_distance, 1e-9F);
+  item.is_glass = frame.overlay.kind != OverlayKind::pieces &&
+                  std::any_of(draw.looks.begin(), draw.looks.end(),
+                              [](const Look& look) { return look.transmission > 0.0F; });
+  const bool is_dust = item.radius < kLeastPixels * pixel_slope * item.eye_distance;
+  item.is_on_screen = !is_dust;
+  item.casts_shadow = draw.casts_shadow && !is_dust;
+  return item;
 }
 
-void MeshStore::upload_paints() {
-  constexpr std::size_t kFloatsAbreast = kRowsAbreast * sizeof(PaintRow) / sizeof(float);
-  const auto lines = static_cast<int>((paint_rows_.size() + kFloatsAbreast - 1) / kFloatsAbreast);
-  paint_rows_.resize(static_cast<std::size_t>(lines) * kFloatsAbreast, 0.0F);
-  if (paints_.height() < std::max(lines, 1)) {
-    paints_ = gpu::Texture(4 * kRowsAbreast, std::max(2 * lines, 1), GL_RGBA32F, gpu::Filter::nearest);
+// The draws are followed by their meshes, in order: what is not found is new, what was passed over is gone.
+void MeshStore::compare_with_earlier(std::vector<Item>& items, const Frame& frame) {
+  gone_.clear();
+  if (paints_.begin(frame)) gone_.swap(earlier_);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    Item& item = items[i];
+    const Draw& draw = frame.draws[i];
+    std::size_t found = next;
+    while (found < earlier_.size() && earlier_[found].mesh_id != item.mesh_id) ++found;
+    const bool is_known =
+        found < earlier_.size() && earlier_[found].paints.count == PaintTable::count_of(draw);
+    item.paints =
+        paints_.write(draw, frame.overlay, is_known ? earlier_[found].paints.first : PaintTable::kNone);
+    if (found == earlier_.size()) continue;
+    item.is_as_before = item.paints.is_as_before && is_drawn_alike(item, earlier_[found]);
+    gone_.insert(gone_.end(), earlier_.begin() + static_cast<std::ptrdiff_t>(next),
+                 earlier_.begin() + static_cast<std::ptrdiff_t>(item.is_as_before ? found : found + 1));
+    next = found + 1;
   }
-  if (lines > 0) {
-    glTextureSubImage2D(paints_.name(), 0, 0, 0, 4 * kRowsAbreast, lines, GL_RGBA, GL_FLOAT,
-                        paint_rows_.data());
-  }
+  gone_.insert(gone_.end(), earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(next, earlier_.size())),
+               earlier_.end());
+  earlier_ = items;
 }
 
-void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope) {
-  ++frame_;
-  const std::array<glm::vec4, 4> sides = find_sides(clip_from_world);
+void MeshStore::upload_rows(const std::vector<Item>& items) {
   std::vector<DrawRow> draws;
   std::vector<float> scalars;
-  items_.clear();
-  paint_rows_.clear();
-  pattern_kinds_ = 0;
-  for (const Draw& draw : frame.draws) {
-    if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
-    if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
-      throw std::invalid_argument("mesh " + std::to_string(draw.mesh->id) + ": scalars must be one a vertex");
-    }
-    Levels& levels = find_or_measure(*draw.mesh);
-    levels.last_frame = frame_;
-    const bool has_scalars = frame.overlay.kind == OverlayKind::stress && draw.scalars != nullptr;
-    draws.push_back({draw.world_from_body,
-                     {add_paints(draw, frame.overlay), std::max<std::size_t>(draw.looks.size(), 1),
-                      has_scalars ? static_cast<std::uint32_t>(scalars.size()) : kNone, 0U}});
-    if (has_scalars) scalars.insert(scalars.end(), draw.scalars->begin(), draw.scalars->end());
-
-    Item item;
-    const int level = has_scalars
-                          ? kAsGiven
-                          : level_of(draw, levels.centre, levels.radius, frame.camera.position, pixel_slope);
-    item.stored = &find_or_upload(*draw.mesh, level, levels);
-    const DrawnMesh& shape = item.stored->shape;
-    item.row = static_cast<int>(draws.size()) - 1;
-    item.world_from_body = draw.world_from_body;
-    item.centre_world = glm::vec3(draw.world_from_body * glm::vec4(shape.centre, 1.0F));
-    item.radius = shape.radius * glm::length(glm::vec3(draw.world_from_body[0]));
-    item.eye_distance = glm::distance(item.centre_world, frame.camera.position);
-    item.rim_pixels = draw.mesh->thickness * glm::length(glm::vec3(draw.world_from_body[0])) /
-                      std::max(pixel_slope * item.eye_distance, 1e-9F);
-    item.is_glass = frame.overlay.kind != OverlayKind::pieces &&
-                    std::any_of(draw.looks.begin(), draw.looks.end(),
-                                [](const Look& look) { return look.transmission > 0.0F; });
-    const bool is_dust = item.radius < kLeastPixels * pixel_slope * item.eye_distance;
-    item.is_on_screen = !is_dust && std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {
-      return glm::dot(glm::vec3(side), item.centre_world) + side.w > -item.radius;
-    });
-    item.casts_shadow = draw.casts_shadow && !is_dust;
-    items_.push_back(item);
+  for (const Item& item : items) {
+    const auto first_scalar = item.scalars ? static_cast<std::uint32_t>(scalars.size()) : kNone;
+    draws.push_back({item.world_from_body, {item.paints.first, item.paints.count / 3U, first_scalar, 0U}});
+    if (item.scalars) scalars.insert(scalars.end(), item.scalars->begin(), item.scalars->end());
   }
-  drop_unseen();
-  std::stable_sort(items_.begin(), items_.end(),
-                   [](const Item& a, const Item& b) { return a.eye_distance < b.eye_distance; });
   draw_rows_.assign(std::span<const DrawRow>(draws));
   std::vector<std::uint32_t> rows(std::max<std::size_t>(draws.size(), 1));
   std::iota(rows.begin(), rows.end(), 0U);
   rows_.assign(std::span<const std::uint32_t>(rows));
   glVertexArrayVertexBuffer(vertex_array_.get(), 1, rows_.name(), 0, sizeof(std::uint32_t));
   scalars_.assign(std::span<const float>(scalars));
-  upload_paints();
+  paints_.upload();
   draw_rows_.bind_storage(0);
   scalars_.bind_storage(1);
+}
+
+void MeshStore::forget() {
+  paints_.forget();
+  earlier_.clear();
+}
+
+void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope) {
+  ++frame_;
+  const std::array<glm::vec4, 4> sides = find_sides(clip_from_world);
+  std::vector<Item> items;
+  for (const Draw& draw : frame.draws) {
+    Item item = make_item(draw, frame, pixel_slope);
+    item.row = static_cast<int>(items.size());
+    item.is_on_screen &= std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {
+      return glm::dot(glm::vec3(side), item.centre_world) + side.w > -item.radius;
+    });
+    items.push_back(std::move(item));
+  }
+  drop_unseen();
+  compare_with_earlier(items, frame);
+  upload_rows(items);
+  items_ = std::move(items);
+  std::stable_sort(items_.begin(), items_.end(),
+                   [](const Item& a, const Item& b) { return a.eye_distance < b.eye_distance; });
 }
 
 void MeshStore::bind_vertices() const {

@@ -1,14 +1,17 @@
-// The meshes on the GPU, by id, and the rows that the shaders read of this frame's draws, paints and scalars.
+// The meshes on the GPU, by id, and the rows that the shaders read of this frame's draws, paints and scalars;
+// and which draws are as they were in the last frame.
 #pragma once
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "render/frame/expand.h"
 #include "render/frame/frame.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/handle.h"
-#include "render/gpu/texture.h"
+#include "render/pass/paint_table.h"
+#include "render/pass/tile_grid.h"
 
 namespace shatterbox::render::pass {
 
@@ -24,13 +27,18 @@ struct StoredMesh {
 // One draw of the frame, ready for the passes.
 struct Item {
   const StoredMesh* stored = nullptr;  // never null; the same for as long as it is drawn
-  int row = 0;                         // of the draw rows
+  std::uint64_t mesh_id = 0, stored_id = 0;
+  int row = 0;  // of the draw rows
+  PaintTable::Rows paints;
+  std::shared_ptr<const std::vector<float>> scalars;  // null if none are shown
   glm::mat4 world_from_body{1.0F};
+  Corners box_world{};
   glm::vec3 centre_world{0.0F};
   float radius = 0.0F;        // m, world
   float eye_distance = 0.0F;  // m, to the centre
   float rim_pixels = 0.0F;    // a shell's thickness where it is
   bool is_glass = false, is_on_screen = false, casts_shadow = false;
+  bool is_as_before = false;  // under the same camera it gives the samples and the shadow that it gave
 };
 
 enum class Part { all, outer, rims, crack_lines };  // rims: with crack lines
@@ -44,15 +52,17 @@ class MeshStore {
   // pixel_slope: a pixel's height at one metre's distance, m.
   void prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope);
 
+  void forget();  // nothing is as before in the next frame
+
   const std::vector<Item>& items() const { return items_; }  // near to far
+  // What the last frame drew and this one does not, or draws otherwise; their meshes may be gone.
+  const std::vector<Item>& gone() const { return gone_; }
   void bind_vertices() const;
-  void bind_paints() const { paints_.bind(6); }
+  void bind_paints() const { paints_.bind(); }
   void draw(const Item& item, Part part) const;
   // What draws in the shadow map: solids wholly, shells by one face.
   Part shadow_part(const Item& item) const;
-  unsigned pattern_kinds() const {
-    return pattern_kinds_;
-  }  // on any draw of the frame: bits by kind, as in a PaintRow
+  unsigned pattern_kinds() const { return paints_.pattern_kinds(); }
   int mesh_count() const { return static_cast<int>(meshes_.size()); }
 
  private:
@@ -66,15 +76,14 @@ class MeshStore {
   Levels& find_or_measure(const Mesh& mesh);
   const StoredMesh& find_or_upload(const Mesh& mesh, int level, Levels& levels);
   void drop_unseen();
-  std::uint32_t add_paints(const Draw& draw, const Overlay& overlay);  // the first row
-  void upload_paints();
+  Item make_item(const Draw& draw, const Frame& frame, float pixel_slope);
+  void compare_with_earlier(std::vector<Item>& items, const Frame& frame);
+  void upload_rows(const std::vector<Item>& items);
 
   std::map<std::uint64_t, Levels> meshes_;
-  std::vector<Item> items_;
-  gpu::Buffer draw_rows_, rows_, scalars_;  // rows: 0, 1, 2, ..
-  gpu::Texture paints_;                     // one row a look and face; grows
-  std::vector<float> paint_rows_;
-  unsigned pattern_kinds_ = 0;
+  std::vector<Item> items_, earlier_, gone_;  // earlier: of the last frame, in its draws' order
+  gpu::Buffer draw_rows_, rows_, scalars_;    // rows: 0, 1, 2, ..
+  PaintTable paints_;
   gpu::Handle<delete_vertex_array> vertex_array_;
   std::uint64_t frame_ = 0, next_id_ = 1;
 };

@@ -2,12 +2,12 @@
 
 #include <glad/gl.h>
 
-#include <array>
 #include <string>
 
 namespace shatterbox::render::pass {
 
-OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across, int scale)
+OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across, int scale,
+                             const TileReset& reset)
     : raw_((width + scale - 1) / scale, (height + scale - 1) / scale, GL_R32UI, gpu::Filter::nearest),
       blurred_(raw_.width(), raw_.height(), GL_R32UI, gpu::Filter::nearest),
       tiles_((width + 15) / 16, (height + 15) / 16, GL_R32F, gpu::Filter::nearest),
@@ -18,20 +18,20 @@ OcclusionPass::OcclusionPass(int width, int height, int taps, int samples_across
               {"SIDE " + std::to_string(samples_across), "OCCLUSION_TAPS " + std::to_string(taps),
                "OCCLUSION_SCALE " + std::to_string(scale)}),
       blur_("tile.vert", "occlusion_blur.frag"),
-      reduce_("full_screen.vert", "occlusion_tiles.frag", {"OCCLUSION_SCALE " + std::to_string(scale)}) {}
+      reduce_("full_screen.vert", "occlusion_tiles.frag", {"OCCLUSION_SCALE " + std::to_string(scale)}),
+      reset_(&reset) {}
 
-void OcclusionPass::run(const Layer& opaque, const Tiles& tiles) const {
+void OcclusionPass::run(const Layer& opaque, const Tiles& tiles, const Changes::Marks& changed) const {
+  constexpr unsigned kUnoccluded = 0x00003c00U;  // half floats: sees all, infinitely far
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
-  // Half floats: sees all, infinitely far.
-  const std::array<unsigned, 4> unoccluded = {0x00003c00U, 0U, 0U, 0U};
   raw_target_.bind();
-  glClearBufferuiv(GL_COLOR, 0, unoccluded.data());
+  reset_->reset_value(changed, tiles.changed_occlusion(), kUnoccluded);
   sample_.use();
   opaque.bind(4, 5);
   Tiles::draw(tiles.near_bodies());
   blurred_target_.bind();
-  glClearBufferuiv(GL_COLOR, 0, unoccluded.data());
+  reset_->reset_value(changed, tiles.changed_occlusion(), kUnoccluded);
   blur_.use();
   raw_.bind(0);
   Tiles::draw(tiles.near_bodies());

@@ -112,8 +112,17 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   block.shadow_on_floor = glm::vec4(slope, bias, has_glass ? 1.0F : 0.0F);
 }
 
-void ShadowPass::draw_casters(const MeshStore& meshes, const gpu::Framebuffer& map, bool is_glass) const {
-  map.bind();
+bool ShadowPass::draw_casters(const MeshStore& meshes, const FrameBlock& block, bool is_glass,
+                              Drawn& drawn) const {
+  Drawn wanted{{}, block.shadow_from_world};
+  for (const Item& item : meshes.items()) {
+    if (item.casts_shadow && item.is_glass == is_glass) {
+      wanted.casters.push_back({item.stored_id, item.world_from_body});
+    }
+  }
+  if (wanted == drawn) return false;
+  drawn = std::move(wanted);
+  (is_glass ? glass_map_ : map_).bind();
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
@@ -126,18 +135,10 @@ void ShadowPass::draw_casters(const MeshStore& meshes, const gpu::Framebuffer& m
   for (const Item& item : meshes.items()) {
     if (item.casts_shadow && item.is_glass == is_glass) meshes.draw(item, meshes.shadow_part(item));
   }
+  return true;
 }
 
-void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
-  std::vector<Caster> casters;
-  for (const Item& item : meshes.items()) {
-    if (item.casts_shadow) casters.push_back({item.stored->id, item.world_from_body, item.is_glass});
-  }
-  if (block.shadow_from_world == drawn_place_ && casters == drawn_casters_) return;
-  drawn_place_ = block.shadow_from_world;
-  drawn_casters_ = std::move(casters);
-  draw_casters(meshes, map_, false);
-  if (block.shadow_on_floor.w > 0.0F) draw_casters(meshes, glass_map_, true);
+void ShadowPass::reduce() {
   glDisable(GL_DEPTH_TEST);
   tiles_.bind();
   reduce_.use();
@@ -151,6 +152,11 @@ void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
   tile_bounds_.bind(0);
   tile_casters_.bind(1);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
+  if (draw_casters(meshes, block, false, drawn_solids_)) reduce();
+  if (block.shadow_on_floor.w > 0.0F) draw_casters(meshes, block, true, drawn_glass_);
 }
 
 void ShadowPass::bind() const {

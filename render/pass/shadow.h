@@ -20,26 +20,31 @@ class ShadowPass {
   // shadow members; sun_radiance.w stays 0 when nothing casts.
   void fit(const Frame& frame, const MeshStore& meshes, FrameBlock& block) const;
 
-  // The block must be bound. Draws nothing when every caster, and the map's place, is as it was.
+  // The block must be bound. Draws each map only if one of its casters, or its place, is not as it was.
   void run(const MeshStore& meshes, const FrameBlock& block);
-  void bind() const;  // texture units 0, 1, 2, 11
+  void forget() { drawn_solids_ = drawn_glass_ = Drawn{}; }  // draws both when next asked
+  void bind() const;                                         // texture units 0, 1, 2, 11
 
  private:
-  void draw_casters(const MeshStore& meshes, const gpu::Framebuffer& map, bool is_glass) const;
+  struct Caster {
+    std::uint64_t mesh;  // StoredMesh::id
+    glm::mat4 world_from_body;
+    bool operator==(const Caster&) const = default;
+  };
+  struct Drawn {
+    std::vector<Caster> casters;
+    glm::mat4 place{0.0F};  // shadow_from_world; no map has this one
+    bool operator==(const Drawn&) const = default;
+  };
+  // Draws the map's casters unless they are those drawn; tells whether it did.
+  bool draw_casters(const MeshStore& meshes, const FrameBlock& block, bool is_glass, Drawn& drawn) const;
+  void reduce();
 
   gpu::Texture depth_compared_, glass_compared_, tile_bounds_, tile_casters_, near_bounds_, near_casters_;
   gpu::Framebuffer map_, glass_map_, tiles_, near_;
   gpu::Program depth_, reduce_, spread_;
   int map_size_;
-
-  struct Caster {
-    std::uint64_t mesh;  // StoredMesh::id
-    glm::mat4 world_from_body;
-    bool is_glass;
-    bool operator==(const Caster&) const = default;
-  };
-  std::vector<Caster> drawn_casters_;
-  glm::mat4 drawn_place_{0.0F};  // shadow_from_world; no map has this one
+  Drawn drawn_solids_, drawn_glass_;
 };
 
 }  // namespace shatterbox::render::pass

@@ -7,23 +7,17 @@ namespace {
 
 constexpr float kLineSamples = 1.3F;  // a rim no wider is drawn as a line where it is a crack
 
-// The colours need no clearing: only samples with a depth are read.
-void clear_depth() {
-  glDepthMask(GL_TRUE);
-  glClearDepth(1.0);
-  glClear(GL_DEPTH_BUFFER_BIT);
-}
-
 // part: of each item.
 template <typename PartOf>
-void draw_items(const MeshStore& meshes, bool is_glass, PartOf part) {
+void draw_items(const MeshStore& meshes, const Changes& changes, bool is_glass, PartOf part) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   meshes.bind_vertices();
   for (const Item& item : meshes.items()) {
-    if (item.is_on_screen && item.is_glass == is_glass) meshes.draw(item, part(item));
+    if (item.is_on_screen && item.is_glass == is_glass && changes.touches(item))
+      meshes.draw(item, part(item));
   }
 }
 
@@ -39,35 +33,38 @@ void Layer::bind(unsigned seen_unit, unsigned depth_unit) const {
   depth.bind(depth_unit);
 }
 
-SurfacePass::SurfacePass(int width, int height, int samples_across)
+SurfacePass::SurfacePass(int width, int height, int samples_across, const TileReset& reset)
     : samples_across_(samples_across),
       opaque_(width * samples_across, height * samples_across),
-      program_("surface.vert", "surface.frag") {}
+      program_("surface.vert", "surface.frag"),
+      reset_(&reset) {}
 
-void SurfacePass::run(const MeshStore& meshes) const {
+// The colours need no clearing: only samples with a depth are read.
+void SurfacePass::run(const MeshStore& meshes, const Tiles& tiles, const Changes& changes) const {
   opaque_.target.bind();
-  clear_depth();
+  reset_->reset_depth(changes.bodies(), tiles.changed_bodies());
   program_.use();
   glEnable(GL_CULL_FACE);
-  draw_items(meshes, false, [](const Item&) { return Part::all; });
+  draw_items(meshes, changes, false, [](const Item&) { return Part::all; });
   glDisable(GL_CULL_FACE);
 }
 
-void SurfacePass::run_glass(const MeshStore& meshes) {
+void SurfacePass::run_glass(const MeshStore& meshes, const Tiles& tiles, const Changes& changes) {
   if (glass_faces_.seen.name() == 0) {
     glass_faces_ = Layer(opaque_.seen.width(), opaque_.seen.height());
     glass_rims_ = Layer(opaque_.seen.width(), opaque_.seen.height());
   }
-  program_.use();
   glass_faces_.target.bind();
-  clear_depth();
   glDisable(GL_CULL_FACE);  // one face of a thin pane stands for both
-  draw_items(meshes, true, [](const Item&) { return Part::outer; });
+  reset_->reset_depth(changes.glass(), tiles.changed_glass());
+  program_.use();
+  draw_items(meshes, changes, true, [](const Item&) { return Part::outer; });
   glass_rims_.target.bind();
-  clear_depth();
+  reset_->reset_depth(changes.glass(), tiles.changed_glass());
+  program_.use();
   glEnable(GL_CULL_FACE);
   const auto samples = static_cast<float>(samples_across_);
-  draw_items(meshes, true, [samples](const Item& item) {
+  draw_items(meshes, changes, true, [samples](const Item& item) {
     return samples * item.rim_pixels > kLineSamples ? Part::rims : Part::crack_lines;
   });
   glDisable(GL_CULL_FACE);

@@ -5,6 +5,7 @@
 #include "render/gpu/program.h"
 #include "render/gpu/texture.h"
 #include "render/pass/mesh_store.h"
+#include "render/pass/tile_reset.h"
 
 namespace shatterbox::render::pass {
 
@@ -19,9 +20,13 @@ struct Layer {
 
 class SurfacePass {
  public:
-  SurfacePass(int width, int height, int samples_across);  // a pixel has as many samples down
-  void run(const MeshStore& meshes) const;
-  void run_glass(const MeshStore& meshes);  // after run; its layers are made at the first call
+  SurfacePass(int width, int height, int samples_across,
+              const TileReset& reset);  // a pixel has as many samples down
+  // Both draw what touches the tiles that changed, after clearing those; what is drawn beyond them meets
+  // itself.
+  void run(const MeshStore& meshes, const Tiles& tiles, const Changes& changes) const;
+  void run_glass(const MeshStore& meshes, const Tiles& tiles,
+                 const Changes& changes);  // makes its layers when first called
   const Layer& opaque() const { return opaque_; }
   const Layer& glass_faces() const { return glass_faces_; }
   const Layer& glass_rims() const { return glass_rims_; }
@@ -30,6 +35,7 @@ class SurfacePass {
   int samples_across_;
   Layer opaque_, glass_faces_, glass_rims_;
   gpu::Program program_;
+  const TileReset* reset_;  // outlives the pass
 };
 
 }  // namespace shatterbox::render::pass
