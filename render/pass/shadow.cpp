@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,7 +13,10 @@
 namespace shatterbox::render::pass {
 namespace {
 
-constexpr int kTile = 16;  // texels; a disc of taps stays within one tile of its centre
+constexpr float kFarTargets =
+    2.5F;  // times as far as the target: what is beyond casts too small a shadow to be missed
+constexpr float kPlaces = 16.0F;  // the map's place moves in such parts of its size
+constexpr int kTile = 16;         // texels; a disc of taps stays within one tile of its centre
 
 struct Box {
   glm::vec3 least{std::numeric_limits<float>::max()}, most{std::numeric_limits<float>::lowest()};
@@ -32,7 +37,7 @@ glm::mat3 sun_from_world(glm::vec3 sun) {
 // Only shadows that can be seen matter: the view's cone, to where the ground is mostly faded, in the sun's
 // frame.
 Box find_seen(const FrameBlock& block, const glm::mat3& sun_frame) {
-  const float far = 4.2F * block.target_distance.w;
+  const float far = kFarTargets * block.target_distance.w;
   const glm::mat4 world_from_clip = glm::inverse(block.clip_from_world);
   Box box;
   const glm::vec3 eye(block.eye_exposure);
@@ -47,6 +52,13 @@ Box find_seen(const FrameBlock& block, const glm::mat3& sun_frame) {
 // The next of a geometric row of sizes: a map's scale changes rarely.
 float step_up(float size) {
   return std::exp2(std::ceil(std::log2(size) * 6.0F) / 6.0F);
+}
+
+// A total order; those that are equal draw the same.
+template <typename Caster>
+bool is_before(const Caster& a, const Caster& b) {
+  if (a.mesh != b.mesh) return a.mesh < b.mesh;
+  return std::memcmp(&a.world_from_body, &b.world_from_body, sizeof a.world_from_body) < 0;
 }
 
 }  // namespace
@@ -84,15 +96,15 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
     return;
   }
   const auto texels = static_cast<float>(map_size_);
+  // Two tiles of margin keep the discs inside.
+  const glm::vec3 margin(2.0F * kTile / texels, 2.0F * kTile / texels, 0.01F);
+  const glm::vec3 from(least, casters.least.z), to(most, std::min(casters.most.z, seen.most.z));
   glm::vec3 origin, extent;
-  for (int k = 0; k < 2; ++k) {
-    // A margin of two tiles keeps the discs inside.
-    extent[k] = step_up((most[k] - least[k]) * texels / (texels - 4.0F * kTile));
-    const float texel = extent[k] / texels;
-    origin[k] = std::floor((0.5F * (least[k] + most[k]) - 0.5F * extent[k]) / texel) * texel;
+  for (int k = 0; k < 3; ++k) {
+    extent[k] = step_up(std::max(to[k] - from[k], 1e-6F) / (1.0F - 2.0F * margin[k] - 1.0F / kPlaces));
+    const float place = extent[k] / kPlaces;
+    origin[k] = std::floor((from[k] - margin[k] * extent[k]) / place) * place;
   }
-  extent.z = step_up(1.02F * (casters.most.z - casters.least.z));
-  origin.z = casters.least.z - 0.01F * extent.z;
   glm::mat4 texture_from_sun(1.0F);
   for (int k = 0; k < 3; ++k) {
     texture_from_sun[k][k] = 1.0F / extent[k];
@@ -112,17 +124,46 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   block.shadow_on_floor = glm::vec4(slope, bias, has_glass ? 1.0F : 0.0F);
 }
 
-bool ShadowPass::draw_casters(const MeshStore& meshes, const FrameBlock& block, bool is_glass,
-                              Drawn& drawn) const {
-  Drawn wanted{{}, block.shadow_from_world};
-  for (const Item& item : meshes.items()) {
-    if (item.casts_shadow && item.is_glass == is_glass) {
-      wanted.casters.push_back({item.stored_id, item.world_from_body});
-    }
+ShadowPass::Part ShadowPass::find_changed(const Drawn& drawn, const Drawn& wanted, int map_size) {
+  if (wanted.place != drawn.place) return {0, 0, map_size, map_size};
+  std::vector<Caster> changed;
+  std::set_symmetric_difference(drawn.casters.begin(), drawn.casters.end(), wanted.casters.begin(),
+                                wanted.casters.end(), std::back_inserter(changed), is_before<Caster>);
+  glm::vec2 least(1.0F), most(0.0F);
+  for (const Caster& caster : changed) {
+    least = glm::min(least, caster.least);
+    most = glm::max(most, caster.most);
   }
-  if (wanted == drawn) return false;
+  const auto texel = [map_size](float share, int shift) {
+    return std::clamp(static_cast<int>(std::floor(share * static_cast<float>(map_size))) + shift, 0,
+                      map_size);
+  };
+  return {texel(least.x, -1), texel(least.y, -1), texel(most.x, 2), texel(most.y, 2)};
+}
+
+ShadowPass::Part ShadowPass::draw_casters(const MeshStore& meshes, const FrameBlock& block, bool is_glass,
+                                          Drawn& drawn) const {
+  Drawn wanted{{}, block.shadow_from_world};
+  std::vector<std::pair<const Item*, Caster>> casters;  // near to far
+  for (const Item& item : meshes.items()) {
+    if (!item.casts_shadow || item.is_glass != is_glass) continue;
+    Caster caster{item.stored_id, item.world_from_body, glm::vec2(1e9F), glm::vec2(-1e9F)};
+    for (const glm::vec3& corner : item.box_world.at) {
+      const glm::vec2 place(block.shadow_from_world * glm::vec4(corner, 1.0F));
+      caster.least = glm::min(caster.least, place);
+      caster.most = glm::max(caster.most, place);
+    }
+    casters.emplace_back(&item, caster);
+    wanted.casters.push_back(caster);
+  }
+  std::sort(wanted.casters.begin(), wanted.casters.end(), is_before<Caster>);
+  const gpu::Framebuffer& map = is_glass ? glass_map_ : map_;
+  const Part changed = find_changed(drawn, wanted, map.width());
   drawn = std::move(wanted);
-  (is_glass ? glass_map_ : map_).bind();
+  if (changed.is_empty()) return changed;
+  map.bind();
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(changed.left, changed.bottom, changed.right - changed.left, changed.top - changed.bottom);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
@@ -132,15 +173,29 @@ bool ShadowPass::draw_casters(const MeshStore& meshes, const FrameBlock& block, 
   glClear(GL_DEPTH_BUFFER_BIT);
   meshes.bind_vertices();
   depth_.use();
-  for (const Item& item : meshes.items()) {
-    if (item.casts_shadow && item.is_glass == is_glass) meshes.draw(item, meshes.shadow_part(item));
+  const glm::vec2 margin(1.0F / static_cast<float>(map.width()));
+  const glm::vec2 least = glm::vec2(changed.left, changed.bottom) * margin - margin;
+  const glm::vec2 most = glm::vec2(changed.right, changed.top) * margin + margin;
+  for (const auto& [item, caster] : casters) {
+    if (glm::any(glm::greaterThan(caster.least, most)) || glm::any(glm::lessThan(caster.most, least)))
+      continue;
+    meshes.draw(*item, meshes.shadow_part(*item));
   }
-  return true;
+  glDisable(GL_SCISSOR_TEST);
+  return changed;
 }
 
-void ShadowPass::reduce() {
+// The tiles of what changed, and one more all about them.
+void ShadowPass::reduce(const Part& changed) {
   glDisable(GL_DEPTH_TEST);
+  glEnable(GL_SCISSOR_TEST);
+  const auto scissor = [&changed](int wider) {
+    const int left = changed.left / kTile - wider, bottom = changed.bottom / kTile - wider;
+    const int right = (changed.right - 1) / kTile + 1 + wider, top = (changed.top - 1) / kTile + 1 + wider;
+    glScissor(std::max(left, 0), std::max(bottom, 0), right - std::max(left, 0), top - std::max(bottom, 0));
+  };
   tiles_.bind();
+  scissor(0);
   reduce_.use();
   // The comparing texture is read plainly here.
   glTextureParameteri(depth_compared_.name(), GL_TEXTURE_COMPARE_MODE, GL_NONE);
@@ -148,14 +203,17 @@ void ShadowPass::reduce() {
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glTextureParameteri(depth_compared_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   near_.bind();
+  scissor(1);
   spread_.use();
   tile_bounds_.bind(0);
   tile_casters_.bind(1);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
-  if (draw_casters(meshes, block, false, drawn_solids_)) reduce();
+  const Part changed = draw_casters(meshes, block, false, drawn_solids_);
+  if (!changed.is_empty()) reduce(changed);
   if (block.shadow_on_floor.w > 0.0F) draw_casters(meshes, block, true, drawn_glass_);
 }
 

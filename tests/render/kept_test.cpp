@@ -262,6 +262,20 @@ TEST_CASE("a still frame is kept whole, a small change draws little, a camera's 
   CHECK(renderer.drawn_share() == 1.0);
 }
 
+TEST_CASE("what flies off does not move the shadow map in each frame") {
+  Frame frame = plain_frame();
+  frame.draws.push_back(at(make_box(1, {3.0F, 1.2F, 0.2F}), {-0.5F, 0.6F, -1.0F}));
+  frame.draws.push_back(at(make_sphere(2, 0.1F), {0.3F, 0.8F, 1.5F}));
+  Renderer renderer(kSize, Quality::preview);
+  int drawn_wholly = 0;
+  for (int i = 0; i < 100; ++i) {
+    frame.draws[1].world_from_body[3].z -= 0.12F;
+    static_cast<void>(renderer.render(frame));
+    drawn_wholly += renderer.drawn_share() == 1.0 ? 1 : 0;
+  }
+  CHECK(drawn_wholly < 40);
+}
+
 TEST_CASE("a frame that was refused is forgotten") {
   Frame frame = still_life(), broken = frame;
   Renderer renderer(kSize, Quality::preview);
