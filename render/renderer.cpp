@@ -137,7 +137,7 @@ struct Renderer::Rooms {
     meshes.prepare(frame, values.clip_from_world, 2.0F * values.view_ray.y / static_cast<float>(size.height));
     shadow.fit(frame, meshes, values);
     tiles.find(meshes, values);
-    changes.find(meshes, values, tiles.near_marks());
+    changes.find(meshes, values, tiles.near_marks(), tiles.changed_marks());
   }
 
   void lay_floor() {
@@ -153,7 +153,9 @@ struct Renderer::Rooms {
     clock.mark("shadow");
     if (!changes.bodies().is_none()) surface.run(meshes, tiles, changes);
     const bool has_glass = tiles.glass().count > 0;
-    if (has_glass && !changes.glass().is_none()) surface.run_glass(meshes, tiles, changes);
+    // Its layers are right all over once there are any.
+    if ((has_glass || surface.has_glass()) && !changes.glass().is_none())
+      surface.run_glass(meshes, tiles, changes);
     clock.mark("surface");
     if (!changes.occluded().is_none()) occlusion.run(surface.opaque(), tiles, changes.occluded());
     clock.mark("occlusion");

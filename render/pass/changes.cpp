@@ -99,6 +99,11 @@ void Changes::mark(std::span<const glm::vec3> points, float margin_pixels, Marks
   if (outline) grid_.each(*outline, margin_pixels, [&marks](std::size_t tile) { marks.tiles[tile] = 1; });
 }
 
+void Changes::add(const std::vector<char>& tiles, Marks& marks) {
+  if (marks.is_all) return;
+  for (std::size_t i = 0; i < tiles.size(); ++i) marks.tiles[i] = std::max(marks.tiles[i], tiles[i]);
+}
+
 // Beyond three quarters it is cheaper to draw all.
 void Changes::settle(Marks& marks) const {
   if (marks.is_all) return;
@@ -139,21 +144,11 @@ void Changes::find_reach(const MeshStore& meshes) {
   }
   reach_.assign(grid_.count(), 0.0F);
   const float pixels = 0.5F * block.occlusion_scale.w / block.view_ray.y * block.viewport.y;
-  for_neighbours([&](std::size_t tile, std::size_t other) {
-    const float samples = std::min(pixels * nearness[other], 0.25F * block.viewport.y);
-    reach_[tile] = std::max({reach_[tile], samples, kLeastReach});
-  });
-}
-
-// act(tile, each tile that touches it, and itself).
-template <typename Do>
-void Changes::for_neighbours(Do&& act) const {
-  for (int y = 0; y < grid_.down(); ++y) {
-    for (int x = 0; x < grid_.across(); ++x) {
-      const TileSpan about{std::max(x - 1, 0), std::max(y - 1, 0), std::min(x + 1, grid_.across() - 1),
-                           std::min(y + 1, grid_.down() - 1)};
-      grid_.each(about, [&](std::size_t other) { act(grid_.index(x, y), other); });
-    }
+  for (std::size_t tile = 0; tile < reach_.size(); ++tile) {
+    grid_.each_about(tile, [&](std::size_t other) {
+      const float samples = std::min(pixels * nearness[other], 0.25F * block.viewport.y);
+      reach_[tile] = std::max({reach_[tile], samples, kLeastReach});
+    });
   }
 }
 
@@ -200,9 +195,7 @@ void Changes::mark_shadow(const Item& caster, const MeshStore& meshes) {
     }
   };
   if (block_->ground_place.w > 0.0F) {
-    // Where Tiles looks for the shadow, and where taps find the caster, which may lie below the floor.
-    const Corners shadow = find_floor_shadow(caster.box_world, *block_);
-    points.assign(std::begin(shadow.at), std::end(shadow.at));
+    // Where taps find the caster, which may lie below the floor.
     const auto on_floor = [&](glm::vec3 p) {
       return p - sun * ((p.y - block_->ground_place.x) / std::max(sun.y, 1e-3F));
     };
@@ -252,12 +245,14 @@ void Changes::spread_occlusion(const std::vector<char>& near_marks) {
     occluded_.tiles[i] = std::max(occluded_.tiles[i], ceased_.tiles[i]);
   }
   if (lit_.is_all) return;
-  for_neighbours([&](std::size_t tile, std::size_t other) {
-    if (occluded_.tiles[other] != 0) lit_.tiles[tile] = 1;
-  });
+  for (std::size_t tile = 0; tile < lit_.tiles.size(); ++tile) {
+    if (occluded_.tiles[tile] == 0) continue;
+    grid_.each_about(tile, [this](std::size_t other) { lit_.tiles[other] = 1; });
+  }
 }
 
-void Changes::find(const MeshStore& meshes, const FrameBlock& block, const std::vector<char>& near_marks) {
+void Changes::find(const MeshStore& meshes, const FrameBlock& block, const std::vector<char>& near_marks,
+                   const std::vector<char>& changed_marks) {
   const bool is_view_kept = block_ && is_same(without_shadow(*block_), without_shadow(block));
   const bool is_light_kept =
       is_view_kept && is_same(*block_, block) && pattern_kinds_ == meshes.pattern_kinds();
@@ -276,13 +271,12 @@ void Changes::find(const MeshStore& meshes, const FrameBlock& block, const std::
   occluded_.is_all = occluders > kMostOccluders;
   if (occluders > 0 && !occluded_.is_all) find_reach(meshes);
   for (const Item* item : changed) mark_item(*item, meshes);
+  add(changed_marks, lit_);
   spread_occlusion(near_marks);
   for (Marks* marks : {&bodies_, &glass_, &occluded_}) {
     settle(*marks);
     if (marks->is_all) lit_.is_all = true;
-    if (lit_.is_all) continue;
-    for (std::size_t i = 0; i < lit_.tiles.size(); ++i)
-      lit_.tiles[i] = std::max(lit_.tiles[i], marks->tiles[i]);
+    add(marks->tiles, lit_);
   }
   settle(lit_);
 }

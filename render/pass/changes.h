@@ -27,9 +27,10 @@ class Changes {
   // occlusion_scale: as OcclusionPass takes it.
   Changes(int width, int height, int occlusion_scale);
 
-  // Against the frame of the last call. After the store's prepare and the shadow's fit. near_marks: as Tiles
+  // Against the frame of the last call. After the store's prepare and the shadow's fit. The marks: as Tiles
   // tells.
-  void find(const MeshStore& meshes, const FrameBlock& block, const std::vector<char>& near_marks);
+  void find(const MeshStore& meshes, const FrameBlock& block, const std::vector<char>& near_marks,
+            const std::vector<char>& changed_marks);
   void forget();  // in the next frame all is new
 
   const Marks& bodies() const { return bodies_; }      // geometry that is not glass
@@ -47,6 +48,7 @@ class Changes {
  private:
   void mark_all(bool is_all);
   void mark(std::span<const glm::vec3> points, float margin_pixels, Marks& marks) const;
+  static void add(const std::vector<char>& tiles, Marks& marks);
   void mark_item(const Item& item, const MeshStore& meshes);
   void mark_shadow(const Item& caster, const MeshStore& meshes);
   void mark_occlusion(const Item& item);
@@ -54,8 +56,6 @@ class Changes {
   void find_reach(const MeshStore& meshes);
   std::array<glm::vec3, 2> find_margins(bool is_glass) const;
   void settle(Marks& marks) const;
-  template <typename Do>
-  void for_neighbours(Do&& act) const;
 
   TileGrid grid_;
   float occlusion_scale_;

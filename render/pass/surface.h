@@ -27,6 +27,7 @@ class SurfacePass {
   void run(const MeshStore& meshes, const Tiles& tiles, const Changes& changes) const;
   void run_glass(const MeshStore& meshes, const Tiles& tiles,
                  const Changes& changes);  // makes its layers when first called
+  bool has_glass() const { return glass_faces_.seen.name() != 0; }
   const Layer& opaque() const { return opaque_; }
   const Layer& glass_faces() const { return glass_faces_; }
   const Layer& glass_rims() const { return glass_rims_; }

@@ -53,6 +53,13 @@ class TileGrid {
     }
   }
 
+  template <typename Do>  // index of the tile, and of each that touches it
+  void each_about(std::size_t tile, Do&& act) const {
+    const int x = static_cast<int>(tile) % across_, y = static_cast<int>(tile) / across_;
+    each({std::max(x - 1, 0), std::max(y - 1, 0), std::min(x + 1, across_ - 1), std::min(y + 1, down_ - 1)},
+         act);
+  }
+
   template <typename Do>  // index of each tile that the outline itself touches
   void each(const Outline& outline, float margin_pixels, Do&& act) const {
     const TileSpan span = span_of(outline, margin_pixels);

@@ -95,9 +95,23 @@ void Tiles::mark_ground(const FrameBlock& block) {
   }
 }
 
+// A tile that shows no body and no darkened floor looks nothing up.
+void Tiles::mark_changes() {
+  changed_marks_.assign(marks_.size(), 0);
+  if (earlier_marks_.size() != marks_.size()) return;
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    if (marks_[i] == earlier_marks_[i]) continue;
+    grid_.each_about(i, [&](std::size_t other) {
+      if (other == i || marks_[other] != kPlain) changed_marks_[other] = 1;
+    });
+  }
+}
+
 void Tiles::find(const MeshStore& meshes, const FrameBlock& block) {
+  marks_.swap(earlier_marks_);
   mark_bodies(meshes, block);
   mark_ground(block);
+  mark_changes();
 }
 
 void Tiles::select(const Changes& changes) {

@@ -23,8 +23,10 @@ class Tiles {
   // Uploads and binds those that are to be drawn anew.
   void select(const Changes& changes);
 
-  // One a tile: not 0 where occlusion is looked for, now.
+  // One a tile: not 0 where occlusion is looked for; where floor is drawn otherwise than before the last
+  // find, or between pixels that are.
   const std::vector<char>& near_marks() const { return near_marks_; }
+  const std::vector<char>& changed_marks() const { return changed_marks_; }
 
   struct Range {
     int first = 0, count = 0;
@@ -59,12 +61,14 @@ class Tiles {
             Marks& marks) const;
   void mark_bodies(const MeshStore& meshes, const FrameBlock& block);
   void mark_ground(const FrameBlock& block);
+  void mark_changes();
   template <typename IsWanted>
   Range append_runs(IsWanted is_wanted, int longest);
 
   int width_, height_;
   TileGrid grid_;
-  Marks marks_, near_marks_, glass_marks_, ground_marks_, corner_marks_;  // the last: one a corner of tiles
+  Marks marks_, earlier_marks_, changed_marks_, near_marks_, glass_marks_, ground_marks_,
+      corner_marks_;  // the last: one a corner of tiles
   std::vector<glm::uvec4> rectangles_;
   gpu::Buffer buffer_;
   Range bodies_, glass_, shaded_, occluded_, near_bodies_;

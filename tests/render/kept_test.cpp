@@ -241,6 +241,20 @@ TEST_CASE("kept pictures of one body's way past others") {
   }
 }
 
+TEST_CASE("glass that is gone is not seen again where other glass comes near") {
+  for (const Quality quality : kQualities) {
+    Frame frame = plain_frame();
+    frame.draws.push_back(at(make_pane(1, 0.3F, 0.3F), {1.0F, 1.0F, 0.0F}, glass()));
+    static_cast<void>(compare_films(kSize, quality, frame, 5, [&](Frame& f, int i) {
+      if (i == 1) f.draws.clear();
+      if (i != 3) return;
+      f.draws.push_back(
+          at(make_pane(2, 3.0F, 0.1F), {0.6F, 0.6F, 0.0F}, glass()));  // aslant, past that place
+      f.draws.back().world_from_body = glm::rotate(f.draws.back().world_from_body, -0.6F, glm::vec3(0, 0, 1));
+    }));
+  }
+}
+
 TEST_CASE("a still frame is kept whole, a small change draws little, a camera's way draws all") {
   Frame frame = still_life();
   Renderer renderer(kSize, Quality::preview);
