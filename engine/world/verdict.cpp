@@ -16,6 +16,9 @@ constexpr double kContactGrowth = 1.1;
 /// A body that bore an impact in an earlier pass bears one of that many times its loads, as long as its ratio
 /// of stress to strength times the factor stays below this.
 constexpr double kBorneRatio = 0.95;
+/// Where the stress is above the strength and yet no crack could start, or there was no energy for one, that
+/// is so again for loads up to so many times as great.
+constexpr double kBorneAgain = 1.02;
 /// Loads smaller than this share of the hardest one do not decide whether two impacts are alike.
 constexpr double kMinorLoad = 0.05;
 
@@ -214,11 +217,16 @@ double load_growth(const std::vector<Load>& loads, const BorneImpact& borne, dou
   return growth;
 }
 
+/// How many times its loads a body bears that has held.
+double most_growth_of(const fracture::Verdict& verdict) {
+  return verdict.ratio < 1.0 ? kBorneRatio / std::max(verdict.ratio, 1e-300) : kBorneAgain;
+}
+
 bool is_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
   const auto found = borne.find(candidate.body->id);
   if (found == borne.end()) return false;
   const double radius = kGatherRadius * candidate.body->shape->bounding_radius;
-  return load_growth(candidate.loads, found->second, radius) * found->second.ratio < kBorneRatio;
+  return load_growth(candidate.loads, found->second, radius) < found->second.most_growth;
 }
 
 }  // namespace
@@ -268,7 +276,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedImpact& impact = evaluated[i];
     if (impact.decision.verdict.outcome == fracture::Outcome::held)
-      borne[impact.id] = {std::move(candidates[i].loads), impact.decision.verdict.ratio};
+      borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(impact.decision.verdict)};
     ImpactMemory& memory = memories[impact.id];
     memory.event_duration = std::max(memory.event_duration, impact.decision.verdict.duration);
     figures.solves += impact.decision.generations;

@@ -28,8 +28,8 @@ struct EvaluationFigures {
 
 /// An impact that a body has borne in an earlier pass of the same step.
 struct BorneImpact {
-  std::vector<Load> loads;  // collisions and contact
-  double ratio = 0.0;       // greatest stress over strength
+  std::vector<Load> loads;   // collisions and contact
+  double most_growth = 0.0;  // so many times these loads are borne without another solve
 };
 using BorneImpacts = std::map<body::BodyId, BorneImpact>;
 
