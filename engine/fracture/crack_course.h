@@ -16,6 +16,8 @@
 
 namespace shatterbox::fracture {
 
+inline constexpr double kRestLength = 4.0;  // thicknesses: length that drives a crack on after a rest
+
 /// Where a load presses and on how large a patch.
 struct LoadCentre {
   Vec3 point = Vec3::Zero();

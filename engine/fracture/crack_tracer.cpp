@@ -13,7 +13,6 @@ using geometry::SideKind;
 using Size = std::size_t;
 using core::at;
 
-constexpr double kRestLength = 4.0;  // thicknesses: length that drives a crack on after a rest
 // A crack right across a strip that the first cracks left unloads it that many of its lengths far.
 constexpr double kStripRelief = 1.5;
 

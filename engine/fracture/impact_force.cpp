@@ -9,6 +9,7 @@
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/fracture/cell_flaws.h"
+#include "engine/fracture/crack_course.h"
 #include "engine/fracture/shell_subject.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/loaded_parts.h"
@@ -84,13 +85,26 @@ bool ImpactForce::prepare(std::string& problem) {
 
 /// What bending by the spin comes to, about: 3/4 rho (spin size)^2 size / thickness.
 double ImpactForce::spin_stress() const {
-  const double size = subject_.systems->figures().size;
+  const stress::ShellFigures& figures = subject_.systems->figures();
+  const double size = std::min(figures.size, figures.reach);  // its own, not that of the body it came from
   const double rim_speed = impact_.spin_material.norm() * size;
   return 0.75 * subject_.material.density * rim_speed * rim_speed * size / subject_.thickness;
 }
 
 bool ImpactForce::is_spinning() const {
   return spin_stress() > kSpinThatCounts * subject_.material.strength;
+}
+
+/// Whether the spin by itself might start a crack, or drive on the tip of one that rests.
+bool ImpactForce::does_spin_crack() const {
+  const double stress = kSpinSafety * spin_stress();
+  const material::Material& m = subject_.material;
+  const double toughness = core::sqrt(m.young * m.fracture_energy) * std::min(1.0, m.grain_strength);
+  const double rest = kRestLength * subject_.thickness;
+  if (!(stress * core::sqrt(0.5 * core::kPi * rest) < toughness)) return true;
+  for (Size c = 0; c < subject_.mesh->cells.size(); ++c)
+    if (!(stress < weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(c)))) return true;
+  return false;
 }
 
 std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
@@ -340,9 +354,9 @@ void ImpactForce::find_groups(const geometry::ShellMesh& mesh,
                      [&](Size i) { groups_[i] = find_press_groups(mesh, contacts, presses_[i].contact); });
 }
 
-/// The mesh without the parts that no load is on: nothing moves there, so they need no factor.
+/// The mesh without the parts that no load is on: nothing cracks there, so they need no factor.
 geometry::ShellMesh ImpactForce::pressed_parts(const geometry::ShellMesh& mesh) const {
-  if (is_spinning()) return mesh;  // which is a load on all of it
+  if (does_spin_crack()) return mesh;  // as it may where nothing else presses
   std::vector<const VecX*> forces;
   for (const PressGroups& groups : groups_)
     for (const VecX& force : groups.forces) forces.push_back(&force);

@@ -64,6 +64,7 @@ class ImpactForce {
   using System = stress::ShellSystemCache::System;
   double spin_stress() const;
   bool is_spinning() const;
+  bool does_spin_crack() const;
   geometry::ShellMesh pressed_parts(const geometry::ShellMesh& mesh) const;
   std::optional<std::size_t> find_lead() const;
   bool use(const System& system, std::string& problem);

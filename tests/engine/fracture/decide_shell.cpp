@@ -202,6 +202,36 @@ TEST_CASE("a bauble dropped on its side shatters, with or without grains, and it
   }
 }
 
+TEST_CASE("how fast a piece may spin without a solve goes by its own size, and is too slow to break it") {
+  const auto subject = make_bauble(1, 0.0);
+  const auto decision = fracture::decide_shell(subject, drop_on_floor(subject, 4.4));
+  const auto split = fracture::split_shell(*decision.mesh, {1e-4});
+  REQUIRE(split.pieces.size() > 10);
+  double largest = 0.0;
+  for (std::size_t p = 0; p < split.pieces.size(); p += 3) {
+    fracture::ShellSubject piece = subject;
+    piece.mesh = std::make_shared<const geometry::ShellMesh>(split.pieces[p]);
+    piece.systems = nullptr;
+    fracture::prepare_subject(piece);
+    fracture::ShellImpact tap = drop_on_floor(piece, 1e-6);
+    const Vec3 axis = Vec3(1.0, 2.0, -1.0).normalized();
+    double spin = 1.0;  // rad/s
+    fracture::Decision solved;
+    for (; solved.generations == 0; spin *= 1.3) {
+      tap.spin_material = spin * axis;
+      solved = fracture::decide_shell(piece, tap);
+    }
+    CAPTURE(p, spin, solved.verdict.ratio);
+    CHECK(solved.verdict.outcome == fracture::Outcome::held);
+    CHECK(solved.verdict.ratio > 0.0);
+    CHECK(solved.verdict.ratio < 0.6);
+    // Bending by the spin goes with the cube of the size.
+    if (p == 0) largest = spin;
+    const double reach = piece.systems->figures().reach;
+    if (reach < 0.02) CHECK(spin > 4.0 * largest);
+  }
+}
+
 TEST_CASE("a plainly short impact needs no unscreened factor, and having one changes nothing") {
   const auto subject = test::make_window(1);
   auto pebble = test::steel_ball(1.0);
