@@ -68,7 +68,8 @@ Quat rotation_by(const Vec3& rotation_vector) {
 }
 
 void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin) {
-  constexpr double kMostAngle = 0.05;             // rad a part
+  constexpr double kMostAngle = 0.05;  // rad a part, unless there would be too many
+  constexpr double kMostParts = 4000.0;
   constexpr double kSuzuki = 0.4144907717943757;  // 1 / (4 - 4^(1/3))
   const double speed = spin.norm();
   if (speed * time < 1e-150) return;
@@ -80,7 +81,7 @@ void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order,
   s.rotation = rotation * inertia.body_from_axes;
   s.momentum = inertia.moments.cwiseProduct(s.rotation.conjugate() * spin);
   const Vec3 momentum_world = s.rotation * s.momentum;
-  const int parts = 1 + static_cast<int>(std::min(speed * time / kMostAngle, 1e6));
+  const int parts = 1 + static_cast<int>(std::min(speed * time / kMostAngle, kMostParts));
   const double part = time / parts;
   static constexpr std::array<double, 1> kOnce = {1.0};
   static constexpr std::array<double, 5> kFive = {kSuzuki, kSuzuki, 1.0 - 4.0 * kSuzuki, kSuzuki, kSuzuki};
