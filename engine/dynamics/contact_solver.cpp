@@ -46,7 +46,7 @@ class IslandSolver {
       start_warm(0.5);
       sweep_after_drift();
       bounce();
-      book(has_arrivals_);
+      book();
     }
   }
 
@@ -300,6 +300,8 @@ class IslandSolver {
     const std::size_t count = island_.contacts.size();
     const int most = how.plain + static_cast<int>(kCourseSize * kCourseSize / (count * count + 1));
     forget_seen();
+    double least_excess = 1e300;
+    int least_round = 0;
     for (int round = 0; round < most; ++round) {
       const bool is_on_course = round >= how.plain;
       if (round == how.plain) begin_course();
@@ -314,6 +316,13 @@ class IslandSolver {
       }
       const double enough = round + 1 < how.plain ? how.enough : how.loose;
       if (excess < (has_strain ? how.tight : enough)) return;
+      // What is jammed has no solution.
+      if (excess < kProgress * least_excess) {
+        least_excess = excess;
+        least_round = round;
+      } else if (round > least_round + kCoursePatience) {
+        return;
+      }
       if (is_on_course && round + 1 < most) go_on_course();
     }
   }
@@ -324,22 +333,39 @@ class IslandSolver {
     if (c.slack > kTouching * c.kept_gap) return -c.slack / step_;
     if (c.slack > 0.0) return 0.0;
     const double opening = std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
-    const double bearable = kEased * c.strained_from;
+    const double bearable = (c.has_sides || c.can_creep ? kEased : kEasedMoving) * c.strained_from;
     if (c.warm[0] <= bearable) return opening;
     // What is wedged cannot be opened: insisting would only press its bodies against each other, without end.
     // A heavy load on something solid is a weight.
     return c.has_sides ? std::max(kLeastEase, bearable / c.warm[0]) * opening : 0.0;
   }
 
+  // Small islands are swept until nothing is left to do, for large ones few sweeps a substep must do: what
+  // they leave the next substep finds, which starts from their impulses.
+  int most_sweeps(int of_small) const {
+    const auto affordable = static_cast<int>(kVisits / (island_.contacts.size() + 1));
+    return std::clamp(affordable, kFewSweeps, of_small);
+  }
+
   // One sweep is mostly enough at rest; what arrives must not overshoot the gap.
   void sweep_before_drift() {
-    sweep({has_arrivals_ ? 16 : 1, 1.0, 1e300, kStrainedGap}, [&](std::size_t k, SolverContact& c) {
+    bool is_pushed_apart = false;
+    const auto hold = [&](std::size_t k, SolverContact& c) {
       const double tolerance = kTouching * c.kept_gap / step_;
       if (is_still(k, c, tolerance)) return 0.0;
+      const double pressed = c.impulse[0];
       const double found = visit(c, target_before_drift(c));
       see(k, c);
+      is_pushed_apart = is_pushed_apart || (c.impulse[0] < pressed && found > tolerance);
       return found / tolerance;
-    });
+    };
+    sweep({has_arrivals_ ? most_sweeps(16) : 1, 1.0, 1e300, kStrainedGap}, hold);
+    // What came free must not be thrown by what wedged it. To press on would only strain what is wedged
+    // still.
+    for (int round = 1; is_pushed_apart && !has_arrivals_ && round < most_sweeps(16); ++round) {
+      is_pushed_apart = false;
+      for (std::size_t k = 0; k < island_.contacts.size(); ++k) hold(k, contact(k));
+    }
   }
 
   static bool is_touching(const SolverContact& c) {
@@ -347,7 +373,7 @@ class IslandSolver {
   }
 
   void sweep_after_drift() {
-    sweep({8, kResting, kLooseRest, kResting}, [&](std::size_t k, SolverContact& c) {
+    sweep({most_sweeps(8), kResting, kLooseRest, kResting}, [&](std::size_t k, SolverContact& c) {
       if (is_still(k, c, kResting * c.threshold) || !is_touching(c)) return 0.0;
       const double found = visit(c, 0.0);
       see(k, c);
@@ -371,7 +397,8 @@ class IslandSolver {
       is_due = true;
     }
     if (!is_due) return;
-    for (int sweep = 0; sweep < 40; ++sweep) {
+    const int most = most_sweeps(40);
+    for (int sweep = 0; sweep < most; ++sweep) {
       double excess = 0.0;
       for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
         SolverContact& c = work_.contacts[at(island_.contacts[k])];
@@ -412,10 +439,20 @@ class IslandSolver {
     return b.inverse_mass > 0.0 ? b.rotation : b.start.rotation;
   }
 
-  // An impact's impulse says nothing about the next substep: start that one from what was before.
-  void book(bool was_impact) {
+  // An impact's impulse says nothing about the next substep: the bodies in it start that one from what was
+  // before.
+  void book() {
+    for (const int i : island_.bodies) body(i).is_struck = false;
+    for (const int i : island_.contacts) {
+      const SolverContact& c = work_.contacts[at(i)];
+      if (!c.is_arriving) continue;
+      for (const int k : {c.a, c.b}) {
+        if (body(k).inverse_mass > 0.0) body(k).is_struck = true;
+      }
+    }
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
+      const bool was_impact = body(c.a).is_struck || body(c.b).is_struck;
       if (!was_impact) c.warm = c.impulse;
       if (!c.can_creep || was_impact || c.impulse.tail<2>().norm() >= kSliding * c.friction * c.impulse[0])
         c.held_from = c.change;
@@ -437,14 +474,19 @@ class IslandSolver {
   static constexpr double kLooseRest = 0.1;    // the same, where no contact is strained
   static constexpr double kStrain = 8.0;       // times the lighter body's weight
   static constexpr double kEased = 0.25;       // of what strains: opening is eased beyond it
+  static constexpr double kEasedMoving = 8.0;  // the same, between surfaces that are not quiet
   static constexpr double kLeastEase = 0.05;   // of solids, however much they bear
   static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = 1200;
-  static constexpr double kBounced = 1e-9;    // of the speed: error of a bounce
-  static constexpr double kStill = 0.25;      // of what a sweep may leave
-  static constexpr double kFastSpin = 0.005;  // rad a substep
+  static constexpr double kProgress = 0.8;      // a course that in so many rounds has not come so much nearer
+  static constexpr int kCoursePatience = 500;   // is given up
+  static constexpr std::size_t kVisits = 4800;  // of contacts in all sweeps of one kind in a substep,
+  static constexpr int kFewSweeps = 4;          // but never fewer sweeps
+  static constexpr double kBounced = 1e-9;      // of the speed: error of a bounce
+  static constexpr double kStill = 0.25;        // of what a sweep may leave
+  static constexpr double kFastSpin = 0.005;    // rad a substep
 
   const ContactSettings& settings_;
   const Island& island_;

@@ -27,7 +27,7 @@ const PairState* ContactState::find_pair(body::BodyId a, body::BodyId b) const {
 }
 
 void add_to_hash(const ContactState& state, core::Hash& hash) {
-  hash.add(state.substep).add(static_cast<std::uint64_t>(state.is_wild));
+  hash.add(state.substep).add(static_cast<std::uint64_t>(state.next_parts));
   for (const BodyState& body : state.bodies) {
     hash.add(static_cast<std::uint64_t>(body.id))
         .add(body.rest_pose.translation)

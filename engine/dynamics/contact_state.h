@@ -68,7 +68,7 @@ struct ContactState {
   std::vector<PairState> pairs;   // ascending (body_a, body_b)
   std::vector<BodyState> bodies;  // ascending id
   double substep = 0.0;           // s, of the impulses that contacts remember
-  bool is_wild = false;           // many bodies spin and collide: the next step is taken in parts
+  int next_parts = 1;             // in which the next step is taken: many bodies collide
   std::shared_ptr<SearchShelf> shelf = std::make_shared<SearchShelf>();
 
   PairState* find_pair(body::BodyId a, body::BodyId b);

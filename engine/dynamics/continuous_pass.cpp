@@ -24,6 +24,8 @@ using core::at;
 constexpr int kLastRounds = 6;  // in which bodies only keep what they have
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
+// Share of the kept gap to which hits are opened: less would be used up in the next steps.
+constexpr double kOpening = 0.5, kLastOpening = 0.05;
 constexpr int kPatience = 2;         // rounds without fewer hits
 constexpr int kMostPartialCuts = 5;  // before whole steps are taken back
 
@@ -59,10 +61,8 @@ class Guard {
       if (round >= kPatience && hits >= hits_before) break;
       if (round % kPatience == 0) hits_before = hits;
       ++report_.rounds;
-      // What only leans a little is not thrown up; what does not give way is opened further.
-      const double wanted =
-          round + 1 == settings_.continuous_rounds ? 0.05 : std::min(0.5, 0.05 * (1 << round));
-      open(wanted, Yielding::by_mass);
+      const bool is_last = round + 1 == settings_.continuous_rounds;
+      open(is_last ? kLastOpening : kOpening, Yielding::by_mass);
       has_hits = test();
     }
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between

@@ -34,6 +34,7 @@ struct WorkBody {
   Vec3 velocity = Vec3::Zero();         // m/s, now
   Vec3 spin = Vec3::Zero();             // rad/s, now
   double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
+  bool is_struck = false;               // something arrives at it in this substep
   double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
   std::vector<Quat> substep_rotations;  // after each substep of the solver
   int straight_parts = 1;               // of its way, a power of two: between them vertices go straight

@@ -16,9 +16,13 @@ using body::Body;
 using body::ImpulseKind;
 using core::at;
 
-constexpr int kParts = 4;      // of a wild step
-constexpr int kManySpin = 20;  // a step is wild if of so many awake bodies more than one turns far
-constexpr int kManyHits = 30;  // and of so many more than one pair was hit
+constexpr int kBirthParts = 4;  // of a step with newborn pieces
+constexpr int kSpinParts = 4;   // of one after which, of so many awake bodies, more than one turns far,
+constexpr int kManySpin = 20;   // and, of so many, more than one pair was hit
+constexpr int kManyHits = 30;
+constexpr int kCrowdParts = 2;  // of one after which, of so many awake bodies, more than one pair was hit,
+constexpr int kCrowdHits = 5;   // and at least so many in all
+constexpr int kLeastHits = 50;
 
 void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body::ImpulseLog& log) {
   std::vector<char> pair_collides(work.pairs.size(), 0);
@@ -219,20 +223,22 @@ std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
   return ways;
 }
 
-// Whether the next step should be taken in parts too.
-bool is_wild(const std::vector<Body>& bodies, const ContactSettings& settings, const ContactReport& report) {
+// What is hit on its way did not see it coming: over shorter ways more does.
+int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& settings,
+                    const ContactReport& report) {
   int spinning = 0;
   for (const Body& b : bodies) {
     const bool turns = b.is_dynamic() && b.is_awake && b.shape->kind != body::ShapeKind::sphere;
     spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
   }
-  return kManySpin * spinning > report.awake_bodies && kManyHits * report.hits > report.awake_bodies;
+  const int awake = report.awake_bodies, hits = report.hits;
+  if (kManySpin * spinning > awake && kManyHits * hits > awake) return kSpinParts;
+  return hits >= kLeastHits && kCrowdHits * hits > awake ? kCrowdParts : 1;
 }
 
 }  // namespace
 
 int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
-  if (state.is_wild) return kParts;
   std::size_t newborn = 0;
   for (const Body& b : bodies) {
     if (!b.is_dynamic() || b.shape->kind != body::ShapeKind::shell) continue;
@@ -240,7 +246,7 @@ int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
                                         [](const BodyState& s, body::BodyId id) { return s.id < id; });
     newborn += known == state.bodies.end() || known->id != b.id ? 1 : 0;
   }
-  return newborn >= 2 && !state.bodies.empty() ? kParts : 1;
+  return newborn >= 2 && !state.bodies.empty() ? std::max(kBirthParts, state.next_parts) : state.next_parts;
 }
 
 ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settings, const StepPart& part,
@@ -299,7 +305,7 @@ void add_part(ContactReport&& part, ContactReport& step) {
 void end_step(const std::vector<Body>& bodies, const ContactSettings& settings, int parts,
               ContactReport& step, ContactState& state) {
   step.frozen_share /= parts;
-  state.is_wild = is_wild(bodies, settings, step);
+  state.next_parts = find_next_parts(bodies, settings, step);
 }
 
 ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
