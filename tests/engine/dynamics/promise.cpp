@@ -130,4 +130,24 @@ TEST_CASE("who is woken in the midst of a step has stood still until then") {
   check_way(1, {0.25, 0.5, 0.75}, 1.0, 0.0);
 }
 
+TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, spinning ones in four") {
+  test::Scene scene;
+  for (int k = 0; k < 300; ++k)
+    scene.add(test::make_shell(test::square_mesh(0.05, 1))).pose.translation.x() = 0.2 * k;
+  const auto parts_after = [&](int hits, double spin) {
+    dynamics::ContactReport step;
+    step.awake_bodies = 300;
+    step.hits = hits;
+    for (auto& b : scene.bodies) b.angular_velocity = Vec3(0, spin, 0);
+    dynamics::end_step(scene.bodies, scene.settings, 1, step, scene.state);
+    scene.state.bodies.resize(1);  // no world that only begins
+    return dynamics::count_parts({}, scene.state);
+  };
+  CHECK(parts_after(0, 0.0) == 1);
+  CHECK(parts_after(60, 0.0) == 1);
+  CHECK(parts_after(61, 0.0) == 2);
+  CHECK(parts_after(0, 200.0) == 1);
+  CHECK(parts_after(61, 200.0) == 4);
+}
+
 }  // namespace shatterbox
