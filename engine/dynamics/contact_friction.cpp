@@ -1,6 +1,8 @@
 #include "engine/dynamics/contact_friction.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace shatterbox::dynamics {
 namespace {
@@ -38,16 +40,28 @@ Vec2 friction_change(const SolverContact& c, const Vec2& slip, double normal_imp
 void resist_rolling(SolverContact& c, WorkBody& a, WorkBody& b) {
   if (c.rolling <= 0.0 || c.impulse[0] <= 0.0) return;
   const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
-  Vec3 wanted = c.rolling_impulse;
+  Mat3 yielding = Mat3::Zero();
+  for (const WorkBody* w : {&a, &b})
+    if (w->inverse_mass > 0.0) yielding += w->inverse_inertia;
+  Mat3 response;
+  Vec3 spin;
   for (int k = 0; k < 3; ++k) {
-    double response = 0.0;
-    if (a.inverse_mass > 0.0) response += axes[k].dot(a.inverse_inertia * axes[k]);
-    if (b.inverse_mass > 0.0) response += axes[k].dot(b.inverse_inertia * axes[k]);
-    if (response > 0.0) wanted[k] -= axes[k].dot(a.spin - b.spin) / response;
+    spin[k] = axes[k].dot(a.spin - b.spin);
+    for (int l = 0; l < 3; ++l) response(k, l) = axes[k].dot(yielding * axes[l]);
   }
+  const double trace = response.trace();
+  if (trace <= 0.0) return;
   const double bound = c.rolling * c.impulse[0], twist = kPatch * c.friction * bound;
-  wanted[0] = std::clamp(wanted[0], -twist, twist);
-  if (const double length = wanted.tail<2>().norm(); length > bound) wanted.tail<2>() *= bound / length;
+  const auto is_borne = [&](const Vec3& couple) {
+    return std::abs(couple[0]) <= twist && couple.tail<2>().squaredNorm() <= bound * bound;
+  };
+  Vec3 wanted = c.rolling_impulse - response.inverse() * spin;
+  if (!is_borne(wanted)) {
+    // It rolls on: a step against the spin that no slender body overshoots, whichever way it lies.
+    wanted = c.rolling_impulse - spin / trace;
+    wanted[0] = std::clamp(wanted[0], -twist, twist);
+    if (const double length = wanted.tail<2>().norm(); length > bound) wanted.tail<2>() *= bound / length;
+  }
   const Vec3 change = wanted - c.rolling_impulse;
   const Vec3 couple = change[0] * axes[0] + change[1] * axes[1] + change[2] * axes[2];
   for (WorkBody* w : {&a, &b}) {

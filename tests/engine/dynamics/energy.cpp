@@ -134,4 +134,26 @@ TEST_CASE("a closed room over 1e5 steps", "[.][long]") {
   for (const double restitution : {1.0, 0.5}) check_room(restitution, 100000);
 }
 
+TEST_CASE("a splinter on a floor that resists its rolling wins no energy, whichever way it lies") {
+  double most = 0.0;
+  for (int k = 0; k < 24; ++k) {
+    test::Scene scene;
+    scene.settings.has_sleep = false;
+    scene.add(test::make_plane()).rolling_friction = 2e-3;
+    auto mesh = test::square_mesh(9e-4, 1);
+    for (Vec3& v : mesh.positions) v.z() = 0.1 * v.z() + 0.1 * v.x();
+    auto splinter = test::make_shell(mesh);
+    splinter.pose.translation.y() = 2e-3;
+    splinter.pose.rotation = dynamics::rotation_by(Vec3(0.3 * k, 1.0 + 0.2 * k, 0.7 - 0.1 * k));
+    splinter.velocity = Vec3(0.5, -3.0, 0.1);
+    scene.add(splinter);
+    const double energy = scene.energy();
+    for (int i = 0; i < 60; ++i) {
+      scene.step();
+      most = std::max(most, scene.energy() / energy);
+    }
+  }
+  CHECK(most <= 1.0 + 1e-3);
+}
+
 }  // namespace shatterbox
