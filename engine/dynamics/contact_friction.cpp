@@ -45,9 +45,10 @@ void resist_rolling(SolverContact& c, WorkBody& a, WorkBody& b) {
     if (w->inverse_mass > 0.0) yielding += w->inverse_inertia;
   Mat3 response;
   Vec3 spin;
-  for (int k = 0; k < 3; ++k) {
-    spin[k] = axes[k].dot(a.spin - b.spin);
-    for (int l = 0; l < 3; ++l) response(k, l) = axes[k].dot(yielding * axes[l]);
+  for (int l = 0; l < 3; ++l) {
+    spin[l] = axes[l].dot(a.spin - b.spin);
+    const Vec3 turn = yielding * axes[l];
+    for (int k = 0; k < 3; ++k) response(k, l) = axes[k].dot(turn);
   }
   const double trace = response.trace();
   if (trace <= 0.0) return;

@@ -1,8 +1,8 @@
 #include "engine/dynamics/contact_graph.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
 
 namespace shatterbox::dynamics {
@@ -67,24 +67,18 @@ void build_contact_graph(const ContactState& state, MotionWork& work) {
 
 void build_islands(MotionWork& work) {
   work.islands.clear();
-  std::vector<int> parent(work.bodies.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
+  core::DisjointSets joined(work.bodies.size());
   for (const SolverContact& c : work.contacts) {
     WorkBody &a = work.bodies[at(c.a)], &b = work.bodies[at(c.b)];
     if (a.inverse_mass > 0.0) a.is_free = false;
     if (b.inverse_mass > 0.0) b.is_free = false;
     if (a.is_free || b.is_free) continue;
-    const int ra = root(c.a), rb = root(c.b);
-    parent[at(std::max(ra, rb))] = std::min(ra, rb);
+    joined.unite(c.a, c.b);
   }
   std::vector<int> number(work.bodies.size(), -1);
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     if (work.bodies[i].is_free) continue;
-    int& island = number[at(root(static_cast<int>(i)))];
+    int& island = number[at(joined.find(static_cast<int>(i)))];
     if (island < 0) {
       island = static_cast<int>(work.islands.size());
       work.islands.emplace_back();
@@ -94,7 +88,7 @@ void build_islands(MotionWork& work) {
   for (std::size_t i = 0; i < work.contacts.size(); ++i) {
     const SolverContact& c = work.contacts[i];
     const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
-    work.islands[at(number[at(root(member))])].contacts.push_back(static_cast<int>(i));
+    work.islands[at(number[at(joined.find(member))])].contacts.push_back(static_cast<int>(i));
   }
 }
 

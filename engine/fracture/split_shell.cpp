@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
 
 namespace shatterbox::fracture {
@@ -205,21 +206,12 @@ class Merger {
 }  // namespace
 
 std::vector<int> label_pieces(Size cell_count, const std::vector<CellContact>& contacts, int& piece_count) {
-  std::vector<int> parent(cell_count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&parent](int i) {
-    while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-    return i;
-  };
-  for (const CellContact& contact : contacts) {
-    const int a = find(contact.cell_a);
-    const int b = find(contact.cell_b);
-    if (a != b) parent[at(std::max(a, b))] = std::min(a, b);
-  }
+  core::DisjointSets pieces(cell_count);
+  for (const CellContact& contact : contacts) pieces.unite(contact.cell_a, contact.cell_b);
   std::vector<int> label(cell_count, -1);
   piece_count = 0;
   for (Size c = 0; c < cell_count; ++c) {
-    const int root = find(static_cast<int>(c));
+    const int root = pieces.find(static_cast<int>(c));
     label[c] = root == static_cast<int>(c) ? piece_count++ : label[at(root)];
   }
   return label;

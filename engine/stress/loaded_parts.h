@@ -4,10 +4,14 @@
 
 #include <vector>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/core/vec.h"
 #include "engine/geometry/shell_mesh.h"
 
 namespace shatterbox::stress {
+
+/// The virtual vertices, joined where a cell holds both: a set a connected part.
+core::DisjointSets parts_of(const geometry::ShellMesh& mesh);
 
 /// The mesh without the cells of connected parts on which none of `loads` (|dof| each) is. Its degrees of
 /// freedom are the mesh's own; those of parts left out are in no cell, so a solution is zero there.

@@ -2,10 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <numeric>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
+#include "engine/stress/loaded_parts.h"
 #include "engine/stress/shell_stiffness.h"
 
 namespace shatterbox::stress {
@@ -16,11 +17,6 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 using core::at;
-
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-  return i;
-}
 
 /// Combinations of vectors with these `products` that are orthonormal, in columns; zero where what is left of
 /// the square of a vector is below its `least`.
@@ -90,22 +86,16 @@ RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>&
 }
 
 void RigidModes::find_parts(const geometry::ShellMesh& mesh) {
-  std::vector<int> parent(mesh.vertex_source.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  std::vector<char> is_used(parent.size(), 0);
+  core::DisjointSets parts = parts_of(mesh);
+  std::vector<char> is_used(mesh.vertex_source.size(), 0);
   for (const geometry::ShellCell& cell : mesh.cells)
-    for (const int vertex : cell.vertices) {
-      is_used[at(vertex)] = 1;
-      const int a = find_root(parent, vertex);
-      const int b = find_root(parent, cell.vertices[0]);
-      if (a != b) parent[at(std::max(a, b))] = std::min(a, b);
-    }
+    for (const int vertex : cell.vertices) is_used[at(vertex)] = 1;
   part_.assign(at(mesh.degree_of_freedom_count()), -1);
-  std::vector<int> number(parent.size(), -1);
+  std::vector<int> number(is_used.size(), -1);
   int count = 0;
-  for (int v = 0; v < static_cast<int>(parent.size()); ++v) {
+  for (int v = 0; v < static_cast<int>(is_used.size()); ++v) {
     if (is_used[at(v)] == 0) continue;
-    int& part = number[at(find_root(parent, v))];
+    int& part = number[at(parts.find(v))];
     if (part < 0) part = count++;
     for (int axis = 0; axis < 3; ++axis) part_[at(vertex_dof(v) + axis)] = part;
   }

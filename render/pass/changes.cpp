@@ -220,9 +220,9 @@ void Changes::mark_shadow(const Item& caster, const MeshStore& meshes) {
     const std::optional<Outline> swept = grid_.find_outline(points, *block_, kBeyondPixels);
     const std::optional<Outline> seen = grid_.find_outline(receiver.box_world.at, *block_, kBeyondPixels);
     if (!swept || !seen) continue;
+    const TileSpan span = grid_.span_of(*swept, kBodyPixels);
     grid_.each(*seen, kBodyPixels, [&](std::size_t tile) {
       const int x = static_cast<int>(tile) % grid_.across(), y = static_cast<int>(tile) / grid_.across();
-      const TileSpan span = grid_.span_of(*swept, kBodyPixels);
       const bool is_in_box = x >= span.left && x <= span.right && y >= span.bottom && y <= span.top;
       if (is_in_box && grid_.touches(*swept, x, y, kBodyPixels)) lit_.tiles[tile] = 1;
     });
