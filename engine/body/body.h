@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/body/scripted_path.h"
 #include "engine/body/shape.h"
 #include "engine/core/vec.h"
 
@@ -17,6 +18,15 @@ namespace shatterbox::body {
 using BodyId = std::uint32_t;
 
 enum class Motion : std::uint8_t { fixed, scripted, dynamic };
+
+/// How a scripted body follows its path. Who was in its way holds it up; then it comes on slowly, until it
+/// has caught up with where it is to be.
+struct Script {
+  std::shared_ptr<const ScriptedPath> path;  // none: it goes on at its velocity
+  double time = 0.0;                         // s since it began
+  double pace = 1.0;                         // share of its top speed that it may go at
+  double wait = 0.0;                         // s until it tries again
+};
 
 struct Body {
   BodyId id = 0;
@@ -39,10 +49,16 @@ struct Body {
   BodyId family = 0;  // the body of the scene that this one is, or was, a part of; 0: of none
   int material = 0;   // number in the world's list of materials
 
+  Script script;  // of scripted bodies
+
   bool is_awake = true;
   double quiet_time = 0.0;  // s for which the body has hardly moved
 
   bool is_dynamic() const { return inverse_mass > 0.0; }
+  /// Scripted, and on its way in the step that begins here.
+  bool is_driven() const {
+    return motion == Motion::scripted && velocity.squaredNorm() + angular_velocity.squaredNorm() > 0.0;
+  }
   /// False for bodies of one group, unless they are pieces of one body, which collide in any case.
   bool collides_with(const Body& other) const {
     return group < 0 || group != other.group || (family != 0 && family == other.family);

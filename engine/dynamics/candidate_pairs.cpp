@@ -13,6 +13,7 @@
 #include "engine/dynamics/pair_contacts.h"
 #include "engine/dynamics/pair_search.h"
 #include "engine/dynamics/rest.h"
+#include "engine/dynamics/scripted_motion.h"
 #include "engine/dynamics/step_motion.h"
 
 namespace shatterbox::dynamics {
@@ -91,12 +92,14 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   w.placed.collider = w.collider;
   w.is_quiet = is_quiet(settings, b.velocity, b.angular_velocity, w.reach);
   if (b.motion == body::Motion::scripted) {
+    w.is_scripted = true;
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;
-    w.is_active = w.velocity.squaredNorm() + w.spin.squaredNorm() > 0.0;
+    w.is_active = b.is_driven();
     w.turn_angle = dt * w.spin.norm();
     w.predicted.translation += dt * w.velocity;
     w.predicted.rotation = (rotation_by(dt * w.spin) * w.start.rotation).normalized();
+    if (w.is_active) plan_rides(b, dt, settings.substeps, w);
   } else if (b.is_dynamic() && b.is_awake) {
     w.is_active = true;
     w.inverse_mass = b.inverse_mass;
@@ -216,7 +219,7 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
     if (a_sleeps == b_sleeps || pair.contacts.empty()) continue;
     const int mover = a_sleeps ? pair.b : pair.a;
     const WorkBody& w = work.bodies[at(mover)];
-    if (!w.is_active || is_quiet(settings, w.velocity, w.spin, w.reach)) continue;
+    if (!w.is_active || (!w.is_scripted && is_quiet(settings, w.velocity, w.spin, w.reach))) continue;
     const bool is_strong = could_move(settings, a_sleeps ? b : a, a_sleeps ? a : b);
     for (const Contact& c : pair.contacts) {
       const Vec3 arm = (a_sleeps ? c.on_b : c.on_a) - w.start.translation;
@@ -275,6 +278,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     work.bodies.push_back(make_work_body(bodies[i], state.bodies[i], settings));
     work.ids.push_back(bodies[i].id);
     anything_moves = anything_moves || work.bodies.back().is_active;
+    work.has_scripted = work.has_scripted || !work.bodies.back().rides.empty();
   }
   if (!anything_moves) return;
   for (WorkBody& w : work.bodies) look_about(settings, w.predicted, w);

@@ -11,17 +11,18 @@ namespace {
 
 using core::at;
 
-// Bodies that no impulse moves are not written to (islands share them): their motion is known at any time.
+// Bodies that no impulse moves are shared by islands: their motion is known after any substep.
 struct Moved {
   Vec3 way;
   Mat3 turn;
 };
 
-Moved moved(const WorkBody& body, double time) {
+Moved moved(const WorkBody& body, int substeps) {
   if (body.inverse_mass > 0.0) return {body.way, body.turn};
-  if (!body.is_active) return {Vec3::Zero(), Mat3::Identity()};
-  if (body.shape->kind == body::ShapeKind::sphere) return {body.velocity * time, Mat3::Identity()};
-  return {body.velocity * time, rotation_by(body.spin * time).toRotationMatrix()};
+  if (body.rides.empty() || substeps == 0) return {Vec3::Zero(), Mat3::Identity()};
+  const WorkBody::Ride& ride = body.rides[at(substeps - 1)];
+  if (body.shape->kind == body::ShapeKind::sphere) return {ride.way, Mat3::Identity()};
+  return {ride.way, ride.turn.toRotationMatrix()};
 }
 
 class IslandSolver {
@@ -33,8 +34,9 @@ class IslandSolver {
     begin();
     for (int i = 0; i < settings_.substeps; ++i) {
       substep_start_ = i * step_;
+      ride(i);
       kick();
-      if (i == 0) prepare(0.0);  // later ones begin where the one before ended
+      if (i == 0) prepare(0);  // later ones begin where the one before ended
       is_before_drift_ = true;
       find_arrivals();
       start_warm(0.5);
@@ -42,7 +44,7 @@ class IslandSolver {
       is_before_drift_ = false;
       drift();
       kick();
-      prepare((i + 1) * step_);
+      prepare(i + 1);
       start_warm(0.5);
       sweep_after_drift();
       bounce();
@@ -84,6 +86,20 @@ class IslandSolver {
     }
   }
 
+  // Scripted bodies have their own velocity in each substep. Islands that share one are solved one after the
+  // other.
+  void ride(int substep) {
+    if (!work_.has_scripted) return;
+    for (const int i : island_.contacts) {
+      for (const int k : {work_.contacts[at(i)].a, work_.contacts[at(i)].b}) {
+        WorkBody& b = body(k);
+        if (b.rides.empty()) continue;
+        b.velocity = b.rides[at(substep)].velocity;
+        b.spin = b.rides[at(substep)].spin;
+      }
+    }
+  }
+
   static void place_inertia(WorkBody& b) {
     const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
     b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
@@ -116,11 +132,11 @@ class IslandSolver {
 
   // Arms, gap and response at the present pose. Both bodies feel the impulse at one and the same point:
   // angular momentum is kept to rounding.
-  void prepare(double time) {
+  void prepare(int substeps) {
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
       const WorkBody &a = body(c.a), &b = body(c.b);
-      const Moved ma = moved(a, time), mb = moved(b, time);
+      const Moved ma = moved(a, substeps), mb = moved(b, substeps);
       const Vec3 turned_a = ma.turn * c.arm_a_start, turned_b = mb.turn * c.arm_b_start;
       const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
       c.change = change;

@@ -13,6 +13,7 @@
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/opening.h"
 #include "engine/dynamics/path_test.h"
+#include "engine/dynamics/scripted_motion.h"
 #include "engine/dynamics/step_motion.h"
 
 namespace shatterbox::dynamics {
@@ -55,16 +56,8 @@ class Guard {
     }
     bool has_hits = test();
     if (has_hits && settings_.continuous_rounds > 0 && solve_again()) has_hits = test();
-    int hits_before = 1 << 30;
-    for (int round = 0; has_hits && round < settings_.continuous_rounds; ++round) {
-      const int hits = count_hits();
-      if (round >= kPatience && hits >= hits_before) break;
-      if (round % kPatience == 0) hits_before = hits;
-      ++report_.rounds;
-      const bool is_last = round + 1 == settings_.continuous_rounds;
-      open(is_last ? kLastOpening : kOpening, Yielding::by_mass);
-      has_hits = test();
-    }
+    has_hits = open_in_rounds(has_hits);
+    while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
     // great shards cannot hold them apart by its mass.
     const int last_rounds = settings_.continuous_rounds > 0 ? kLastRounds : 0;
@@ -114,6 +107,72 @@ class Guard {
       was_hit_[p] = 1;
     }
     return has_hits;
+  }
+
+  bool open_in_rounds(bool has_hits) {
+    int hits_before = 1 << 30;
+    for (int round = 0; has_hits && round < settings_.continuous_rounds; ++round) {
+      const int hits = count_hits();
+      if (round >= kPatience && hits >= hits_before) break;
+      if (round % kPatience == 0) hits_before = hits;
+      ++report_.rounds;
+      const bool is_last = round + 1 == settings_.continuous_rounds;
+      open(is_last ? kLastOpening : kOpening, Yielding::by_mass);
+      has_hits = test();
+    }
+    return has_hits;
+  }
+
+  // Scripted bodies that press on what finds no room stop where they first met it, or before, and all is
+  // solved anew. False if there are none, or they did not move already.
+  bool hold_up_scripted() {
+    if (!work_.has_scripted) return false;
+    const std::vector<char> is_pressed = find_pressed();
+    double first = 1.0;
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      if (must_test_[p] && !hits_[p].empty()) first = std::min(first, hits_[p].front().time);
+    }
+    std::vector<char> is_held(work_.bodies.size(), 0);
+    for (std::size_t i = 0; i < work_.bodies.size(); ++i) {
+      WorkBody& w = work_.bodies[i];
+      if (!is_pressed[i] || !w.is_scripted || !w.is_active || w.gone <= 0.0) continue;
+      const double most = std::min(first, w.gone < 1.0 ? 0.5 * w.gone : 1.0);
+      const int substeps = std::min(static_cast<int>(most * settings_.substeps), settings_.substeps - 1);
+      hold_up(w, substeps);
+      is_held[i] = 1;
+    }
+    if (std::find(is_held.begin(), is_held.end(), 1) == is_held.end()) return false;
+    std::vector<char> is_dirty(work_.bodies.size(), 0);
+    for (const SolverContact& c : work_.contacts) {
+      if (is_held[at(c.a)]) is_dirty[at(c.b)] = 1;
+      if (is_held[at(c.b)]) is_dirty[at(c.a)] = 1;
+    }
+    solve_islands(bodies_, settings_, is_dirty, work_);
+    for (std::size_t i = 0; i < is_held.size(); ++i) is_dirty[i] = is_dirty[i] || is_held[i] ? 1 : 0;
+    mark_due_with(is_dirty);
+    for (auto& hits : known_) hits.clear();
+    return true;
+  }
+
+  // The bodies in hits, and from one to the next all that presses on them hard.
+  std::vector<char> find_pressed() const {
+    std::vector<char> is_pressed(work_.bodies.size(), 0);
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      if (!must_test_[p] || hits_[p].empty()) continue;
+      is_pressed[at(work_.pairs[p].a)] = is_pressed[at(work_.pairs[p].b)] = 1;
+    }
+    for (bool goes_on = true; goes_on;) {
+      goes_on = false;
+      for (const SolverContact& c : work_.contacts) {
+        if (is_pressed[at(c.a)] == is_pressed[at(c.b)] || c.impulse[0] <= c.strained_from) continue;
+        const int known = is_pressed[at(c.a)] ? c.a : c.b, next = is_pressed[at(c.a)] ? c.b : c.a;
+        // What holds still passes nothing on.
+        if (work_.bodies[at(known)].inverse_mass == 0.0) continue;
+        is_pressed[at(next)] = 1;
+        goes_on = true;
+      }
+    }
+    return is_pressed;
   }
 
   // Hits become contacts of the solver, and the islands that got one are solved anew from the start of the

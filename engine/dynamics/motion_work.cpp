@@ -75,6 +75,7 @@ void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
 
 void shorten(WorkBody& body, double share) {
   body.is_free = false;
+  body.gone *= std::max(0.0, share);
   if (share <= 0.0) {
     body.end = body.start;
     body.turn_angle = 0.0;

@@ -55,6 +55,16 @@ struct WorkBody {
   double reserve = 0.0;  // m
   bool is_looked_straight = true;
   geometry::Box looked;
+  bool is_scripted = false;
+  double gone = 1.0;  // share of its way that it was let go
+  // Of a scripted one that moves, for each substep of the solver: its velocities in it, and where it is after
+  // it against the start.
+  struct Ride {
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+    Vec3 way = Vec3::Zero();
+    Quat turn = Quat::Identity();
+  };
+  std::vector<Ride> rides;
   Vec3 predicted_spin = Vec3::Zero();    // rad/s, then
   Pose predicted;                        // end pose if nothing touches
   std::vector<Vec3> predicted_vertices;  // |V| x 3, there; of bodies in a fast pair
@@ -161,8 +171,9 @@ class MotionWork {
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
-  double substep = 0.0;     // s
-  double warm_scale = 1.0;  // of remembered impulses: this step's substep over the last one's
+  bool has_scripted = false;  // ones that move
+  double substep = 0.0;       // s
+  double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
 };
 
 /// Fills a body's vertices at the start of the step, once.

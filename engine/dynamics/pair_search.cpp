@@ -36,7 +36,8 @@ void add_pairs_with_planes(const MotionWork& work, std::vector<collision::IndexP
   for (std::size_t p = 0; p < work.bodies.size(); ++p) {
     if (work.bodies[p].shape->kind != ShapeKind::plane) continue;
     const Vec3 normal = work.bodies[p].start.rotation * Vec3::UnitY();
-    const double level = normal.dot(work.bodies[p].start.translation);
+    const double level = std::max(normal.dot(work.bodies[p].start.translation),
+                                  normal.dot(work.bodies[p].predicted.translation));
     for (std::size_t i = 0; i < work.bodies.size(); ++i) {
       if (work.bodies[i].shape->kind == ShapeKind::plane) continue;
       const auto& box = work.bodies[i].looked;

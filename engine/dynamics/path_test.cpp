@@ -212,7 +212,9 @@ std::vector<PathHit> PathTest::test_plane(const WorkPair& pair, double& spare) c
   const WorkBody& plane = work_.bodies[at(pair.is_flipped ? pair.a : pair.b)];
   const WorkBody& other = work_.bodies[at(other_number)];
   const Vec3 normal = plane.start.rotation * Vec3::UnitY();
-  const double level = normal.dot(plane.start.translation) + other.collider->radius;
+  const auto level_at = [&](double time) {
+    return normal.dot(pose_on_way(plane, time).translation) + other.collider->radius;
+  };
   std::vector<PathHit> hits;
   const int parts = other.straight_parts;
   std::vector<Vec3> knot;
@@ -222,13 +224,14 @@ std::vector<PathHit> PathTest::test_plane(const WorkPair& pair, double& spare) c
     const std::vector<Vec3> from = std::exchange(knot, {});
     if (part + 1 < parts) place_at(other, pose_on_way(other, begin + share), knot);
     const std::vector<Vec3>& to = part + 1 < parts ? knot : paths_[at(other_number)].end;
+    const double level_from = level_at(begin), level_to = level_at(begin + share);
     for (std::size_t v = 0; v < to.size(); ++v) {
-      const double end = normal.dot(to[v]) - level;
+      const double end = normal.dot(to[v]) - level_to;
       spare = std::min(spare, std::max(0.0, end - kSafe * pair.kept_gap));
       if (end >= kSafe * pair.kept_gap) continue;
-      const double start = normal.dot(other.placed.start[v]) - level;
+      const double start = normal.dot(other.placed.start[v]) - level_at(0.0);
       if (end >= least_separation(start, pair)) continue;
-      const double height = part == 0 ? start : normal.dot(from[v]) - level;
+      const double height = part == 0 ? start : normal.dot(from[v]) - level_from;
       PathHit hit;
       hit.time = begin + share * (height > end ? std::clamp(height / (height - end), 0.0, 1.0) : 0.0);
       hit.knot = begin + share;

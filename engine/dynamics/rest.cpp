@@ -140,8 +140,7 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
       bool moves = other < 0;
       if (other >= 0) {
         const Body& o = bodies[static_cast<std::size_t>(other)];
-        moves = o.motion == body::Motion::scripted &&
-                !is_quiet(settings, o.velocity, o.angular_velocity, o.shape->bounding_radius);
+        moves = o.is_driven();
       }
       if (moves) given = kAll;
     }
@@ -181,7 +180,7 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
       if (const int i = find_number(bodies, id); i >= 0) is_held[static_cast<std::size_t>(i)] = 1;
     }
   }
-  // Nor who touches somebody that has no rest yet and could move it.
+  // Nor who touches somebody that has no rest yet and could move it, or goes on by itself.
   const bool is_weightless = settings.gravity.squaredNorm() == 0.0;
   std::vector<char> is_restless(bodies.size(), 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -194,8 +193,10 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
     if (!pair.is_touching) continue;
     const int ends[2] = {find_number(bodies, pair.body_a), find_number(bodies, pair.body_b)};
     for (int k = 0; k < 2; ++k) {
-      if (ends[k] < 0 || ends[1 - k] < 0 || !is_restless[static_cast<std::size_t>(ends[k])]) continue;
+      if (ends[k] < 0 || ends[1 - k] < 0) continue;
       const auto other = static_cast<std::size_t>(ends[1 - k]);
+      if (bodies[static_cast<std::size_t>(ends[k])].is_driven()) is_kept_up[other] = 1;
+      if (!is_restless[static_cast<std::size_t>(ends[k])]) continue;
       if (bodies[other].is_dynamic() &&
           could_move(settings, bodies[static_cast<std::size_t>(ends[k])], bodies[other]))
         is_kept_up[other] = 1;

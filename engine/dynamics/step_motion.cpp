@@ -8,6 +8,7 @@
 #include "engine/dynamics/contact_solver.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/rest.h"
+#include "engine/dynamics/scripted_motion.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -174,11 +175,25 @@ void solve_islands(const std::vector<Body>& bodies, const ContactSettings& setti
     due.push_back(i);
     for (const int b : members) is_dirty[at(b)] = 1;
   }
-  core::parallel_for(due.size(), 1, [&](std::size_t k) {
-    const Island& island = work.islands[due[k]];
+  const auto solve = [&](std::size_t number) {
+    const Island& island = work.islands[number];
     solve_island(settings, island, work);
     for (const int b : island.bodies) end_in_contact(work.bodies[at(b)]);
-  });
+  };
+  if (work.has_scripted) {
+    const auto rides = [&](std::size_t number) {
+      const auto& contacts = work.islands[number].contacts;
+      return std::any_of(contacts.begin(), contacts.end(), [&](int c) {
+        const SolverContact& contact = work.contacts[at(c)];
+        return !work.bodies[at(contact.a)].rides.empty() || !work.bodies[at(contact.b)].rides.empty();
+      });
+    };
+    const auto riders =
+        std::stable_partition(due.begin(), due.end(), [&](std::size_t i) { return !rides(i); });
+    std::for_each(riders, due.end(), solve);
+    due.erase(riders, due.end());
+  }
+  core::parallel_for(due.size(), 1, [&](std::size_t k) { solve(due[k]); });
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     if (is_dirty[i] && work.bodies[i].is_active && work.bodies[i].is_free)
       end_freely(bodies[i].is_dynamic(), settings, work.bodies[i]);
@@ -192,6 +207,7 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
     if (!w.is_active) continue;
     bodies[i].pose = w.end;
     state.bodies[i].last_pose = w.end;
+    if (w.is_scripted) end_scripted(w, bodies[i]);
     if (!bodies[i].is_dynamic()) continue;
     bodies[i].velocity = w.velocity;
     bodies[i].angular_velocity = w.spin;
@@ -254,6 +270,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   ContactSettings own = settings;
   own.time_step /= part.count;
   own.substeps = std::max(1, settings.substeps / part.count);
+  aim_scripted(bodies, own.time_step);
   wake_bodies(bodies, own, state);
   ContactReport report;
   MotionWork work;

@@ -78,6 +78,19 @@ std::string find_form_fault(const BodyDescription& description) {
   return {};
 }
 
+std::string find_path_fault(const BodyDescription& description) {
+  if (!description.path) return {};
+  const auto& keys = description.path->keys;
+  if (description.motion != body::Motion::scripted) return "only a scripted body has a path";
+  if (keys.empty()) return "a path needs a key";
+  const bool is_plane = std::holds_alternative<PlaneDescription>(description.form);
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    if (!(keys[k].time > keys[k - 1].time)) return "the keys of a path must go forward in time";
+    if (is_plane && keys[k].angles != keys[0].angles) return "a plane cannot turn";
+  }
+  return {};
+}
+
 SharedForm make_shell_form(const ShellDescription& shell, const material::Material& material, double density,
                            std::uint64_t key) {
   auto elements = std::make_shared<geometry::ShellElements>();
@@ -153,7 +166,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   };
   if (description.material < 0 || description.material >= static_cast<int>(s.materials.size()))
     return refuse("there is no such material");
-  if (const std::string fault = find_form_fault(description); !fault.empty()) return refuse(fault);
+  for (const std::string& fault : {find_form_fault(description), find_path_fault(description)})
+    if (!fault.empty()) return refuse(fault);
 
   const material::Material& material = s.materials[static_cast<std::size_t>(description.material)];
   const double density = description.density.value_or(material.density);
@@ -163,7 +177,14 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   born.pose = description.pose;
   born.pose.rotation.normalize();
   std::shared_ptr<const Fragile> fragile;
-  if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
+  Vec3 centre = Vec3::Zero();
+  if (const auto* given = std::get_if<ShellDescription>(&description.form)) {
+    std::optional<ShellDescription> whole;  // what goes its own way does not break
+    if (born.motion == body::Motion::scripted && given->is_breakable) {
+      whole = *given;
+      whole->is_breakable = false;
+    }
+    const ShellDescription* shell = whole ? &*whole : given;
     const std::uint64_t key = form_key(*shell, material, description.material, density);
     auto form =
         std::find_if(s.forms.begin(), s.forms.end(), [&](const SharedForm& f) { return f.key == key; });
@@ -173,7 +194,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     // The mesh's own frame is that of the description; material space has its origin at the centre of mass.
     const geometry::MassProperties mass =
         geometry::shell_mass_properties(shell->mesh, shell->thickness, density);
-    born.pose.translation = born.pose.apply(mass.centre);
+    centre = mass.centre;
+    born.pose.translation = born.pose.apply(centre);
     if (!shell->clamped.empty()) born.motion = body::Motion::fixed;
     if (shell->is_breakable) {
       auto own = std::make_shared<Fragile>(*form->fragile);
@@ -185,7 +207,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     }
   } else {
     born.shape = make_analytic_shape(description, density);
-    if (born.shape->kind == body::ShapeKind::plane) born.motion = body::Motion::fixed;
+    if (born.shape->kind == body::ShapeKind::plane && born.motion == body::Motion::dynamic)
+      born.motion = body::Motion::fixed;
   }
   if (born.motion == body::Motion::dynamic) {
     born.inverse_mass = 1.0 / born.shape->mass;
@@ -194,6 +217,12 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   if (born.motion != body::Motion::fixed) {
     born.velocity = description.velocity;
     born.angular_velocity = description.angular_velocity;
+  }
+  if (description.path && born.motion == body::Motion::scripted) {
+    const PathDescription& path = *description.path;
+    born.script.path =
+        std::make_shared<const body::ScriptedPath>(path.keys, path.between, path.turn, centre - path.pivot);
+    born.pose = born.script.path->pose_at(0.0);
   }
   born.friction = material.friction;
   born.rolling_friction = material.rolling_friction;

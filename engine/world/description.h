@@ -20,7 +20,7 @@ struct ShellDescription {
   std::vector<std::uint8_t> parts;  // per triangle: number of the look; empty for all 0
   double thickness = 1e-3;          // m
   std::vector<int> clamped;         // vertices held by the world (a frame, a foot); empty: a free body
-  bool is_breakable = true;
+  bool is_breakable = true;         // scripted ones are not
 };
 
 struct BoxDescription {
@@ -31,8 +31,16 @@ struct SphereDescription {
   double radius = 0.5;  // m
 };
 
-/// The half space y <= 0 of the body's own frame is solid. Always fixed.
+/// The half space y <= 0 of the body's own frame is solid. Never dynamic; scripted ones do not turn.
 struct PlaneDescription {};
+
+/// The way of a scripted body, of its own frame. Times since it came in. Where it is added does not matter.
+struct PathDescription {
+  std::vector<body::Keyframe> keys;  // at least one; times ascending
+  body::Between between = body::Between::smooth;
+  Quat turn = Quat::Identity();  // of the body on its way, after its keys' angles
+  Vec3 pivot = Vec3::Zero();     // m: the point of its own frame that goes this way, and that it turns about
+};
 
 struct BodyDescription {
   std::string name;
@@ -40,6 +48,7 @@ struct BodyDescription {
   int material = 0;                             // from World::add_material
   body::Motion motion = body::Motion::dynamic;  // a breakable shell that is clamped is always fixed
   Pose pose;                                    // of the mesh's (or the analytic form's) own frame
+  std::optional<PathDescription> path;          // of a scripted body; without one it goes on at its velocity
   Vec3 velocity = Vec3::Zero();                 // of the centre of mass, m/s
   Vec3 angular_velocity = Vec3::Zero();         // rad/s, world
   int group = -1;                               // bodies of one group >= 0 do not collide

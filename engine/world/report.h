@@ -77,6 +77,14 @@ struct ContactFigures {
   int hits = 0;               // pairs in which the continuous pass had to act, last step
 };
 
+/// A scripted body with a path: how far its farthest point is from where it is to be, m.
+struct ScriptedRow {
+  body::BodyId id = 0;
+  std::string body;
+  double behind = 0.0;       // now
+  double most_behind = 0.0;  // over the run
+};
+
 struct ConservationFigures {
   Vec3 momentum = Vec3::Zero();       // kg m/s, of all dynamic bodies
   double kinetic_energy = 0.0;        // J
@@ -97,6 +105,7 @@ struct WorldReport {
   std::vector<ImpactRow> impacts;
   std::vector<BreakRow> breaks;
   ContactFigures contact;
+  std::vector<ScriptedRow> scripted;  // ascending ids
   ConservationFigures conservation;
   SolverFigures solver;
   core::StageTimer stages;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "engine/dynamics/scripted_motion.h"
 #include "engine/world/replace.h"
 #include "engine/world/state.h"
 #include "engine/world/verdict.h"
@@ -105,12 +106,24 @@ void book_contact(const dynamics::ContactReport& contact, const std::vector<body
   figures.drift = std::max(figures.drift, contact.drift);
 }
 
+void book_scripted(const std::vector<body::Body>& bodies, std::vector<ScriptedRow>& rows) {
+  for (const body::Body& body : bodies) {
+    if (body.motion != body::Motion::scripted || !body.script.path) continue;
+    auto row = std::lower_bound(rows.begin(), rows.end(), body.id,
+                                [](const ScriptedRow& r, body::BodyId id) { return r.id < id; });
+    if (row == rows.end() || row->id != body.id) row = rows.insert(row, {body.id, body.name, 0.0, 0.0});
+    row->behind = dynamics::distance_behind(body);
+    row->most_behind = std::max(row->most_behind, row->behind);
+  }
+}
+
 std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t previous) {
   core::Hash hash(previous);
   hash.add(static_cast<std::uint64_t>(steps));
   for (const body::Body& body : moving.bodies) {
     hash.add(std::uint64_t{body.id}).add(body.pose.rotation).add(body.pose.translation);
     hash.add(body.velocity).add(body.angular_velocity).add(std::uint64_t{body.is_awake}).add(body.quiet_time);
+    if (body.script.path) hash.add(body.script.time).add(body.script.pace).add(body.script.wait);
   }
   for (const auto& [id, memory] : moving.memories) {
     hash.add(std::uint64_t{id}).add(memory.event_duration).add(memory.tested_contact);
@@ -180,6 +193,7 @@ void World::step() {
   }
   s.ways = std::move(contact.ways);
   book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
+  book_scripted(s.moving.bodies, s.report.scripted);
   ++s.steps;
   s.report.steps = s.steps;
   s.hash = timer.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
@@ -262,7 +276,9 @@ void World::book_conservation(const std::vector<body::Body>& before, const body:
   const Vec3 explained = explained_momentum(s.moving.bodies, log, s.settings.gravity, time_step);
   const double error = (figures.momentum - start.momentum - explained).norm();
   figures.momentum_error = std::max(figures.momentum_error, error);
-  if (!s.is_disturbed)
+  const bool is_driven = std::any_of(s.moving.bodies.begin(), s.moving.bodies.end(),
+                                     [](const body::Body& b) { return b.is_driven(); });
+  if (!s.is_disturbed && !is_driven)
     figures.greatest_energy_rise = std::max(figures.greatest_energy_rise, energy - s.last_energy);
   s.is_disturbed = false;
   s.last_energy = energy;

@@ -177,6 +177,9 @@ Json make_json(const RunRecord& record) {
                      {"crossing_names", w.contact.crossing_names},
                      {"least_gap", number(w.contact.least_gap)}};
   if (w.contact.drift > 0.0) json["contact"]["drift"] = number(w.contact.drift);
+  for (const world::ScriptedRow& row : w.scripted)
+    json["scripted"].push_back(
+        {{"body", row.body}, {"behind", number(row.behind)}, {"most_behind", number(row.most_behind)}});
   json["conservation"] = {{"momentum", vector(w.conservation.momentum)},
                           {"kinetic_energy_j", number(w.conservation.kinetic_energy)},
                           {"potential_energy_j", number(w.conservation.potential_energy)},

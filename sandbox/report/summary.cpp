@@ -111,6 +111,18 @@ std::string crossing_line(const RunRecord& record) {
                      contact.crossing_pairs > static_cast<long>(shown) ? ", ..." : "");
 }
 
+/// Scripted bodies that something was in the way of: by more than rounding, and the braking that came of it.
+std::string behind_lines(const RunRecord& record) {
+  constexpr double kNoticed = 1e-6;  // m
+  std::string text;
+  for (const world::ScriptedRow& row : record.world.scripted) {
+    if (row.most_behind <= kNoticed) continue;
+    text += fmt::format("{} was held up: up to {:.3g} mm behind its path, {:.3g} mm at the end\n", row.body,
+                        1e3 * row.most_behind, 1e3 * row.behind);
+  }
+  return text;
+}
+
 std::string error_line(const RunRecord& record) {
   double worst = 0.0;
   for (const world::BreakRow& row : record.world.breaks) {
@@ -157,7 +169,7 @@ std::string make_summary(const RunRecord& record) {
     text += fmt::format("interrupted at {:.2f} of {:g} s\n", record.simulated_seconds, record.asked_seconds);
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
-          crossing_line(record) + error_line(record) + audit_line(record);
+          crossing_line(record) + behind_lines(record) + error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,

@@ -143,6 +143,14 @@ std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uin
   return poses;
 }
 
+/// The path of one copy, which stands at `pose`: its first key is there.
+world::PathDescription path_of(const BodyEntry& body, const Pose& pose) {
+  world::PathDescription path{body.path->keys, body.path->between, pose.rotation * body.rotation.conjugate(),
+                              body.path->pivot};
+  for (body::Keyframe& key : path.keys) key.position += pose.translation - body.position;
+  return path;
+}
+
 std::string copy_name(const BodyEntry& body, int copy) {
   return body.repeat.total() > 1 ? fmt::format("{}[{}]", body.name, copy + 1) : body.name;
 }
@@ -175,6 +183,7 @@ std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& p
     const std::size_t now = body.repeat.every > 0.0 ? 1 : poses.size();  // the script brings in the others
     for (std::size_t copy = 0; copy < now; ++copy) {
       description.pose = poses[copy];
+      if (body.path) description.path = path_of(body, poses[copy]);
       description.name = copy_name(body, static_cast<int>(copy));
       const auto id = built.world.add_body(description);
       if (!id) {

@@ -40,19 +40,11 @@ Support read_support(TableReader& reader) {
   return BoxSupport{least->cwiseMin(*most), least->cwiseMax(*most)};
 }
 
-Quat turn(double degrees, const Vec3& axis) {
-  const double half = degrees * core::kPi / 360.0;
-  const Vec3 v = core::sin(half) * axis;
-  return {core::cos(half), v.x(), v.y(), v.z()};
-}
-
 Quat read_rotation(TableReader& reader) {
   const auto angles = reader.vector("rotation", between(-360000.0, 360000.0, "degrees"));
   const TomlValue* orientation = reader.value("orientation");
   if (orientation == nullptr) {
-    if (!angles) return Quat::Identity();
-    return turn(angles->z(), Vec3::UnitZ()) * turn(angles->y(), Vec3::UnitY()) *
-           turn(angles->x(), Vec3::UnitX());
+    return angles ? turn_by(*angles) : Quat::Identity();
   }
   if (reader.has("rotation")) {
     reader.add_problem(orientation->place, "a body has either a rotation or an orientation, not both",
@@ -108,33 +100,6 @@ std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> read_form(TableReader& r
   reader.foreign(shape_keys(), "a plane has no end and no sizes");
   reader.foreign({"size"}, "a plane has no end and no sizes");
   return PlaneForm{};
-}
-
-void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body) {
-  const bool is_plane = kind == "plane";
-  const auto motion = reader.choice("motion", {"dynamic", "static"}, {"scripted"});
-  const bool is_held = !std::holds_alternative<std::monostate>(body.support);
-  body.motion = motion.value_or(is_plane || is_held ? "static" : "dynamic") == "static"
-                    ? body::Motion::fixed
-                    : body::Motion::dynamic;
-  if (is_plane && body.motion == body::Motion::dynamic) {
-    reader.add_problem_at("motion", "a plane cannot move", "write motion = \"static\", or take a box");
-  }
-  if (is_held && body.motion == body::Motion::dynamic) {
-    reader.add_problem_at("motion", "a body with a support is held by the world and cannot move as a whole",
-                          "remove motion or support; its pieces move once they break off");
-  }
-  if (body.motion == body::Motion::fixed) {
-    reader.foreign({"velocity", "angular_velocity"}, "a static body does not move");
-  } else {
-    body.velocity = reader.vector("velocity", between(-1e4, 1e4, "m/s")).value_or(body.velocity);
-    body.angular_velocity =
-        reader.vector("angular_velocity", between(-1e5, 1e5, "rad/s")).value_or(body.angular_velocity);
-  }
-  if (reader.has("keyframes"))
-    reader.later({"keyframes"}, "scripted bodies come later; use dynamic or static ones");
-  reader.later({"fixed"}, "a body that cannot move at all is motion = \"static\"");
-  reader.later({"force", "torque"}, "give it a velocity, or throw something at it");
 }
 
 std::optional<Vec3> as_colour(TableReader& reader, const TomlValue& value, const std::string& key) {
@@ -218,6 +183,8 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.group = reader.text("group").value_or("");
   body.contact_duration = reader.number("contact_duration", positive("s"));
   body.repeat = read_repeat(reader);
+  if (body.motion == body::Motion::scripted && body.repeat.every > 0.0)
+    reader.add_problem_at("repeat", "scripted bodies are all there from the start", "remove every");
   body.look.name = reader.choice("look", kLookNames).value_or("");
   body.look.colours = read_colours(reader);
   reader.finish();

@@ -30,6 +30,13 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
 /// A colour, "#rrggbb" or [r, g, b] from 0 to 1 (sRGB).
 std::optional<Vec3> read_colour(TableReader& reader, const std::string& key);
 
+/// Turns about x, then y, then z.
+Quat turn_by(const Vec3& degrees);
+
+/// The keys `motion`, `velocity`, `path` and their like, after the form, support, position and rotation of
+/// `body` were read.
+void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body);
+
 /// The key `repeat` of a body: its copies.
 Repeat read_repeat(TableReader& reader);
 

@@ -54,7 +54,9 @@ int read_thrown_body(TableReader& reader, const std::string& event_name, bool ha
   }
   BodyEntry& body = scene.bodies[static_cast<std::size_t>(found)];
   if (body.motion != body::Motion::dynamic) {
-    reader.add_problem(value->place, fmt::format("body \"{}\" is static and cannot be thrown", value->text),
+    reader.add_problem(value->place,
+                       fmt::format("body \"{}\" is {} and cannot be thrown", value->text,
+                                   body.motion == body::Motion::fixed ? "static" : "scripted"),
                        "give it motion = \"dynamic\"");
   }
   body.is_held_back = true;

@@ -159,6 +159,12 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
     read_body(bodies[i], name_or_number(bodies[i], "body", i), false, scene, problems);
   }
   for (const TomlValue& pair : tables_of(root, "pair")) read_pair(pair, scene, problems);
+  for (const BodyEntry& body : scene.bodies) {
+    if (body.path && scene.world.contact == world::ContactScheme::paper)
+      book(problems, body.place,
+           fmt::format("body \"{}\" is scripted, which the paper's contact does not know", body.name),
+           "remove contact = \"paper\"");
+  }
   const auto& events = tables_of(root, "event");
   for (std::size_t i = 0; i < events.size(); ++i) read_event(events[i], i, scene, problems);
   read_camera(table_of(root, "camera"), scene.camera, problems);

@@ -69,6 +69,13 @@ struct BoxSupport {
 };
 using Support = std::variant<std::monostate, EdgeSupport, FootSupport, BoxSupport>;
 
+// The way of a scripted body.
+struct PathEntry {
+  std::vector<body::Keyframe> keys;  // at least two, ascending in time; angles in rad
+  body::Between between = body::Between::smooth;
+  Vec3 pivot = Vec3::Zero();  // m, in its own frame: what goes from position to position
+};
+
 // How the copies of a body stand.
 enum class Layout : std::uint8_t {
   row,     // each by `spacing` from the one before it
@@ -103,6 +110,7 @@ struct BodyEntry {
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
   body::Motion motion = body::Motion::dynamic;
+  std::optional<PathEntry> path;  // of a scripted body
   Support support;
   std::string group;  // empty: none
   std::optional<double> contact_duration;

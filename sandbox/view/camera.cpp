@@ -65,6 +65,13 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
     for (const Pose& pose : scene::copy_poses(scene.bodies[i], scene.world.seed, i)) {
       least = least.cwiseMin(pose.translation - Vec3::Constant(radius));
       most = most.cwiseMax(pose.translation + Vec3::Constant(radius));
+      if (const auto& path = scene.bodies[i].path) {
+        for (const body::Keyframe& key : path->keys) {
+          const Vec3 place = pose.translation + (key.position - scene.bodies[i].position);
+          least = least.cwiseMin(place - Vec3::Constant(radius));
+          most = most.cwiseMax(place + Vec3::Constant(radius));
+        }
+      }
       if (scene.bodies[i].motion != body::Motion::dynamic) continue;
       const Vec3 landing = find_landing(scene, pose.translation);
       least = least.cwiseMin(landing);

@@ -164,3 +164,45 @@ TEST_CASE("the same scene gives the same bits on any number of threads") {
   CHECK(hashes[0] == hashes[1]);
   CHECK(hashes[0] == hashes[2]);
 }
+
+TEST_CASE("a scripted body follows its path through the door, and goes it once where a step is taken again") {
+  world::World w = make_drop(0.0);
+  world::BodyDescription plate;
+  plate.name = "plate";
+  plate.form = world::BoxDescription{Vec3(0.2, 0.01, 0.2)};
+  plate.motion = body::Motion::scripted;
+  plate.path =
+      world::PathDescription{{{0.0, Vec3(0, 0.5, 0), Vec3::Zero()}, {0.1, Vec3(0, 0.02, 0), Vec3::Zero()}}};
+  const body::BodyId id = w.add_body(plate).value();
+  for (int i = 0; i < 12; ++i) w.step();
+  const double s = 0.5;
+  CHECK(w.bodies().back().pose.translation.y() ==
+        Approx(0.5 - 0.48 * s * s * (3.0 - 2.0 * s)).epsilon(1e-12));
+  REQUIRE(w.report().scripted.size() == 1);
+  CHECK(w.report().scripted[0].most_behind < 1e-12);
+  // It strikes the ball, which breaks: the step is taken again, and the plate moves once.
+  while (w.report().breaks.empty() && w.steps() < 60) w.step();
+  REQUIRE_FALSE(w.report().breaks.empty());
+  const body::Body& now =
+      *std::find_if(w.bodies().begin(), w.bodies().end(), [&](const auto& b) { return b.id == id; });
+  CHECK(now.script.time == Approx(w.time()).epsilon(1e-12));
+  for (const world::BreakRow& row : w.report().breaks) CHECK(row.body != "plate");
+}
+
+TEST_CASE("a path that cannot be gone is refused with a reason") {
+  world::World w{world::WorldSettings{}};
+  const int number = w.add_material(material::Material{}).value();
+  world::BodyDescription body;
+  body.material = number;
+  body.form = world::SphereDescription{0.1};
+  body.path = world::PathDescription{};
+  CHECK(w.add_body(body).error().find("only a scripted body") != std::string::npos);
+  body.motion = body::Motion::scripted;
+  CHECK(w.add_body(body).error().find("needs a key") != std::string::npos);
+  body.path->keys = {{1.0, Vec3::Zero(), Vec3::Zero()}, {1.0, Vec3::UnitX(), Vec3::Zero()}};
+  CHECK(w.add_body(body).error().find("forward in time") != std::string::npos);
+  body.path->keys[1] = {2.0, Vec3::Zero(), Vec3::UnitX()};
+  CHECK(w.add_body(body).ok());
+  body.form = world::PlaneDescription{};
+  CHECK(w.add_body(body).error().find("cannot turn") != std::string::npos);
+}

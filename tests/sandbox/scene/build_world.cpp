@@ -163,3 +163,30 @@ TEST_CASE("bodies that cannot be are refused at their place") {
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nedge_length = 1e-9\n", "");
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 1\nscale = 1e6\n", "scale = 0.001");
 }
+
+TEST_CASE("copies of a scripted body go the same way from where each stands, about their pivots") {
+  const Reading reading = read(
+      "[[body]]\nname = \"arm\"\nkind = \"box\"\nsize = [1, 0.1, 0.1]\nrotation = [0, 90, 0]\nmotion = "
+      "\"scripted\"\n"
+      "pivot = [-0.5, 0, 0]\nbetween_keys = \"straight\"\nrepeat = {count = 2, spacing = [3, 0, 0]}\n"
+      "path = [{at = 0, position = [0, 1, 0]}, {at = 0.5, rotation = [0, 450, 0]}, {at = 1, position = [0, "
+      "2, 0]}]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  auto built = build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  // The arm points along -z at 0, a turn later, and along +x after a quarter of the half second.
+  const auto check = [&](const Vec3& first) {
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK((built->world.bodies()[i].pose.translation - (first + Vec3(3.0 * static_cast<double>(i), 0, 0)))
+                .norm() < 1e-12);
+  };
+  check(Vec3(0, 1, -0.5));
+  for (int i = 0; i < 30; ++i) built->world.step();
+  check(Vec3(-0.5, 1, 0));  // 180 degrees
+  for (int i = 0; i < 90; ++i) built->world.step();
+  check(Vec3(0, 1, -0.5));
+  for (int i = 0; i < 120; ++i) built->world.step();
+  check(Vec3(0, 2, -0.5));
+}

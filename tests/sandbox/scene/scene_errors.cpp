@@ -94,7 +94,7 @@ const Broken kCorpus[] = {
      "shell"},
     {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nradius = 1\n", "t.toml:4:1", "does not belong here",
      "no size of shape \"pane\""},
-    {"[[body]]\nkind = \"plane\"\nmotion = \"dynamic\"\n", "t.toml:3:10", "a plane cannot move", ""},
+    {"[[body]]\nkind = \"plane\"\nmotion = \"dynamic\"\n", "t.toml:3:10", "a plane cannot fall", ""},
     {"[[body]]\nkind = \"plane\"\nvelocity = [1,0,0]\n", "t.toml:3:1", "does not belong here", "static"},
     {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nsupport = \"side\"\n", "t.toml:4:11", "unknown support",
      "\"edge\""},
@@ -111,6 +111,38 @@ const Broken kCorpus[] = {
     {"[camera]\nposition = [0,1,0]\ntarget = [0,0,0]\n", "t.toml:3:10", "along its up direction", "tilt up"},
     {"[camera]\nposition = [0,1,0]\npath = [{at = 0}, {at = 0}]\n", "t.toml:3:", "forward in time", ""},
     {"[light]\nsun = [0,0,0]\n", "t.toml:2:7", "points nowhere", ""},
+    // Scripted bodies.
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\n", "t.toml:3:10", "has no path", "path = [{at"},
+    {"[[body]]\nkind = \"sphere\"\npath = [{at = 0}, {at = 1}]\n", "t.toml:3:1", "does not belong here",
+     "motion = \"scripted\""},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}]\n", "t.toml:4:8",
+     "at least two keyframes", "static"},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = 1\n", "t.toml:4:8", "a list of keyframes",
+     "position = [0, 1, 0]"},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 2}, {at = 1}]\n", "t.toml:4:25",
+     "forward in time, but 1 s comes after 2 s", ""},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {position = [0,1,0]}]\n",
+     "t.toml:4:19", "needs a time", "at = 1.5"},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1, postion = [0,1,0]}]\n",
+     "t.toml:4:28", "unknown key \"postion\"", "\"position\""},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nvelocity = [1,0,0]\npath = [{at = 0}, {at = 1}]\n",
+     "t.toml:4:1", "does not belong here", "the path says"},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}, {at = 1}]\n", "t.toml:3:10",
+     "has no path", ""},
+    {"[[body]]\nkind = \"plane\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1, rotation = [9,0,0]}]\n",
+     "t.toml:4:39", "a plane cannot turn", "box"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nbreakable = true\nmotion = \"scripted\"\npath = [{at = "
+     "0}, "
+     "{at = 1}]\n",
+     "t.toml:4:13", "does not break", ""},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1}]\nrepeat = {count = 2, "
+     "every "
+     "= 1}\n",
+     "t.toml:5:10", "from the start", "every"},
+    {"[scene]\ncontact = \"paper\"\n[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, "
+     "{at = "
+     "1}]\n",
+     "t.toml:3:1", "the paper's contact does not know", ""},
     // Events.
     {"[[event]]\ndo = \"drop\"\nat = 1\n", "t.toml:1:1", "names no body", "body = \"name\""},
     {"[[event]]\nat = 1\ndo = \"drop\"\nbody = \"bal\"\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\n",
@@ -138,8 +170,6 @@ const Broken kCorpus[] = {
      "\"shell\""},
     {"[[body]]\nkind = \"shell\"\nshape = \"vase\"\n", "t.toml:3:9", "not available in this version",
      "\"ornament\""},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\n", "t.toml:3:10", "not available in this version",
-     ""},
     {"[[body]]\nkind = \"sphere\"\nforce = [1,0,0]\n", "t.toml:3:1", "not available in this version", ""},
     {"[[event]]\nat = 1\ndo = \"explosion\"\n", "t.toml:3:6", "not available in this version", "\"drop\""},
     {"[[event]]\nwhen = \"rest\"\ndo = \"drop\"\nbody = {kind=\"sphere\"}\n", "t.toml:2:1", "not available",
