@@ -71,6 +71,7 @@ class IslandSolver {
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
       const WorkBody &a = body(c.a), &b = body(c.b);
+      has_scripted_ = has_scripted_ || a.is_scripted || b.is_scripted;
       const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
       c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
       c.warm = c.warm_start;
@@ -336,7 +337,7 @@ class IslandSolver {
       if (excess < kProgress * least_excess) {
         least_excess = excess;
         least_round = round;
-      } else if (round > least_round + kCoursePatience) {
+      } else if (round > least_round + (has_scripted_ ? kScriptedPatience : kCoursePatience)) {
         return;
       }
       if (is_on_course && round + 1 < most) go_on_course();
@@ -498,6 +499,7 @@ class IslandSolver {
   static constexpr std::size_t kCourseSize = 1200;
   static constexpr double kProgress = 0.8;      // a course that in so many rounds has not come so much nearer
   static constexpr int kCoursePatience = 500;   // is given up
+  static constexpr int kScriptedPatience = 50;  // the same, where a scripted body may squeeze
   static constexpr std::size_t kVisits = 4800;  // of contacts in all sweeps of one kind in a substep,
   static constexpr int kFewSweeps = 4;          // but never fewer sweeps
   static constexpr double kBounced = 1e-9;      // of the speed: error of a bounce
@@ -514,6 +516,7 @@ class IslandSolver {
   double course_square_ = 0.0;               // N2 s2, of the last change
   double substep_start_ = 0.0;               // s since the step's start
   bool has_arrivals_ = false;
+  bool has_scripted_ = false;  // a scripted body is in it
   bool is_before_drift_ = false;
 };
 

@@ -58,6 +58,7 @@ class Guard {
     if (has_hits && settings_.continuous_rounds > 0 && solve_again()) has_hits = test();
     has_hits = open_in_rounds(has_hits);
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
+    content_with_less();
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
     // great shards cannot hold them apart by its mass.
     const int last_rounds = settings_.continuous_rounds > 0 ? kLastRounds : 0;
@@ -128,6 +129,7 @@ class Guard {
   bool hold_up_scripted() {
     if (!work_.has_scripted) return false;
     const std::vector<char> is_pressed = find_pressed();
+    is_squeezed_.resize(work_.bodies.size(), 0);
     double first = 1.0;
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       if (must_test_[p] && !hits_[p].empty()) first = std::min(first, hits_[p].front().time);
@@ -142,6 +144,8 @@ class Guard {
       is_held[i] = 1;
     }
     if (std::find(is_held.begin(), is_held.end(), 1) == is_held.end()) return false;
+    for (std::size_t i = 0; i < is_pressed.size(); ++i)
+      is_squeezed_[i] = is_squeezed_[i] || is_pressed[i] ? 1 : 0;
     std::vector<char> is_dirty(work_.bodies.size(), 0);
     for (const SolverContact& c : work_.contacts) {
       if (is_held[at(c.a)]) is_dirty[at(c.b)] = 1;
@@ -152,6 +156,17 @@ class Guard {
     mark_due_with(is_dirty);
     for (auto& hits : known_) hits.clear();
     return true;
+  }
+
+  // Between what is held up and what holds it there is no room for the usual gaps: to insist on them would
+  // strain both without end.
+  void content_with_less() {
+    for (const SolverContact& c : work_.contacts) {
+      if (is_squeezed_.empty() || !is_squeezed_[at(c.a)] || !is_squeezed_[at(c.b)]) continue;
+      PairState& memory = state_.pairs[at(work_.pairs[at(c.pair)].state)];
+      const double least = 0.02 * settings_.kept_gap * work_.pairs[at(c.pair)].size;
+      memory.kept_gap = std::min(memory.kept_gap, std::max(least, c.slack + c.kept_gap));
+    }
   }
 
   // The bodies in hits, and from one to the next all that presses on them hard.
@@ -354,6 +369,7 @@ class Guard {
   ContactReport& report_;
   PathTest paths_;
   std::vector<char> must_test_, was_cut_, is_cut_, was_hit_;
+  std::vector<char> is_squeezed_;           // per body, by a scripted one that was held up; empty: nobody
   std::vector<double> spare_;               // per pair, m: ways this close to those that were tested are free
   std::vector<std::vector<PathHit>> hits_;  // per pair, earliest first
   std::vector<std::vector<PathHit>> known_;  // per pair: hits of all rounds
