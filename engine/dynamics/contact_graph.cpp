@@ -37,6 +37,7 @@ SolverContact make_solver_contact(const PairState& memory, const MotionWork& wor
   c.gap_start = found.gap;
   c.lean = found.lean;
   c.has_sides = pair.has_sides;
+  c.is_close = pair.is_close;
   c.can_creep = a.is_quiet && b.is_quiet && a.shape->kind != body::ShapeKind::sphere &&
                 b.shape->kind != body::ShapeKind::sphere;
   const auto known =

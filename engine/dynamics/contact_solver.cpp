@@ -329,7 +329,9 @@ class IslandSolver {
         const std::size_t k = i < count ? i : 2 * count - 1 - i;
         SolverContact& c = contact(k);
         excess = std::max(excess, visit_contact(k, c));
-        has_strain = has_strain || (c.has_sides && std::min(c.impulse[0], c.warm[0]) > c.strained_from);
+        const double lasting = std::min(c.impulse[0], c.warm[0]);
+        has_strain =
+            has_strain || (c.has_sides && lasting > c.strained_from) || (c.is_close && c.impulse[0] > 0.0);
       }
       const double enough = round + 1 < how.plain ? how.enough : how.loose;
       if (excess < (has_strain ? how.tight : enough)) return;

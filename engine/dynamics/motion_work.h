@@ -97,6 +97,7 @@ struct SolverContact {
   Vec3 held_from = Vec3::Zero();  // m: `change` where friction began to hold
   bool can_creep = false;         // both are quiet, and no sphere rolls
   bool has_sides = false;         // one of the two is solid
+  bool is_close = false;          // both are, and were placed nearer than the usual gap
   // N s along the normal in a substep: many times what the lighter body weighs. What is left at such a
   // contact is felt far away.
   double strained_from = 0.0;
@@ -135,6 +136,7 @@ struct WorkPair {
   bool is_flipped = false;   // the plane has the lower number
   bool is_analytic = false;  // spheres and boxes
   bool has_sides = false;    // the gap has a sign: a plane, two solids, or a sphere and a surface
+  bool is_close = false;     // two solids that were placed nearer than the usual gap
   bool is_fast = false;      // moves further than a feature list is good for
   bool needs_search = false;
   bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is

@@ -30,6 +30,7 @@ constexpr double kFastSlack = 0.25;    // of the slack: a list for one step need
 constexpr double kAlwaysNear = 3.0;    // of the usual gap
 constexpr double kRaiseTime = 0.5;     // s
 constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks less only touches
+constexpr double kClose = 0.5;         // of the usual gap: there is hardly room for what sweeps leave
 constexpr double kImpactWindow = 0.1;  // share of the step after the first hit in which others count
 
 Contact make_contact(const collision::FeaturePair& features, const collision::FeatureGap& gap) {
@@ -208,7 +209,7 @@ void meet_plane(const MotionWork& work, WorkPair& pair) {
 
 // The gap that is kept is the usual one unless the pair was found closer: it never pushes newborn pieces
 // apart.
-void adapt_gap(const ContactSettings& settings, PairState& memory, WorkPair& pair) {
+void adapt_gap(const ContactSettings& settings, const MotionWork& work, PairState& memory, WorkPair& pair) {
   const double usual = settings.kept_gap * pair.size;
   double least = usual;
   for (const Contact& c : pair.contacts) {
@@ -222,6 +223,8 @@ void adapt_gap(const ContactSettings& settings, PairState& memory, WorkPair& pai
   memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
   pair.kept_gap = memory.kept_gap;
   pair.threshold = impact_threshold(settings, memory.kept_gap);
+  const auto is_shell = [&](int i) { return work.bodies[at(i)].shape->kind == ShapeKind::shell; };
+  pair.is_close = memory.kept_gap < kClose * usual && !is_shell(pair.a) && !is_shell(pair.b);
 }
 
 bool is_crossing(const MotionWork& work, const WorkPair& pair) {
@@ -238,7 +241,7 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
     pair.least_gap = pair.clearance;
     pair.is_free_certified = true;
     memory.is_exempt = false;
-    adapt_gap(settings, memory, pair);
+    adapt_gap(settings, work, memory, pair);
     return;
   }
   if (pair.is_plane) {
@@ -252,7 +255,7 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
     memory.is_exempt = is_crossing(work, pair);
     if (memory.is_exempt && !pair.has_sides) pair.contacts.clear();
   }
-  adapt_gap(settings, memory, pair);
+  adapt_gap(settings, work, memory, pair);
   std::vector<std::uint64_t> loaded;
   for (const auto& c : memory.contacts) {
     if (c.was_loaded) loaded.push_back(c.feature_key);

@@ -126,4 +126,43 @@ TEST_CASE("plates edge to edge in one plane within 1e-5 of their size stay so, a
   CHECK(scene.bodies[2].velocity.x() == Approx(0.5).epsilon(1e-6));
 }
 
+TEST_CASE("ten boxes placed exactly touching stand from the first step on") {
+  for (const int rate : {60, 240, 960}) {
+    for (const double height : {0.2, 0.1, 0.3333}) {
+      test::Scene scene;
+      scene.settings.time_step = 1.0 / rate;
+      scene.add(test::make_plane());
+      std::vector<double> places;
+      for (int k = 0; k < 10; ++k) {
+        places.push_back(0.5 * height + k * height);
+        scene.add(test::make_box(Vec3(0.1, 0.5 * height, 0.15), Vec3(0, places.back(), 0)));
+      }
+      const double usual = scene.settings.kept_gap * 2.0 * scene.bodies[1].shape->bounding_radius;
+      const double energy = scene.energy();
+      double most_energy = energy, lowest = 0.0, highest = 0.0;
+      int cut = 0;
+      for (int i = 0; i < 2 * rate; ++i) {
+        scene.step();
+        cut += scene.report.failsafe_steps;
+        most_energy = std::max(most_energy, scene.energy());
+        for (std::size_t k = 0; k < 10; ++k) {
+          const double sunk = scene.bodies[k + 1].pose.translation.y() - places[k];
+          lowest = std::min(lowest, sunk);
+          highest = std::max(highest, sunk);
+        }
+      }
+      INFO(rate << " steps a second, height " << height << ": sank by " << lowest << ", rose by " << highest
+                << " m");
+      CHECK(cut == 0);
+      CHECK(scene.report.crossing_pairs == 0);
+      CHECK(lowest > -usual);
+      CHECK(highest < 10.0 * usual);
+      double mass = 0.0;
+      for (const auto& b : scene.bodies) mass += b.is_dynamic() ? b.shape->mass : 0.0;
+      CHECK(most_energy - energy < mass * 9.81 * 10.0 * usual);
+      CHECK(std::abs(scene.bodies[10].pose.translation.x()) < 2e-3);  // a hundredth of its width
+    }
+  }
+}
+
 }  // namespace shatterbox
