@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sandbox/report/statistics.h"
+#include "sandbox/report/text_file.h"
 
 namespace shatterbox::sandbox::report {
 
@@ -201,18 +202,7 @@ Json make_json(const RunRecord& record) {
 }
 
 std::string write_report(const std::string& path, const RunRecord& record) {
-  const std::string part = path + ".part";
-  errno = 0;
-  {
-    std::ofstream stream(part);
-    stream << make_json(record).dump(2) << "\n";
-    stream.close();
-    if (!stream) return fmt::format("{} cannot be written: {}", path, std::strerror(errno));
-  }
-  std::error_code code;
-  std::filesystem::rename(part, path, code);
-  if (code) return fmt::format("{} cannot be written: {}", path, code.message());
-  return {};
+  return write_text(path, make_json(record).dump(2) + "\n");
 }
 
 }  // namespace shatterbox::sandbox::report

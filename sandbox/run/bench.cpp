@@ -1,19 +1,15 @@
 #include "sandbox/run/bench.h"
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "sandbox/report/text_file.h"
+#include "sandbox/run/again.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/options.h"
 #include "sandbox/scene/nearest_name.h"
@@ -25,55 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A folder that goes when the benchmark does.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string name = (fs::temp_directory_path() / "shatterbox-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~WorkFolder() {
-    std::error_code code;
-    if (!path_.empty()) fs::remove_all(path_, code);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 bool has_pictures(const Benchmark& benchmark) {
   return std::find(benchmark.arguments.begin(), benchmark.arguments.end(), "--no-render") ==
          benchmark.arguments.end();
-}
-
-/// Runs this program again. Its exit status; what it says goes to `log`.
-int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
-  std::vector<std::string> words{"shatterbox"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    if (file >= 0) {
-      dup2(file, STDOUT_FILENO);
-      dup2(file, STDERR_FILENO);
-    }
-    execv("/proc/self/exe", pointers.data());
-    _exit(127);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) < 0) return kFailed;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
-}
-
-std::string read_all(const fs::path& path) {
-  std::ifstream stream(path);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// One run of one benchmark, as a row; nothing, after saying why, if it failed.
@@ -95,11 +45,11 @@ std::optional<Json> measure(const Benchmark& benchmark, int threads, const Bench
     arguments.emplace_back("0.1");
   }
   const int status = run_again(arguments, log);
-  const auto json = nlohmann::json::parse(read_all(report), nullptr, false);
+  const auto json = nlohmann::json::parse(report::read_text(report), nullptr, false);
   const bool is_done =
       status == kDone || (options.has_audit && status == kDiffers);  // the table tells the findings
   if (!is_done || json.is_discarded()) {
-    fmt::print(stderr, "{}: ended with status {}\n{}\n", benchmark.name, status, read_all(log));
+    fmt::print(stderr, "{}: ended with status {}\n{}\n", benchmark.name, status, report::read_text(log));
     return std::nullopt;
   }
   Json row = bench_row(benchmark.name, json);
@@ -136,13 +86,6 @@ std::vector<Benchmark> chosen(const std::vector<std::string>& names) {
     if (names.empty() || is_named) list.push_back(benchmark);
   }
   return list;
-}
-
-bool write_json(const std::string& file, const Json& rows) {
-  std::ofstream stream(file);
-  stream << rows.dump(2) << "\n";
-  stream.close();
-  return static_cast<bool>(stream);
 }
 
 }  // namespace
@@ -257,9 +200,12 @@ int run_bench(const BenchOptions& options) {
   }
   fmt::print("{}", bench_table(rows));
   std::fflush(stdout);
-  if (!options.report.empty() && !write_json(options.report, rows)) {
-    fmt::print(stderr, "failed: {} cannot be written\n", options.report);
-    return kFailed;
+  if (!options.report.empty()) {
+    const std::string fault = report::write_text(options.report, rows.dump(2) + "\n");
+    if (!fault.empty()) {
+      fmt::print(stderr, "failed: {}\n", fault);
+      return kFailed;
+    }
   }
   return has_failed || is_interrupted() ? kFailed : kDone;
 }

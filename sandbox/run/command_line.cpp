@@ -5,6 +5,8 @@
 #include <cstdio>
 
 #include "sandbox/run/bench.h"
+#include "sandbox/run/diff.h"
+#include "sandbox/run/golden.h"
 #include "sandbox/run/run.h"
 #include "sandbox/scene/nearest_name.h"
 
@@ -22,11 +24,10 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("--seed", options.seed, "seed of flaws, grains and jitter");
 }
 
-void add_run_options(CLI::App& command, Options& options) {
-  command.add_option("-o", options.video, "video: .mp4 .mkv .webm .gif")->type_name("FILE");
-  command.add_option("--frames", options.frames_folder, "folder for one PNG a frame")->type_name("DIR");
-  command.add_option("--meshes", options.meshes_folder, "folder for one OBJ a frame")->type_name("DIR");
-  command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
+void add_picture_options(CLI::App& command, Options& options) {
+  command.add_option("--stills", options.stills, "draw these moments only, s")
+      ->delimiter(',')
+      ->type_name("TIME,..");
   command.add_option("--size", options.size, "picture size")
       ->capture_default_str()
       ->type_name("WIDTHxHEIGHT");
@@ -36,6 +37,14 @@ void add_run_options(CLI::App& command, Options& options) {
   command.add_option("--quality", options.quality, "preview or full")
       ->capture_default_str()
       ->check(CLI::IsMember({"preview", "full"}));
+}
+
+void add_run_options(CLI::App& command, Options& options) {
+  command.add_option("-o", options.video, "video: .mp4 .mkv .webm .gif")->type_name("FILE");
+  command.add_option("--frames", options.frames_folder, "folder for one PNG a frame")->type_name("DIR");
+  command.add_option("--meshes", options.meshes_folder, "folder for one OBJ a frame")->type_name("DIR");
+  command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
+  add_picture_options(command, options);
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));
@@ -56,10 +65,40 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
   command.add_flag("--brief", options.is_brief, "a tenth of a second each: does everything run?");
 }
 
+void add_diff_options(CLI::App& command, DiffOptions& options) {
+  command.add_option("EXPECTED", options.expected, "a PNG, a folder of PNGs or a video")->required();
+  command.add_option("ACTUAL", options.actual, "another one of the kind")->required();
+  command.add_option("--tolerance", options.tolerance, "default, exact, video, or levels=2,share=0.0001,..")
+      ->capture_default_str();
+  command.add_option("--report", options.report, "every frame's numbers in JSON")->type_name("FILE");
+  command.add_option("--junit", options.junit, "the same as JUnit XML, for test farms")->type_name("FILE");
+  command.add_option("--picture", options.picture, "the worst frame's difference as a PNG")
+      ->type_name("FILE");
+  command.add_option("--pictures", options.pictures_folder, "folder for every differing frame's")
+      ->type_name("DIR");
+}
+
+void add_golden_options(CLI::App& make, CLI::App& check, GoldenOptions& options) {
+  make.add_option("DIR", options.folder, "the folder of the goldens")->required();
+  make.add_option("SCENE", options.run.scene, "a .toml file, or a scene's name; none: all again");
+  make.add_option("--name", options.name, "instead of the scene's; without SCENE: this one again");
+  make.add_option("--reason", options.reason, "why it is made, or made again; kept with it");
+  add_scene_options(make, options.run);
+  add_picture_options(make, options.run);
+  check.add_option("DIR", options.folder, "the folder of the goldens")->required();
+  check.add_option("NAME", options.names, "goldens; none: all");
+  check.add_option("--tolerance", options.tolerance, "of pictures: default, exact, video, or levels=2,..")
+      ->capture_default_str();
+  check.add_option("--report", options.report, "what was found, in JSON")->type_name("FILE");
+  check.add_option("--junit", options.junit, "the same as JUnit XML, for test farms")->type_name("FILE");
+  check.add_option("--pictures", options.pictures_folder, "folder for pictures of what differs")
+      ->type_name("DIR");
+}
+
 /// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.
 bool is_known_verb(const std::string& verb) {
-  const std::vector<std::string> verbs{"run", "check", "bench", "list"};
-  const std::vector<std::string> later{"plan", "diff", "study"};
+  const std::vector<std::string> verbs{"run", "check", "diff", "golden", "bench", "list"};
+  const std::vector<std::string> later{"plan", "study"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
   if (std::find(later.begin(), later.end(), verb) != later.end()) {
@@ -86,6 +125,16 @@ int run_command_line(int argc, char** argv) {
   BenchOptions bench;
   CLI::App* bench_command = app.add_subcommand("bench", "time the benchmark scenes, one after the other");
   add_bench_options(*bench_command, bench);
+  DiffOptions diff;
+  CLI::App* diff_command = app.add_subcommand("diff", "compare pictures, folders of pictures or videos");
+  add_diff_options(*diff_command, diff);
+  GoldenOptions golden;
+  CLI::App* golden_command =
+      app.add_subcommand("golden", "keep scenes' pictures and states, and check that they come out again");
+  golden_command->require_subcommand(1);
+  CLI::App* make_command = golden_command->add_subcommand("make", "keep what a scene shows, or keep it anew");
+  CLI::App* golden_check = golden_command->add_subcommand("check", "run the scenes again and compare");
+  add_golden_options(*make_command, *golden_check, golden);
   app.add_subcommand("list", "scenes, materials, looks and events");
   run_command->add_option("SCENE", options.scene, "a .toml file, or the name of a scene that came along");
   check_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
@@ -98,6 +147,9 @@ int run_command_line(int argc, char** argv) {
   }
   if (app.got_subcommand("run")) return run_scene(options);
   if (app.got_subcommand("bench")) return run_bench(bench);
+  if (app.got_subcommand("diff")) return run_diff(diff);
+  if (app.got_subcommand("golden"))
+    return make_command->parsed() ? make_goldens(golden) : check_goldens(golden);
   return app.got_subcommand("check") ? check_scene(options) : list_all();
 }
 

@@ -77,6 +77,10 @@ scene::SceneChanges changes_of(const Options& options) {
   return changes;
 }
 
+int frame_at(double time, int frames_per_second) {
+  return static_cast<int>(time * frames_per_second + 1e-9);
+}
+
 void prepare_outputs(const Options& options, scene::Problems& problems) {
   if (!options.video.empty()) {
     const render::Status status = render::can_write_video(options.video);

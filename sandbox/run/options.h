@@ -18,11 +18,12 @@ inline constexpr int kBadInput = 2;  // bad input or usage
 inline constexpr int kFailed = 3;    // failed, or was interrupted, while running
 
 struct Options {
-  std::string scene;          // path or name; empty: none given
-  std::string video;          // empty: NAME.mp4, unless there is another output
-  std::string frames_folder;  // PNG
-  std::string meshes_folder;  // OBJ
-  std::string report;         // JSON
+  std::string scene;           // path or name; empty: none given
+  std::string video;           // empty: NAME.mp4, unless there is another output
+  std::string frames_folder;   // PNG
+  std::vector<double> stills;  // s: only these moments are drawn; empty: all
+  std::string meshes_folder;   // OBJ
+  std::string report;          // JSON
   std::string size = "640x360";
   int frames_per_second = 60;
   std::string quality = "preview";
@@ -40,6 +41,9 @@ std::optional<render::Size> parse_size(const std::string& text, scene::Problems&
 
 /// --set, --seconds, --seed and --script, as changes to a scene.
 scene::SceneChanges changes_of(const Options& options);
+
+/// The frame that is on the screen at a time, s.
+int frame_at(double time, int frames_per_second);
 
 /// Makes the output folders and finds out, before any work, what cannot be written.
 void prepare_outputs(const Options& options, scene::Problems& problems);

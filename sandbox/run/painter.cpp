@@ -43,7 +43,7 @@ struct Painter::Room {
 
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::deque<render::Frame> waiting;
+  std::deque<std::pair<render::Frame, int>> waiting;  // with their numbers
   bool is_ending = false;
   std::string error;
   std::atomic<int> finished{0};
@@ -55,14 +55,14 @@ struct Painter::Room {
     changed.notify_all();
   }
 
-  std::optional<render::Frame> next() {
+  std::optional<std::pair<render::Frame, int>> next() {
     std::unique_lock lock(mutex);
     changed.wait(lock, [this] { return !waiting.empty() || is_ending; });
     if (waiting.empty()) return std::nullopt;
-    render::Frame frame = std::move(waiting.front());
+    auto first = std::move(waiting.front());
     waiting.pop_front();
     changed.notify_all();
-    return frame;
+    return first;
   }
 
   /// Pictures to disk. False if that failed.
@@ -84,14 +84,16 @@ struct Painter::Room {
     painted.gl_renderer = renderer.gl_renderer();
     auto last = start;
     double encoded = 0.0;
-    for (int number = 0; auto frame = next(); ++number) {
-      if (number == 0) {  // compiles the shaders for this processor; not a frame's cost
-        (void)renderer.render(*frame);
+    while (auto waited = next()) {
+      const auto& [frame, number] = *waited;
+      if (painted.numbers.empty()) {  // compiles the shaders for this processor; not a frame's cost
+        (void)renderer.render(frame);
         painted.start = milliseconds_since(start);
         last = Clock::now();
       }
       const auto begin = Clock::now();
-      render::Image image = renderer.render(*frame);
+      render::Image image = renderer.render(frame);
+      painted.numbers.push_back(number);
       painted.render.push_back(milliseconds_since(begin));
       painted.hashes.push_back(hash_image(image));
       const auto written = Clock::now();
@@ -102,7 +104,7 @@ struct Painter::Room {
       encoded = encoder;
       painted.frame.push_back(milliseconds_since(last));
       last = Clock::now();
-      finished.store(number + 1);
+      finished.store(static_cast<int>(painted.numbers.size()));
     }
   }
 };
@@ -131,11 +133,11 @@ Painter::~Painter() {
   (void)finish();
 }
 
-bool Painter::add(render::Frame frame) {
+bool Painter::add(render::Frame frame, int number) {
   std::unique_lock lock(room_->mutex);
   room_->changed.wait(lock, [this] { return room_->waiting.size() < kMostWaiting || !room_->error.empty(); });
   if (!room_->error.empty()) return false;
-  room_->waiting.push_back(std::move(frame));
+  room_->waiting.emplace_back(std::move(frame), number);
   room_->changed.notify_all();
   return true;
 }

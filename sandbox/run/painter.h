@@ -21,8 +21,9 @@ struct PainterSettings {
   std::string frames_folder;  // empty: none
 };
 
-/// What became of the frames that were added; times in ms, by frame.
+/// What became of the frames that were added; times in ms, in the order of the frames.
 struct Painted {
+  std::vector<int> numbers;  // of the frames
   std::vector<std::uint64_t> hashes;
   std::vector<double> frame, render, encode;
   double start = 0.0;  // making the renderer and the warm-up picture
@@ -36,8 +37,9 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// Hands a frame over; waits while two are waiting. False once something failed: see error().
-  bool add(render::Frame frame);
+  /// Hands frame `number` of the film over; waits while two are waiting. False once something failed: see
+  /// error().
+  bool add(render::Frame frame, int number);
   /// Waits for the last frame, closes the video. False if something failed.
   bool finish();
 

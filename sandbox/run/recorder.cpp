@@ -41,10 +41,13 @@ void Recorder::note_pictures(const Painted& painted) {
   record.gl_renderer = painted.gl_renderer;
   record.frame_hashes = painted.hashes;
   record.load.emplace_back("renderer", painted.start);
-  for (std::size_t i = 0; i < std::min(painted.frame.size(), record.frames.size()); ++i) {
-    record.frames[i].frame = std::max(painted.frame[i] - record.frames[i].audit, 0.0);
-    record.frames[i].render = painted.render[i];
-    record.frames[i].encode = painted.encode[i];
+  for (std::size_t i = 0; i < painted.frame.size(); ++i) {
+    const auto number = static_cast<std::size_t>(painted.numbers[i]);
+    if (number >= record.frames.size()) continue;
+    report::FrameRecord& frame = record.frames[number];
+    frame.frame = std::max(painted.frame[i] - frame.audit, 0.0);
+    frame.render = painted.render[i];
+    frame.encode = painted.encode[i];
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -43,6 +44,20 @@ struct Job {
   std::optional<scene::BuiltScene> built;
 };
 
+void check_stills(const Options& options, double seconds, scene::Problems& problems) {
+  for (const double time : options.stills)
+    if (!(time >= 0.0 && time < seconds))
+      scene::book(problems, scene::Place{"--stills", 0, 0},
+                  fmt::format("{:g} s is not in the film, which goes from 0 to {:g} s", time, seconds),
+                  "--seconds makes it longer");
+}
+
+bool is_drawn(const Options& options, int frame) {
+  return options.stills.empty() ||
+         std::any_of(options.stills.begin(), options.stills.end(),
+                     [&](double time) { return frame_at(time, options.frames_per_second) == frame; });
+}
+
 /// Reads everything; what is wrong goes to `problems`.
 Job make_job(const Options& options, Recorder& recorder, scene::Problems& problems) {
   Job job{options, {}, std::nullopt, std::nullopt};
@@ -60,8 +75,16 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
     scene::book(problems, scene::Place{"--no-render", 0, 0}, "no pictures, but -o or --frames asks for some",
                 "leave one of them out");
   }
+  if (!options.stills.empty() && options.frames_folder.empty()) {
+    scene::book(problems, scene::Place{"--stills", 0, 0}, "there is no folder for the pictures",
+                "name one: --frames DIR");
+  }
+  if (!options.stills.empty() && !options.video.empty()) {
+    scene::book(problems, scene::Place{"--stills", 0, 0}, "single moments make no video", "leave -o out");
+  }
   if (file.empty()) return job;
   job.scene = scene::read_scene_file(file, changes_of(options), problems);
+  if (job.scene) check_stills(options, job.scene->seconds, problems);
   prepare_outputs(job.options, problems);
   if (!problems.empty()) return job;
   const auto start = Clock::now();
@@ -133,15 +156,16 @@ std::string play(Job& job, Recorder& recorder, Painter* painter) {
       recorder.note_step(world);
     }
     std::optional<render::Frame> picture;
-    if (painter != nullptr) picture = view.make_frame();
+    if (painter != nullptr && is_drawn(job.options, frame)) picture = view.make_frame();
     const double audit_time = recorder.record.audit_time - audited;
     recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
     if (!job.options.meshes_folder.empty()) {
       std::string fault = report::write_obj_frame(job.options.meshes_folder, frame, world);
       if (!fault.empty()) return fault;
     }
-    if (picture && !painter->add(std::move(*picture))) return painter->error();
-    progress.show(painter != nullptr ? painter->finished_frames() : frame + 1,
+    if (picture && !painter->add(std::move(*picture), frame)) return painter->error();
+    const bool is_whole_film = painter != nullptr && job.options.stills.empty();
+    progress.show(is_whole_film ? painter->finished_frames() : frame + 1,
                   fmt::format("{:.2f} s, {} bodies", world.time(), world.bodies().size()));
   }
   // The picture of the last frame shows its begin; the world is asked for `seconds` in full.

@@ -18,6 +18,18 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("", "");
   refused("runn good.toml", "did you mean \"run\"?");
   refused("study", "not available in this version");
+  refused("diff one.png", "ACTUAL");
+  refused("diff none.png none.png", "none.png: there is no such file");
+  refused("diff good.toml good.toml", "good.toml");
+  refused("diff a b --tolerance exakt", "did you mean \"exact\"?");
+  refused("golden", "subcommand");
+  refused("golden check none", "there is no golden in this folder");
+  refused("golden make g good.toml --stills 0.1", "--reason");
+  refused("golden make g good.toml --reason x", "--stills");
+  refused("golden make g good.toml --reason x --stills 7", "7 s is not in the film");
+  refused("golden make g goood.toml --reason x --stills 0.1", "goood.toml");
+  refused("run good.toml --stills 0.1", "--frames");
+  refused("run good.toml --stills 0.1 --frames f -o v.mp4", "--stills");
   refused("bench bots", "did you mean \"bowls\"?");
   refused("bench boats_10 --threads 1000", "--threads");
   refused("run", "ornament");
@@ -93,6 +105,90 @@ TEST_CASE(
     for (const char* phase : {"busy", "after", "impact", "rest"}) CHECK(row["phases"].contains(phase));
   }
   CHECK(program(folder, "bench boats_10 --brief --report no/such/b.json").status == 3);
+}
+
+TEST_CASE("stills are the pictures that the whole film has at these moments") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string picture = " --size 64x48 --fps 20 --seconds 0.3 --frames ";
+  REQUIRE(program(folder, "run good.toml" + picture + "all").status == 0);
+  const Outcome stills =
+      program(folder, "run good.toml" + picture + "some --stills 0.1,0.26 --report r.json");
+  INFO(stills.err);
+  REQUIRE(stills.status == 0);
+  CHECK(read_text(folder / "some/frame_000002.png") == read_text(folder / "all/frame_000002.png"));
+  CHECK(read_text(folder / "some/frame_000005.png") == read_text(folder / "all/frame_000005.png"));
+  CHECK_FALSE(fs::exists(folder / "some/frame_000003.png"));
+  const auto json = read_json(folder / "r.json");
+  CHECK(json["frame_hashes"].size() == 2);
+  CHECK(json["steps"] == 72);  // the world goes on to its end
+}
+
+TEST_CASE("diff: 0 for the same, 1 and the place for a difference, of pictures, folders and videos") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string run = "run good.toml --size 64x48 --fps 20 --seconds 0.3 ";
+  REQUIRE(program(folder, run + "--frames a -o a.mp4").status == 0);
+  REQUIRE(program(folder, run + "--frames b -o b.mkv --set crate.colour='\"#ff0000\"'").status == 0);
+  CHECK(program(folder, "diff a a --tolerance exact").status == 0);
+  CHECK(program(folder, "diff a.mp4 a.mp4 --tolerance exact").status == 0);
+  CHECK(program(folder, "diff a/frame_000000.png a/frame_000000.png").status == 0);
+  CHECK(program(folder, "diff a.mp4 b.mkv").status == 1);
+  // A film and its own frames: the encoder's loss is what the tolerance for videos is for.
+  CHECK(program(folder, "diff a a.mp4").status == 1);
+  CHECK(program(folder, "diff a a.mp4 --tolerance video").status == 0);
+  const Outcome found =
+      program(folder, "diff a b --report r.json --junit j.xml --picture d.png --pictures ds");
+  INFO(found.out << found.err);
+  CHECK(found.status == 1);
+  CHECK(found.out.find("first  frame_000000.png") != std::string::npos);
+  CHECK(read_json(folder / "r.json")["frames_compared"] == 6);
+  CHECK(read_text(folder / "j.xml").find("failures=\"6\"") != std::string::npos);
+  CHECK(fs::exists(folder / "d.png"));
+  CHECK(fs::exists(folder / "ds/frame_000005.png"));
+  CHECK(program(folder, "diff a b --report no/such/r.json").status == 2);
+}
+
+TEST_CASE("golden: made, checked, a change found and told, made again with a reason that is kept") {
+  const Folder folder;
+  fs::create_directories(folder / "scenes");
+  folder.write("scenes/good.toml", kSmallScene);
+  const Outcome made = program(
+      folder, "golden make g scenes/good.toml --size 64x48 --seconds 0.3 --stills 0.1,0.25 --reason first");
+  INFO(made.out << made.err);
+  REQUIRE(made.status == 0);
+  CHECK(fs::exists(folder / "g/good/frame_000006.png"));
+  // The scene is found from wherever one stands.
+  const Outcome good = shell(folder, "cd scenes && " SHATTERBOX_PROGRAM " golden check ../g");
+  INFO(good.out << good.err);
+  CHECK(good.status == 0);
+  CHECK(good.out.find("good: state equal; 2 pictures: the same, to the bit") == 0);
+
+  std::string changed = kSmallScene;
+  changed.replace(changed.find("radius = 0.05"), 13, "radius = 0.04");
+  folder.write("scenes/good.toml", changed);
+  const Outcome bad = program(folder, "golden check g good --report r.json --junit j.xml --pictures d");
+  CHECK(bad.status == 1);
+  CHECK(bad.out.find("state differs; 2 of 2 pictures differ") != std::string::npos);
+  CHECK(bad.out.find("golden make g --reason") != std::string::npos);
+  CHECK(read_json(folder / "r.json")[0]["same"] == false);
+  CHECK(read_text(folder / "j.xml").find("failures=\"1\"") != std::string::npos);
+  CHECK(fs::exists(folder / "d/good/frame_000006.png"));
+
+  REQUIRE(program(folder, "golden make g --reason 'smaller balls'").status == 0);
+  CHECK(program(folder, "golden check g").status == 0);
+  const auto golden = read_json(folder / "g/good/golden.json");
+  REQUIRE(golden["reasons"].size() == 2);
+  CHECK(golden["reasons"][0]["reason"] == "first");
+  CHECK(golden["reasons"][1]["reason"] == "smaller balls");
+  CHECK(golden["reasons"][1]["state_hash"] == golden["state_hash"]);
+  CHECK_FALSE(fs::exists(folder / "g/good.part"));
+  CHECK(program(folder, "golden check g god").status == 2);
+
+  // A scene that fails leaves the golden as it was.
+  folder.write("scenes/good.toml", "[scene\n");
+  CHECK(program(folder, "golden make g --reason broken").status == 2);
+  CHECK(read_json(folder / "g/good/golden.json")["reasons"].size() == 2);
 }
 
 TEST_CASE("the option --audit checks every step and leaves the result as it is") {

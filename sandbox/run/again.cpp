@@ -1,0 +1,50 @@
+#include "sandbox/run/again.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "sandbox/run/options.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+WorkFolder::WorkFolder() {
+  std::string name = (fs::temp_directory_path() / "shatterbox-XXXXXX").string();
+  if (mkdtemp(name.data()) != nullptr) path_ = name;
+}
+
+WorkFolder::~WorkFolder() {
+  std::error_code code;
+  if (!path_.empty()) fs::remove_all(path_, code);
+}
+
+int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
+  std::vector<std::string> words{"shatterbox"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (file >= 0) {
+      dup2(file, STDOUT_FILENO);
+      dup2(file, STDERR_FILENO);
+    }
+    execv("/proc/self/exe", pointers.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) < 0) return kFailed;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
+}
+
+}  // namespace shatterbox::sandbox::run
