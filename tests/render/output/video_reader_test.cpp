@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 9;
+constexpr int kSquareFrames = 9;
 
 /// A square that moves over a gradient.
 Image picture(int number) {
@@ -39,7 +39,7 @@ TEST_CASE("every frame of a video comes back, in order, with its colours") {
     const fs::path path =
         fs::temp_directory_path() / ("shatterbox_reader_" + std::to_string(getpid()) + ending);
     VideoFile file(path, {64, 48, 25, 12.0});
-    for (int i = 0; i < kFrames; ++i) REQUIRE(file.add(picture(i)));
+    for (int i = 0; i < kSquareFrames; ++i) REQUIRE(file.add(picture(i)));
     REQUIRE(file.close());
     VideoReader reader(path);
     REQUIRE(reader.status());
@@ -52,7 +52,7 @@ TEST_CASE("every frame of a video comes back, in order, with its colours") {
       ++count;
     }
     CHECK(reader.status());
-    CHECK(count == kFrames);
+    CHECK(count == kSquareFrames);
     fs::remove(path);
   }
 }
