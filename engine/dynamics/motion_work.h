@@ -73,6 +73,10 @@ struct WorkBody {
 /// A turn of more than this in a step, rad, is followed in parts: straight paths would cut its corner.
 inline constexpr double kStraightTurn = 0.5;
 
+/// What is no further apart, as a share of the pair's size, is in one place: there is no direction from one
+/// to the other.
+inline constexpr double kNoDistance = 1e-9;
+
 struct SolverContact {
   int a = 0, b = 0;  // numbers of the bodies
   int pair = 0;

@@ -227,10 +227,11 @@ void adapt_gap(const ContactSettings& settings, const MotionWork& work, PairStat
   pair.is_close = memory.kept_gap < kClose * usual && !is_shell(pair.a) && !is_shell(pair.b);
 }
 
-bool is_crossing(const MotionWork& work, const WorkPair& pair) {
+bool is_crossing(const MotionWork& work, const PairState& memory, const WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   if (pair.has_sides) return pair.least_gap < -kTouching * pair.size;
-  return collision::crosses(a.placed, b.placed);
+  return collision::crosses(a.placed, b.placed) ||
+         (memory.is_exempt && pair.least_gap <= kNoDistance * pair.size);
 }
 
 }  // namespace
@@ -252,7 +253,7 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
     meet_features(settings, work, memory, pair);
   }
   if (pair.is_first_seen || memory.is_exempt) {
-    memory.is_exempt = is_crossing(work, pair);
+    memory.is_exempt = is_crossing(work, memory, pair);
     if (memory.is_exempt && !pair.has_sides) pair.contacts.clear();
   }
   adapt_gap(settings, work, memory, pair);

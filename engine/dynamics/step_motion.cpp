@@ -7,6 +7,7 @@
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_solver.h"
 #include "engine/dynamics/motion_work.h"
+#include "engine/dynamics/parting.h"
 #include "engine/dynamics/rest.h"
 #include "engine/dynamics/scripted_motion.h"
 
@@ -280,6 +281,11 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     wake_struck(bodies, own, state, work.to_wake);
     find_candidate_pairs(bodies, own, state, work);
   }
+  // As many rounds as bodies lie in one place, at most.
+  for (std::size_t round = 0; round < bodies.size(); ++round) {
+    if (!part_coincident(bodies, own, state, work, report.parted)) break;
+    find_candidate_pairs(bodies, own, state, work);
+  }
   put_on_shelf(work, state);
   solve_motion(bodies, own, work);
   guard_motion(bodies, own, state, work, report);
@@ -301,6 +307,7 @@ void add_part(ContactReport&& part, ContactReport& step) {
   step.crossing_pairs = part.crossing_pairs;
   step.new_crossing_pairs.insert(step.new_crossing_pairs.end(), part.new_crossing_pairs.begin(),
                                  part.new_crossing_pairs.end());
+  step.parted.insert(step.parted.end(), part.parted.begin(), part.parted.end());
   step.frozen_share += part.frozen_share;
   for (body::Way& way : part.ways) {
     const auto place =

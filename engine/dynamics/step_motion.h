@@ -30,8 +30,9 @@ struct ContactReport {
   int longest_cut = 0;     // steps in a row, of the pair that was cut longest
   int crossing_pairs = 0;  // crossed when they were first seen, and still do
   std::vector<std::pair<body::BodyId, body::BodyId>> new_crossing_pairs;  // seen in this step
-  double frozen_share = 0.0;  // failsafe_steps / awake dynamic bodies
-  double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
+  std::vector<std::pair<body::BodyId, body::BodyId>> parted;  // lay exactly in each other: parting.h
+  double frozen_share = 0.0;                                  // failsafe_steps / awake dynamic bodies
+  double residual = 0.0;  // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
   std::vector<body::Way> ways;  // ascending id; if asked for: of bodies that did not go straight
   double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone

@@ -69,6 +69,7 @@ struct ContactFigures {
       0.0;  // m, over the run and all pairs but those that crossed at their start; 0: none near
   long crossing_pairs = 0;  // crossed when they were first seen: exempt until they have come apart
   std::vector<std::string> crossing_names;  // "a / b", of the first hundred
+  std::vector<std::string> parted_names;    // "a / b": b lay exactly in a and was set aside; a hundred
   int longest_cut = 0;                      // steps in a row in which the failsafe had to cut one pair short
   long failsafe_steps = 0;
   double frozen_share = 0.0;  // of body-steps

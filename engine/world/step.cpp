@@ -97,6 +97,10 @@ void book_contact(const dynamics::ContactReport& contact, const std::vector<body
     if (figures.crossing_names.size() < kMostNames)
       figures.crossing_names.push_back(name_of(bodies, a) + " / " + name_of(bodies, b));
   }
+  for (const auto& [a, b] : contact.parted) {
+    if (figures.parted_names.size() < kMostNames)
+      figures.parted_names.push_back(name_of(bodies, a) + " / " + name_of(bodies, b));
+  }
   figures.longest_cut = std::max(figures.longest_cut, contact.longest_cut);
   figures.failsafe_steps += contact.failsafe_steps > 0 ? 1 : 0;
   const double n = static_cast<double>(steps);

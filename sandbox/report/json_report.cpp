@@ -176,6 +176,7 @@ Json make_json(const RunRecord& record) {
                      {"longest_cut", w.contact.longest_cut},
                      {"crossing_pairs_at_start", w.contact.crossing_pairs},
                      {"crossing_names", w.contact.crossing_names},
+                     {"parted_names", w.contact.parted_names},
                      {"least_gap", number(w.contact.least_gap)}};
   if (w.contact.drift > 0.0) json["contact"]["drift"] = number(w.contact.drift);
   for (const world::ScriptedRow& row : w.scripted)

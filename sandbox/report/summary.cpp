@@ -111,6 +111,16 @@ std::string crossing_line(const RunRecord& record) {
                      contact.crossing_pairs > static_cast<long>(shown) ? ", ..." : "");
 }
 
+std::string parted_line(const RunRecord& record) {
+  const auto& names = record.world.contact.parted_names;
+  if (names.empty()) return {};
+  return fmt::format(
+      "{} lay exactly in each other: the second of each was set aside by a hundred thousandth of its size: "
+      "{}{}\n",
+      plural(static_cast<long>(names.size()), "pair", "pairs"), names.front(),
+      names.size() > 1 ? ", ..." : "");
+}
+
 /// Scripted bodies that something was in the way of: by more than rounding, and the braking that came of it.
 std::string behind_lines(const RunRecord& record) {
   constexpr double kNoticed = 1e-6;  // m
@@ -169,7 +179,8 @@ std::string make_summary(const RunRecord& record) {
     text += fmt::format("interrupted at {:.2f} of {:g} s\n", record.simulated_seconds, record.asked_seconds);
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
-          crossing_line(record) + behind_lines(record) + error_line(record) + audit_line(record);
+          crossing_line(record) + parted_line(record) + behind_lines(record) + error_line(record) +
+          audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,

@@ -1,0 +1,136 @@
+#include "engine/dynamics/parting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/collision/analytic_contact.h"
+#include "engine/core/index.h"
+#include "engine/dynamics/motion_work.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using body::Body;
+using body::ShapeKind;
+using core::at;
+
+constexpr double kAside = 0.03;  // of the usual gap: just more than the least that is kept
+
+collision::PlacedCollider place_at_pose(const WorkBody& w, const Pose& pose) {
+  collision::PlacedCollider placed;
+  placed.collider = w.collider;
+  place_at(w, pose, placed.start);
+  collision::refit_boxes(placed);
+  return placed;
+}
+
+class Parting {
+ public:
+  Parting(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
+          const MotionWork& work)
+      : bodies_(bodies), settings_(settings), state_(state), work_(work) {}
+
+  bool run(std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
+    bool is_changed = false;
+    for (const WorkPair& pair : work_.pairs) {
+      PairState& memory = state_.pairs[at(pair.state)];
+      const bool is_due = pair.is_first_seen && !pair.has_sides && !memory.is_exempt &&
+                          pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
+      if (!is_due || has_moved(pair.a) || has_moved(pair.b)) continue;
+      is_changed = true;
+      const int mover = choose(pair), other = mover == pair.a ? pair.b : pair.a;
+      if (!set_aside(pair, mover)) {
+        memory.is_exempt = true;
+        continue;
+      }
+      moved_.push_back(mover);
+      parted.emplace_back(bodies_[at(other)].id, bodies_[at(mover)].id);
+    }
+    return is_changed;
+  }
+
+ private:
+  bool has_moved(int i) const { return std::find(moved_.begin(), moved_.end(), i) != moved_.end(); }
+
+  // What can move; of two, the sheet on a solid, else who came later.
+  int choose(const WorkPair& pair) const {
+    if (!bodies_[at(pair.a)].is_dynamic()) return pair.b;
+    if (!bodies_[at(pair.b)].is_dynamic()) return pair.a;
+    const bool b_is_solid = work_.bodies[at(pair.b)].shape->kind != ShapeKind::shell;
+    return b_is_solid ? pair.a : pair.b;
+  }
+
+  Vec3 up() const {
+    const double g = settings_.gravity.norm();
+    return g > 0.0 ? Vec3(-settings_.gravity / g) : Vec3(Vec3::UnitY() + 0.1 * Vec3::UnitX());
+  }
+
+  // From the other towards the mover.
+  Vec3 direction(const WorkPair& pair, int mover) const {
+    const Vec3 first = pair.contacts.front().normal;
+    Vec3 sum = Vec3::Zero();
+    for (const collision::Contact& c : pair.contacts) {
+      if (c.gap <= kNoDistance * pair.size) sum += c.normal.dot(first) < 0.0 ? Vec3(-c.normal) : c.normal;
+    }
+    const double length = sum.norm();
+    const Vec3 away = length > 0.0 ? Vec3(sum / length) : first;
+    Vec3 way = mover == pair.a ? away : Vec3(-away);
+    const bool has_solid = work_.bodies[at(pair.a)].shape->kind != ShapeKind::shell ||
+                           work_.bodies[at(pair.b)].shape->kind != ShapeKind::shell;
+    if (!has_solid && way.dot(up()) < 0.0) way = -way;
+    return way;
+  }
+
+  bool set_aside(const WorkPair& pair, int mover) {
+    const double length = kAside * settings_.kept_gap * pair.size;
+    const Vec3 first = direction(pair, mover);
+    const Vec3 ways[] = {first,         -first,         up(),          -up(),
+                         Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitZ()};
+    for (const Vec3& way : ways) {
+      Pose pose = bodies_[at(mover)].pose;
+      pose.translation += length * way;
+      if (!is_free(mover, pose)) continue;
+      bodies_[at(mover)].pose = pose;
+      return true;
+    }
+    return false;
+  }
+
+  bool is_free(int mover, const Pose& pose) const {
+    const WorkBody& w = work_.bodies[at(mover)];
+    const collision::PlacedCollider placed = place_at_pose(w, pose);
+    return std::all_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
+      if (pair.a != mover && pair.b != mover) return true;
+      if (state_.pairs[at(pair.state)].is_exempt) return true;
+      const int number = pair.a == mover ? pair.b : pair.a;
+      const WorkBody& other = work_.bodies[at(number)];
+      const Pose& there = bodies_[at(number)].pose;
+      if (pair.is_plane) {
+        const Vec3 normal = there.rotation * Vec3::UnitY();
+        const auto is_above = [&](const Vec3& v) {
+          return normal.dot(v - there.translation) >= w.collider->radius;
+        };
+        return std::all_of(placed.start.begin(), placed.start.end(), is_above);
+      }
+      Vec3 normal;
+      if (pair.is_analytic)
+        return collision::analytic_gap(*w.shape, pose, *other.shape, there, normal) >= 0.0;
+      return !collision::crosses(placed, place_at_pose(other, there));
+    });
+  }
+
+  std::vector<Body>& bodies_;
+  const ContactSettings& settings_;
+  ContactState& state_;
+  const MotionWork& work_;
+  std::vector<int> moved_;  // in this run: their pairs are out of date
+};
+
+}  // namespace
+
+bool part_coincident(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
+                     const MotionWork& work, std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
+  return Parting(bodies, settings, state, work).run(parted);
+}
+
+}  // namespace shatterbox::dynamics
