@@ -8,8 +8,8 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kLaterVerbs{"push",    "explosion", "grab",   "release", "remove",
-                                           "gravity", "speed",     "camera", "overlay", "caption"};
+const std::vector<std::string> kLaterVerbs{"explosion", "grab",   "release", "gravity",
+                                           "speed",     "camera", "overlay", "caption"};
 
 std::vector<std::string> body_names(const SceneDescription& scene) {
   std::vector<std::string> names;
@@ -61,6 +61,39 @@ int read_thrown_body(TableReader& reader, const std::string& event_name, bool ha
   }
   body.is_held_back = true;
   return found;
+}
+
+/// The number of the body that an event acts on, -1 with a problem if it names none.
+int read_acted_body(TableReader& reader, const SceneDescription& scene) {
+  const auto name = reader.text("body");
+  if (!name) {
+    if (!reader.has("body"))
+      reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
+                         "add body = \"name\"");
+    return -1;
+  }
+  const int found = find_body(scene, *name);
+  if (found < 0)
+    reader.add_problem_at("body", fmt::format("there is no body \"{}\"", *name),
+                          hint_for_name(*name, body_names(scene), "bodies"));
+  return found;
+}
+
+Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
+  Push push;
+  if (const auto impulse = reader.vector("impulse", between(-1e6, 1e6, "N s"))) {
+    push.impulse = *impulse;
+    if (impulse->squaredNorm() == 0.0)
+      reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
+  } else if (!reader.has("impulse")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"impulse\"", reader.what()),
+                       "add impulse = [x, y, z] (N s)");
+  }
+  push.point = reader.vector("point", between(-1e6, 1e6, "m"));
+  if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
+    reader.add_problem_at("body", "what is static or scripted cannot be pushed",
+                          "give it motion = \"dynamic\"");
+  return push;
 }
 
 Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
@@ -119,15 +152,21 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
                        fmt::format("add do = one of {}", quoted_list(kEventVerbs)));
   }
   if (!verb) return;
-  const bool is_projectile = *verb == "projectile";
-  event.body = read_thrown_body(reader, event.name, is_projectile, scene);
+  const bool is_projectile = *verb == "projectile", is_push = *verb == "push";
+  const bool comes_in = is_projectile || *verb == "drop";
+  event.body =
+      comes_in ? read_thrown_body(reader, event.name, is_projectile, scene) : read_acted_body(reader, scene);
   if (is_projectile) {
     event.action = read_projectile(reader, scene);
     reader.foreign({"position"}, "a projectile starts at \"from\"");
   } else {
-    event.action = Drop{reader.vector("position", between(-1e6, 1e6, "m"))};
     reader.foreign({"from", "at_point", "at_body", "speed", "spin"}, "it is for do = \"projectile\"");
   }
+  if (*verb == "drop") event.action = Drop{reader.vector("position", between(-1e6, 1e6, "m"))};
+  if (!comes_in) reader.foreign({"position"}, "it is for do = \"drop\"");
+  if (is_push) event.action = read_push(reader, event.body, scene);
+  if (!is_push) reader.foreign({"impulse", "point"}, "it is for do = \"push\"");
+  if (*verb == "remove") event.action = Remove{};
   reader.finish();
   scene.events.push_back(std::move(event));
 }

@@ -128,13 +128,18 @@ struct Projectile {
 struct Drop {
   std::optional<Vec3> position;  // nothing: the body's own
 };
+struct Push {
+  Vec3 impulse = Vec3::Zero();  // N s, world
+  std::optional<Vec3> point;    // m, world; nothing: through the centre of mass
+};
+struct Remove {};
 
 struct EventEntry {
   Place place;
   std::string name;
   double at = 0.0;  // s
-  int body = -1;    // number in SceneDescription::bodies
-  std::variant<Projectile, Drop> action;
+  int body = -1;    // number in SceneDescription::bodies: what comes in, is pushed or goes
+  std::variant<Projectile, Drop, Push, Remove> action;
 };
 
 struct CameraKey {
@@ -190,6 +195,6 @@ inline const std::vector<std::string> kLookNames{"ornament", "glass",    "cerami
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
 inline const std::vector<std::string> kOverlayNames{"none", "stress", "pieces"};
-inline const std::vector<std::string> kEventVerbs{"projectile", "drop"};
+inline const std::vector<std::string> kEventVerbs{"projectile", "drop", "push", "remove"};
 
 }  // namespace shatterbox::sandbox::scene

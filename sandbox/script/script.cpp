@@ -12,21 +12,63 @@ namespace shatterbox::sandbox::script {
 
 namespace {
 
+/// What there is now of a body of the scene: itself, its copies, and all their pieces.
+std::vector<const body::Body*> parts_of(const scene::BuiltScene& built, int entry) {
+  std::vector<const body::Body*> parts;
+  for (const body::Body& body : built.world.bodies()) {
+    const auto original = built.origins.find(built.world.ancestry(body.id).original);
+    if (original != built.origins.end() && original->second.entry == entry) parts.push_back(&body);
+  }
+  return parts;
+}
+
 /// Where a body of the scene is now: its centre of mass, or that of all its pieces. Nothing if it is not
 /// there.
 std::optional<Vec3> centre_of(const scene::BuiltScene& built, int entry) {
   double mass = 0.0;
   Vec3 moment = Vec3::Zero();
   std::optional<Vec3> massless;
-  for (const body::Body& body : built.world.bodies()) {
-    const auto original = built.origins.find(built.world.ancestry(body.id).original);
-    if (original == built.origins.end() || original->second.entry != entry) continue;
-    mass += body.shape->mass;
-    moment += body.shape->mass * body.pose.translation;
-    if (!massless) massless = body.pose.translation;
+  for (const body::Body* body : parts_of(built, entry)) {
+    mass += body->shape->mass;
+    moment += body->shape->mass * body->pose.translation;
+    if (!massless) massless = body->pose.translation;
   }
   if (mass <= 0.0) return massless;
   return Vec3(moment / mass);
+}
+
+/// An impulse at a point goes to the part whose bounding ball is nearest to it; one without a point is shared
+/// by mass. A sentence if there is nothing to push.
+std::string push_bodies(const scene::Push& push, int entry, scene::BuiltScene& built) {
+  struct Share {
+    body::BodyId id;
+    Vec3 impulse, point;
+  };
+  std::vector<Share> shares;
+  double total = 0.0, least = 1e300;
+  const std::vector<const body::Body*> parts = parts_of(built, entry);
+  for (const body::Body* part : parts) total += part->shape->mass;
+  for (const body::Body* part : parts) {
+    const Vec3& centre = part->pose.translation;
+    if (!push.point) {
+      shares.push_back({part->id, push.impulse * (part->shape->mass / total), centre});
+      continue;
+    }
+    const double distance = (*push.point - centre).norm() - part->shape->bounding_radius;
+    if (distance >= least) continue;
+    least = distance;
+    shares = {{part->id, push.impulse, *push.point}};
+  }
+  for (const Share& share : shares) built.world.push_body(share.id, share.impulse, share.point);
+  return shares.empty() ? "its body is not there" : "";
+}
+
+/// A sentence if there is nothing to remove.
+std::string remove_bodies(int entry, scene::BuiltScene& built) {
+  std::vector<body::BodyId> ids;
+  for (const body::Body* part : parts_of(built, entry)) ids.push_back(part->id);
+  for (const body::BodyId id : ids) built.world.remove_body(id);
+  return ids.empty() ? "its body is not there" : "";
 }
 
 /// The motion of what an event brings in, or a sentence why it cannot be.
@@ -83,31 +125,34 @@ Script::Script(const scene::SceneDescription& scene) : scene_(scene), throws_(sc
                    [](const LateCopy& a, const LateCopy& b) { return a.due < b.due; });
 }
 
+std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& built,
+                             std::vector<std::string>& faults) {
+  auto description = describe(event, built, faults);
+  if (!description) return description.error();
+  if (const std::string obstacle = find_obstacle(built.world, description.value()); !obstacle.empty())
+    return fmt::format("{} is where its body would come in", obstacle);
+  const int count = ++throws_[static_cast<std::size_t>(event.body)];
+  if (count > 1) description.value().name += fmt::format("[{}]", count);
+  const auto id = built.world.add_body(description.value());
+  if (!id) return id.error();
+  built.origins[id.value()] = {event.body, count - 1};
+  return {};
+}
+
 void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& faults) {
   const double rate = built.world.settings().steps_per_second;
   for (; next_ < scene_.events.size(); ++next_) {
     const scene::EventEntry& event = scene_.events[next_];
     if (step_of(event.at, rate) > built.world.steps()) break;
-    auto description = describe(event, built, faults);
-    if (!description) {
-      faults.push_back(
-          fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, description.error()));
-      continue;
-    }
-    if (const std::string obstacle = find_obstacle(built.world, description.value()); !obstacle.empty()) {
-      faults.push_back(fmt::format("event \"{}\" at {:g} s did nothing: {} is where its body would come in",
-                                   event.name, event.at, obstacle));
-      continue;
-    }
-    const int count = ++throws_[static_cast<std::size_t>(event.body)];
-    if (count > 1) description.value().name += fmt::format("[{}]", count);
-    const auto id = built.world.add_body(description.value());
-    if (!id) {
-      faults.push_back(
-          fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, id.error()));
-      continue;
-    }
-    built.origins[id.value()] = {event.body, count - 1};
+    std::string fault;
+    if (const auto* push = std::get_if<scene::Push>(&event.action))
+      fault = push_bodies(*push, event.body, built);
+    else if (std::holds_alternative<scene::Remove>(event.action))
+      fault = remove_bodies(event.body, built);
+    else
+      fault = bring_in(event, built, faults);
+    if (!fault.empty())
+      faults.push_back(fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, fault));
   }
 }
 

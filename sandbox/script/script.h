@@ -37,6 +37,9 @@ class Script {
 
   void bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults);
   void play_events(scene::BuiltScene& built, std::vector<std::string>& faults);
+  /// A sentence why it could not be done, or nothing.
+  std::string bring_in(const scene::EventEntry& event, scene::BuiltScene& built,
+                       std::vector<std::string>& faults);
 
   const scene::SceneDescription& scene_;
   std::vector<LateCopy> copies_;   // ascending in time

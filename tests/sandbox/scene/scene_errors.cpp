@@ -165,6 +165,18 @@ const Broken kCorpus[] = {
      ""},
     {"[[event]]\nat=0\ndo = \"drop\"\nbody=\"floor\"\n[[body]]\nname=\"floor\"\nkind=\"plane\"\n",
      "t.toml:4:6", "is static and cannot be thrown", ""},
+    {"[[event]]\nat=0\ndo = "
+     "\"push\"\nbody=\"flor\"\nimpulse=[1,0,0]\n[[body]]\nname=\"floor\"\nkind=\"plane\"\n",
+     "t.toml:4:6", "there is no body", "did you mean \"floor\"?"},
+    {"[[event]]\nat=0\ndo = "
+     "\"push\"\nbody=\"floor\"\nimpulse=[1,0,0]\n[[body]]\nname=\"floor\"\nkind=\"plane\"\n",
+     "t.toml:4:6", "cannot be pushed", "dynamic"},
+    {"[[event]]\nat=0\ndo = \"push\"\nbody=\"b\"\n[[body]]\nname=\"b\"\nkind=\"sphere\"\n", "t.toml:1:1",
+     "has no \"impulse\"", "N s"},
+    {"[[event]]\nat=0\ndo = \"remove\"\n[[body]]\nname=\"b\"\nkind=\"sphere\"\n", "t.toml:1:1",
+     "names no body", "body = "},
+    {"[[event]]\nat=0\ndo = \"remove\"\nbody=\"b\"\nimpulse=[1,0,0]\n[[body]]\nname=\"b\"\nkind=\"sphere\"\n",
+     "t.toml:5:1", "does not belong here", "push"},
     // The vocabulary of later versions.
     {"[[body]]\nkind = \"solid\"\n", "t.toml:2:8", "kind = \"solid\" is not available in this version",
      "\"shell\""},

@@ -55,6 +55,44 @@ TEST_CASE("events land on the first step border at or after their time") {
   CHECK(script.is_over());
 }
 
+TEST_CASE(
+    "a push moves what it names by impulse over mass, its copies as one, and turns what it meets beside") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n"
+      "[[body]]\nname = \"box\"\nkind = \"box\"\nsize = [0.2, 0.4, 0.6]\ndensity = 1000\n"
+      "[[body]]\nname = \"row\"\nkind = \"box\"\nsize = 0.1\ndensity = 1000\nposition = [5,0,0]\n"
+      "repeat = {count = 3, spacing = [1,0,0]}\n"
+      "[[event]]\nat = 0\ndo = \"push\"\nbody = \"row\"\nimpulse = [0,6,0]\n"
+      "[[event]]\nat = 0\ndo = \"push\"\nbody = \"box\"\nimpulse = [0,0,12]\npoint = [0.1,0,0.3]\n"
+      "[[event]]\nat = 0.1\ndo = \"remove\"\nbody = \"row\"\n"
+      "[[event]]\nat = 0.2\ndo = \"push\"\nbody = \"row\"\nimpulse = [1,0,0]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  script::Script script(*reading.scene);
+  CHECK(script.play(*built).empty());
+  const auto bodies = built->world.bodies();
+  REQUIRE(bodies.size() == 4);
+  CHECK(bodies[0].velocity.isApprox(Vec3(0, 0, 12.0 / 48.0), 1e-12));
+  // r x J = (0.1, 0, 0.3) x (0, 0, 12) = (0, -1.2, 0); I_y = m (0.2^2 + 0.6^2) / 12.
+  CHECK(bodies[0].angular_velocity.isApprox(Vec3(0, -1.2 / (48.0 * 0.4 / 12.0), 0), 1e-12));
+  for (std::size_t i = 1; i < 4; ++i) CHECK(bodies[i].velocity.isApprox(Vec3(0, 2, 0), 1e-12));
+  while (built->world.time() < 0.15) {
+    built->world.step();
+    CHECK(script.play(*built).empty());
+  }
+  CHECK(built->world.bodies().size() == 1);
+  std::vector<std::string> faults;
+  while (built->world.time() < 0.25) {
+    built->world.step();
+    for (const std::string& fault : script.play(*built)) faults.push_back(fault);
+  }
+  REQUIRE(faults.size() == 1);
+  CHECK(faults[0].find("its body is not there") != std::string::npos);
+}
+
 TEST_CASE("copies with a time between them come in one after another, named and placed by their numbers") {
   const auto reading = scene::read(
       "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"drops\"\nkind = \"sphere\"\n"
