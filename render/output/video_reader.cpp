@@ -2,6 +2,10 @@
 
 #include "render/output/video_libav.h"
 
+extern "C" {
+#include <libavutil/log.h>
+}
+
 namespace shatterbox::render {
 
 struct VideoReader::Decoder {
@@ -70,6 +74,7 @@ std::optional<Image> VideoReader::Decoder::convert() {
 }
 
 VideoReader::VideoReader(const std::filesystem::path& path) : decoder_(std::make_unique<Decoder>()) {
+  av_log_set_level(AV_LOG_QUIET);  // status() tells what is wrong
   const int code = decoder_->open(path);
   if (code < 0) decoder_->status = {path.string() + ": " + in_words(code)};
 }

@@ -42,6 +42,8 @@ int run_diff(const DiffOptions& options) {
   outputs.report = options.report;
   outputs.frames_folder = options.pictures_folder;
   prepare_outputs(outputs, problems);
+  check_file("--junit", options.junit, problems);
+  check_file("--picture", options.picture, problems);
   if (!problems.empty()) {
     fmt::print(stderr, "{}\n", scene::describe(problems));
     return kBadInput;

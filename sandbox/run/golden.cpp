@@ -91,11 +91,16 @@ std::optional<nlohmann::json> play(const Json& golden, const fs::path& folder, c
 std::optional<Json> read_golden(const fs::path& folder, Refusal& refusal) {
   const fs::path file = folder / "golden.json";
   Json json = Json::parse(report::read_text(file.string()), nullptr, false);
-  const bool is_good = json.is_object() && json.value("golden_version", 0) == kGoldenVersion &&
-                       json.contains("scene") && json["scene"].is_string() && json.contains("arguments") &&
-                       json["arguments"].is_array() && json.contains("state_hash") &&
-                       json["state_hash"].is_string() && json.contains("reasons") &&
-                       json["reasons"].is_array();
+  const auto has = [&json](const char* key, Json::value_t kind) {
+    return json.contains(key) && json[key].type() == kind;
+  };
+  const bool is_good = json.is_object() && json.contains("golden_version") &&
+                       json["golden_version"] == kGoldenVersion && has("scene", Json::value_t::string) &&
+                       has("arguments", Json::value_t::array) && has("state_hash", Json::value_t::string) &&
+                       has("reasons", Json::value_t::array) &&
+                       (!json.contains("script") || json["script"].is_string()) &&
+                       std::all_of(json["arguments"].begin(), json["arguments"].end(),
+                                   [](const Json& word) { return word.is_string(); });
   if (is_good) return json;
   refusal = {kBadInput, fmt::format("{}: is no golden of version {}", file.string(), kGoldenVersion)};
   return std::nullopt;
@@ -267,6 +272,10 @@ int check_goldens(const GoldenOptions& options) {
   Refusal refusal;
   const auto tolerance = compare::parse_tolerance(options.tolerance, refusal.words);
   if (!tolerance) return tell({kBadInput, "--tolerance: " + refusal.words});
+  scene::Problems problems;
+  check_file("--report", options.report, problems);
+  check_file("--junit", options.junit, problems);
+  if (!problems.empty()) return tell({kBadInput, scene::describe(problems)});
   const auto names = find_goldens(options.folder, options.names, refusal);
   if (!names) return tell(refusal);
   std::vector<Checked> all;

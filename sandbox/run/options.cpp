@@ -29,14 +29,6 @@ std::string file_fault(const std::string& file) {
   return {};
 }
 
-void check_file(const char* option, const std::string& file, scene::Problems& problems) {
-  if (file.empty()) return;
-  const std::string fault = file_fault(file);
-  if (!fault.empty())
-    scene::book(problems, scene::Place{option, 0, 0}, fmt::format("{} cannot be written: {}", file, fault),
-                "");
-}
-
 void make_folder(const char* option, const std::string& folder, scene::Problems& problems) {
   if (folder.empty()) return;
   std::error_code code;
@@ -79,6 +71,14 @@ scene::SceneChanges changes_of(const Options& options) {
 
 int frame_at(double time, int frames_per_second) {
   return static_cast<int>(time * frames_per_second + 1e-9);
+}
+
+void check_file(const char* option, const std::string& file, scene::Problems& problems) {
+  if (file.empty()) return;
+  const std::string fault = file_fault(file);
+  if (!fault.empty())
+    scene::book(problems, scene::Place{option, 0, 0}, fmt::format("{} cannot be written: {}", file, fault),
+                "");
 }
 
 void prepare_outputs(const Options& options, scene::Problems& problems) {

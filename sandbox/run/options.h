@@ -45,6 +45,10 @@ scene::SceneChanges changes_of(const Options& options);
 /// The frame that is on the screen at a time, s.
 int frame_at(double time, int frames_per_second);
 
+/// Finds out, before any work, that a file cannot be written; `option` asked for it. An empty name is no
+/// file.
+void check_file(const char* option, const std::string& file, scene::Problems& problems);
+
 /// Makes the output folders and finds out, before any work, what cannot be written.
 void prepare_outputs(const Options& options, scene::Problems& problems);
 

@@ -147,6 +147,11 @@ TEST_CASE("diff: 0 for the same, 1 and the place for a difference, of pictures, 
   CHECK(fs::exists(folder / "d.png"));
   CHECK(fs::exists(folder / "ds/frame_000005.png"));
   CHECK(program(folder, "diff a b --report no/such/r.json").status == 2);
+  CHECK(program(folder, "diff a a --picture no/such/p.png").status == 2);
+  shell(folder, "head -c 1500 a.mp4 > cut.mp4");
+  const Outcome cut = program(folder, "diff cut.mp4 a.mp4");
+  CHECK(cut.status == 2);
+  CHECK(cut.err.find("cut.mp4") == 0);  // and nothing of what the decoder mutters
 }
 
 TEST_CASE("golden: made, checked, a change found and told, made again with a reason that is kept") {
@@ -184,6 +189,16 @@ TEST_CASE("golden: made, checked, a change found and told, made again with a rea
   CHECK(golden["reasons"][1]["state_hash"] == golden["state_hash"]);
   CHECK_FALSE(fs::exists(folder / "g/good.part"));
   CHECK(program(folder, "golden check g god").status == 2);
+  CHECK(program(folder, "golden check g --junit no/such/j.xml").status == 2);
+  fs::create_directories(folder / "damaged/x");
+  for (const char* text :
+       {"", "[]", "{\"golden_version\": \"1\"}",
+        "{\"golden_version\":1,\"scene\":\"s\",\"arguments\":[1],\"state_hash\":\"\",\"reasons\":[]}"}) {
+    folder.write("damaged/x/golden.json", text);
+    const Outcome damaged = program(folder, "golden check damaged");
+    CHECK(damaged.status == 2);
+    CHECK(damaged.err.find("damaged/x/golden.json: is no golden") != std::string::npos);
+  }
 
   // A scene that fails leaves the golden as it was.
   folder.write("scenes/good.toml", "[scene\n");
