@@ -13,13 +13,8 @@ namespace {
 using Node = geometry::TriangleTree::Node;
 using core::at;
 
-// Boxes of edges, triangles and nodes from those of the vertices.
+// Boxes of triangles and nodes from those of the vertices.
 void refit(const Collider& c, FeatureBoxes& boxes) {
-  boxes.edges.resize(c.edges.size());
-  for (std::size_t e = 0; e < c.edges.size(); ++e) {
-    boxes.edges[e] = boxes.vertices[at(c.edges[e][0])];
-    boxes.edges[e].include(boxes.vertices[at(c.edges[e][1])]);
-  }
   boxes.triangles.resize(c.triangles.size());
   for (std::size_t t = 0; t < c.triangles.size(); ++t) {
     TightBox& box = boxes.triangles[t] = boxes.vertices[at(c.triangles[t][0])];
@@ -45,71 +40,95 @@ float extent(const TightBox& box) {
   return (sides[0] + sides[1]) + sides[2];
 }
 
-// Descends two trees together; visit(leaf_a, leaf_b) for leaves that come within the margin.
+TightBox box_of_edge(const Collider& c, const FeatureBoxes& boxes, int edge) {
+  const auto [v, w] = c.edges[at(edge)];
+  TightBox box = boxes.vertices[at(v)];
+  box.include(boxes.vertices[at(w)]);
+  return box;
+}
+
+// Descends two trees together; visit(triangle_a, its box, triangle_b, its box, place of the latter in its
+// leaf) for triangles whose boxes come within the margin.
 class Descent {
  public:
   Descent(const Collider& a, const FeatureBoxes& boxes_a, const Collider& b, const FeatureBoxes& boxes_b,
           const TightWay& way, double margin)
       : a_(a), b_(b), boxes_a_(boxes_a), boxes_b_(boxes_b), way_(way) {
-    const float m = round_up(margin);
+    const float m = round_up(margin), beyond = m * (1.0F + 1e-5F);
     reach_squared_ = m * m * (1.0F + 1e-5F);
+    reach_ = BoxLanes{beyond, beyond, beyond, beyond};
   }
 
   float reach_squared() const { return reach_squared_; }
+
+  // Mostly one axis tells; what it does not, the distance does.
+  bool is_about_near(const TightBox& box_a, const TightBox& box_b) const {
+    return !any_exceeds(apart(box_a, box_b), reach_);
+  }
   bool is_near(const TightBox& box_a, const TightBox& box_b) const {
-    return distance_squared(box_a, box_b) <= reach_squared_;
+    return is_about_near(box_a, box_b) && distance_squared(box_a, box_b) <= reach_squared_;
   }
 
   template <class Visit>
   void run(const Visit& visit) {
     if (boxes_a_.nodes.empty() || boxes_b_.nodes.empty()) return;
-    stack_.assign(1, {0, 0});
+    stack_.clear();
+    push_if_near(0, boxes_a_.nodes[0], 0, stretched(boxes_b_.nodes[0], way_));
     while (!stack_.empty()) {
       const auto [i, j] = stack_.back();
       stack_.pop_back();
       const TightBox& box_a = boxes_a_.nodes[at(i)];
       const TightBox box_b = stretched(boxes_b_.nodes[at(j)], way_);
-      if (!is_near(box_a, box_b)) continue;
       const Node &node_a = a_.tree.nodes[at(i)], &node_b = b_.tree.nodes[at(j)];
       if (node_a.count > 0 && node_b.count > 0) {
         visit_triangles(node_a, box_a, node_b, box_b, visit);
       } else if (node_b.count > 0 || (node_a.count == 0 && extent(box_a) >= extent(box_b))) {
-        stack_.push_back({node_a.right, j});
-        stack_.push_back({i + 1, j});
+        for (const int child : {node_a.right, i + 1})
+          push_if_near(child, boxes_a_.nodes[at(child)], j, box_b);
       } else {
-        stack_.push_back({i, node_b.right});
-        stack_.push_back({i, j + 1});
+        for (const int child : {node_b.right, j + 1})
+          push_if_near(i, box_a, child, stretched(boxes_b_.nodes[at(child)], way_));
       }
     }
   }
 
  private:
+  void push_if_near(int i, const TightBox& box_a, int j, const TightBox& box_b) {
+    if (is_about_near(box_a, box_b)) stack_.push_back({i, j});
+  }
+
   template <class Visit>
   void visit_triangles(const Node& node_a, const TightBox& box_a, const Node& node_b, const TightBox& box_b,
                        const Visit& visit) {
     near_b_.clear();
-    for (int k = node_b.begin; k < node_b.begin + node_b.count; ++k) {
-      const int t = b_.tree.order[at(k)];
+    for (int k = 0; k < node_b.count; ++k) {
+      const int t = b_.tree.order[at(node_b.begin + k)];
       const TightBox box = stretched(boxes_b_.triangles[at(t)], way_);
-      if (is_near(box_a, box)) near_b_.emplace_back(t, box);
+      if (is_near(box_a, box)) near_b_.push_back({t, k, box});
     }
     if (near_b_.empty()) return;
     for (int k = node_a.begin; k < node_a.begin + node_a.count; ++k) {
       const int t = a_.tree.order[at(k)];
       const TightBox& box = boxes_a_.triangles[at(t)];
       if (!is_near(box, box_b)) continue;
-      for (const auto& [other, other_box] : near_b_) {
-        if (is_near(box, other_box)) visit(t, box, other, other_box);
+      for (const NearTriangle& other : near_b_) {
+        if (is_near(box, other.box)) visit(t, box, other.number, other.box, other.place);
       }
     }
   }
 
+  struct NearTriangle {
+    int number, place;
+    TightBox box;
+  };
+
   const Collider &a_, &b_;
   const FeatureBoxes &boxes_a_, &boxes_b_;
   const TightWay way_;
+  BoxLanes reach_ = {};  // m
   float reach_squared_ = 0.0F;
   std::vector<std::pair<int, int>> stack_;
-  std::vector<std::pair<int, TightBox>> near_b_;
+  std::vector<NearTriangle> near_b_;
 };
 
 // Where the vertices of a body are, or go from and to.
@@ -133,9 +152,12 @@ class Planes {
         // What rounding may add is far below this share of the margin.
         apart_from_((margin + a.radius + b.radius) * (1.0 + 1e-5)) {}
 
-  bool are_apart(int ta, int tb) {
+  // `place` of the second triangle in its leaf: those of a leaf are asked for again and again.
+  bool are_apart(int ta, int tb, int place) {
     if (ta != first_.number) first_ = face(a_, places_a_, ta, Vec3::Zero());
-    const Face second = face(b_, places_b_, tb, way_);
+    if (at(place) >= seconds_.size()) seconds_.resize(at(place) + 1);
+    Face& second = seconds_[at(place)];
+    if (tb != second.number) second = face(b_, places_b_, tb, way_);
     return separates(first_.normal, first_.start, second.start, first_.end, second.end) ||
            separates(second.normal, second.start, first_.start, second.end, first_.end);
   }
@@ -184,6 +206,7 @@ class Planes {
   const Vec3 way_;
   const double apart_from_;  // m
   Face first_;
+  std::vector<Face> seconds_;  // by place in a leaf
 };
 
 // Features that near triangles own.
@@ -195,11 +218,14 @@ void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Places&
   Planes planes(a, places_a, b, places_b, relative_way, margin);
   const bool a_has_faces = a.radius == 0.0, b_has_faces = b.radius == 0.0;
   const auto add = [&](FeatureKind kind, int i, const TightBox& box_a, int j, const TightBox& box_b) {
-    const float apart = distance_squared(box_a, box_b);
-    if (apart <= descent.reach_squared()) out.push_back({kind, apart, i, j});
+    if (!descent.is_about_near(box_a, box_b)) return;
+    const float squared = distance_squared(box_a, box_b);
+    if (squared <= descent.reach_squared()) out.push_back({kind, squared, i, j});
   };
-  descent.run([&](int ta, const TightBox& box_a, int tb, const TightBox& box_b) {
-    if (planes.are_apart(ta, tb)) return;
+  int edges_of = -1;
+  std::array<TightBox, 3> boxes_e;
+  descent.run([&](int ta, const TightBox& box_a, int tb, const TightBox& box_b, int place) {
+    if (planes.are_apart(ta, tb, place)) return;
     for (int k = a.owned_vertex_begin[at(ta)]; b_has_faces && k < a.owned_vertex_begin[at(ta) + 1]; ++k) {
       const int v = a.owned_vertices[at(k)];
       add(FeatureKind::vertex_triangle, v, boxes_a.vertices[at(v)], tb, box_b);
@@ -208,13 +234,15 @@ void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Places&
       const int v = b.owned_vertices[at(k)];
       add(FeatureKind::triangle_vertex, ta, box_a, v, stretched(boxes_b.vertices[at(v)], way));
     }
-    for (int l = b.owned_edge_begin[at(tb)]; l < b.owned_edge_begin[at(tb) + 1]; ++l) {
+    const int first = a.owned_edge_begin[at(ta)], last = a.owned_edge_begin[at(ta) + 1];
+    for (int k = first; edges_of != ta && k < last; ++k)
+      boxes_e[at(k - first)] = box_of_edge(a, boxes_a, a.owned_edges[at(k)]);
+    edges_of = ta;
+    for (int l = b.owned_edge_begin[at(tb)]; first < last && l < b.owned_edge_begin[at(tb) + 1]; ++l) {
       const int f = b.owned_edges[at(l)];
-      const TightBox box_f = stretched(boxes_b.edges[at(f)], way);
-      for (int k = a.owned_edge_begin[at(ta)]; k < a.owned_edge_begin[at(ta) + 1]; ++k) {
-        const int e = a.owned_edges[at(k)];
-        add(FeatureKind::edge_edge, e, boxes_a.edges[at(e)], f, box_f);
-      }
+      const TightBox box_f = stretched(box_of_edge(b, boxes_b, f), way);
+      for (int k = first; k < last; ++k)
+        add(FeatureKind::edge_edge, a.owned_edges[at(k)], boxes_e[at(k - first)], f, box_f);
     }
   });
   for (FeaturePair& f : out) f.bound = std::sqrt(f.bound) * (1.0F - 1e-5F);
@@ -302,7 +330,7 @@ bool crosses(const PlacedCollider& a, const PlacedCollider& b) {
   if (a.collider->radius > 0.0 || b.collider->radius > 0.0) return false;
   bool result = false;
   Descent(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), 0.0)
-      .run([&](int ta, const TightBox&, int tb, const TightBox&) {
+      .run([&](int ta, const TightBox&, int tb, const TightBox&, int) {
         if (result) return;
         const auto p = corners(a, ta), q = corners(b, tb);
         result = an_edge_pierces(p, q) || an_edge_pierces(q, p);

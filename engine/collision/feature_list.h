@@ -26,9 +26,9 @@ struct FeaturePair {
 
 using FeatureList = std::vector<FeaturePair>;
 
-/// Boxes over all features and over the nodes of the tree.
+/// Boxes over vertices, triangles and over the nodes of the tree.
 struct FeatureBoxes {
-  std::vector<TightBox> vertices, edges, triangles, nodes;  // |V|, |E|, |T|, |nodes|; empty until needed
+  std::vector<TightBox> vertices, triangles, nodes;  // |V|, |T|, |nodes|; empty until needed
 };
 
 /// A collider in the world: where its vertices are, and the boxes over that and over where they go.

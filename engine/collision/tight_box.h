@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cmath>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "engine/core/vec.h"
 
@@ -74,11 +77,25 @@ inline TightBox stretched(const TightBox& box, const TightWay& way) {
   return result;
 }
 
+/// How far apart two boxes are along each axis, m; negative where they overlap.
+inline BoxLanes apart(const TightBox& a, const TightBox& b) {
+  return greater(a.low - b.high, b.low - a.high);
+}
+
+/// True if any of the lanes is greater than that of `bound`.
+inline bool any_exceeds(BoxLanes lanes, BoxLanes bound) {
+#if defined(__SSE2__)
+  return _mm_movemask_ps(_mm_cmpgt_ps(lanes, bound)) != 0;
+#else
+  return lanes[0] > bound[0] || lanes[1] > bound[1] || lanes[2] > bound[2] || lanes[3] > bound[3];
+#endif
+}
+
 /// Square of the distance of two boxes, m2; 0 where they overlap. Up to a rounding of 1e-6 never too great.
 inline float distance_squared(const TightBox& a, const TightBox& b) {
   const BoxLanes nought = {0.0F, 0.0F, 0.0F, 0.0F};
-  const BoxLanes apart = greater(greater(a.low - b.high, b.low - a.high), nought);
-  const BoxLanes squares = apart * apart;
+  const BoxLanes gaps = greater(apart(a, b), nought);
+  const BoxLanes squares = gaps * gaps;
   return (squares[0] + squares[1]) + squares[2];
 }
 

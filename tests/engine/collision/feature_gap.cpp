@@ -70,6 +70,42 @@ TEST_CASE("a list holds every feature pair within the margin, each once") {
   }
 }
 
+TEST_CASE("a list reaches to its margin along every axis, and no further") {
+  core::Random random(29);
+  body::Shape flat = sheet(random, 3);
+  for (Vec3& v : flat.surface.positions) v.y() = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    body::Shape turned = flat;  // across this axis: boxes are as far apart as what is in them
+    for (Vec3& v : turned.surface.positions) std::swap(v[1], v[axis]);
+    const auto collider = make_collider(turned);
+    const double margin = 0.07;
+    for (const double side : {1.0, -1.0}) {
+      for (const double share : {0.9999, 1.0001}) {
+        PlacedCollider a, b;
+        a.collider = b.collider = collider.get();
+        a.start = b.start = collider->vertices;
+        for (Vec3& v : b.start) v[axis] += side * share * margin;
+        refit_boxes(a);
+        refit_boxes(b);
+        FeatureList list;
+        list_near_features(a, b, margin, list);
+        int above = 0;
+        for (const FeaturePair& f : list) above += f.kind != FeatureKind::edge_edge ? 1 : 0;
+        const auto vertices = static_cast<int>(collider->vertices.size());
+        CHECK((share < 1.0 ? above >= 2 * vertices : list.empty()));
+        // The same on the way there.
+        FeatureList swept;
+        b.start = a.start;
+        for (Vec3& v : b.start) v[axis] += 2.0 * side * margin;
+        refit_swept_boxes(a, a.start, a.start);
+        refit_swept_boxes(b, b.start, b.start);
+        list_swept_features(a, b, (share - 2.0) * side * margin * Vec3::Unit(axis), margin, swept);
+        CHECK(swept.size() == list.size());
+      }
+    }
+  }
+}
+
 TEST_CASE("a list along paths holds every feature pair that comes within the margin") {
   core::Random random(23);
   std::size_t listed = 0, met = 0;
