@@ -152,10 +152,23 @@ class Guard {
       if (is_held[at(c.b)]) is_dirty[at(c.a)] = 1;
     }
     solve_islands(bodies_, settings_, is_dirty, work_);
+    forget_impulses(is_dirty);
     for (std::size_t i = 0; i < is_held.size(); ++i) is_dirty[i] = is_dirty[i] || is_held[i] ? 1 : 0;
     mark_due_with(is_dirty);
     for (auto& hits : known_) hits.clear();
     return true;
+  }
+
+  // What opening gave to bodies that were solved anew since has not been.
+  void forget_impulses(const std::vector<char>& is_anew) {
+    const auto counts = [&](body::BodyId id) {
+      const auto place = std::lower_bound(work_.ids.begin(), work_.ids.end(), id);
+      if (place == work_.ids.end() || *place != id) return false;
+      const auto i = static_cast<std::size_t>(place - work_.ids.begin());
+      return !is_anew[i] && work_.bodies[i].inverse_mass > 0.0;
+    };
+    std::erase_if(work_.continuous_log,
+                  [&](const body::LoggedImpulse& e) { return !counts(e.body_a) && !counts(e.body_b); });
   }
 
   // Between what is held up and what holds it there is no room for the usual gaps: to insist on them would
