@@ -12,7 +12,7 @@ namespace {
 
 const Range kPlace = between(-1e6, 1e6, "m");
 const Range kAngle = between(-360000.0, 360000.0, "degrees");
-const std::vector<std::string> kPathKeys{"path", "between_keys", "pivot"};
+const std::vector<std::string> kPathKeys{"keyframes", "between_keys", "pivot"};
 
 Quat turn(double degrees, const Vec3& axis) {
   const double half = degrees * core::kPi / 360.0;
@@ -57,15 +57,16 @@ std::vector<body::Keyframe> read_keys(TableReader& reader, const TomlValue& path
 }
 
 void read_path(TableReader& reader, BodyEntry& body) {
-  const std::string hint = "write path = [{at = 0, position = [0, 1, 0]}, {at = 2, position = [0, 0, 0]}]";
-  const TomlValue* path = reader.value("path");
+  const std::string hint =
+      "write keyframes = [{at = 0, position = [0, 1, 0]}, {at = 2, position = [0, 0, 0]}]";
+  const TomlValue* path = reader.value("keyframes");
   if (path == nullptr) {
-    reader.add_problem_at("motion", fmt::format("{} is scripted but has no path", reader.what()), hint);
+    reader.add_problem_at("motion", fmt::format("{} is scripted but has no keyframes", reader.what()), hint);
     return;
   }
   if (!path->is_array()) {
-    reader.add_problem(
-        path->place, fmt::format("path must be a list of keyframes, but is {}", kind_in_words(*path)), hint);
+    reader.add_problem(path->place, fmt::format("keyframes must be a list, but is {}", kind_in_words(*path)),
+                       hint);
     return;
   }
   if (path->items.size() < 2) {
@@ -140,7 +141,7 @@ void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body) 
     body.angular_velocity =
         reader.vector("angular_velocity", between(-1e5, 1e5, "rad/s")).value_or(body.angular_velocity);
   }
-  reader.foreign({"keyframes"}, "the keyframes of a scripted body are its path");
+  reader.foreign({"path"}, "a camera has a path; a scripted body has keyframes");
   reader.later({"fixed"}, "a body that cannot move at all is motion = \"static\"");
   reader.later({"force", "torque"}, "give it a velocity, or throw something at it");
 }

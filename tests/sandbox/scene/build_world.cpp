@@ -169,7 +169,8 @@ TEST_CASE("copies of a scripted body go the same way from where each stands, abo
       "[[body]]\nname = \"arm\"\nkind = \"box\"\nsize = [1, 0.1, 0.1]\nrotation = [0, 90, 0]\nmotion = "
       "\"scripted\"\n"
       "pivot = [-0.5, 0, 0]\nbetween_keys = \"straight\"\nrepeat = {count = 2, spacing = [3, 0, 0]}\n"
-      "path = [{at = 0, position = [0, 1, 0]}, {at = 0.5, rotation = [0, 450, 0]}, {at = 1, position = [0, "
+      "keyframes = [{at = 0, position = [0, 1, 0]}, {at = 0.5, rotation = [0, 450, 0]}, {at = 1, position = "
+      "[0, "
       "2, 0]}]\n");
   INFO(reading.text);
   REQUIRE(reading.scene.has_value());

@@ -112,34 +112,41 @@ const Broken kCorpus[] = {
     {"[camera]\nposition = [0,1,0]\npath = [{at = 0}, {at = 0}]\n", "t.toml:3:", "forward in time", ""},
     {"[light]\nsun = [0,0,0]\n", "t.toml:2:7", "points nowhere", ""},
     // Scripted bodies.
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\n", "t.toml:3:10", "has no path", "path = [{at"},
-    {"[[body]]\nkind = \"sphere\"\npath = [{at = 0}, {at = 1}]\n", "t.toml:3:1", "does not belong here",
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\n", "t.toml:3:10", "has no keyframes",
+     "keyframes = [{at"},
+    {"[[body]]\nkind = \"sphere\"\nkeyframes = [{at = 0}, {at = 1}]\n", "t.toml:3:1", "does not belong here",
      "motion = \"scripted\""},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}]\n", "t.toml:4:8",
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}]\n", "t.toml:4:13",
      "at least two keyframes", "static"},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = 1\n", "t.toml:4:8", "a list of keyframes",
-     "position = [0, 1, 0]"},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 2}, {at = 1}]\n", "t.toml:4:25",
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = 1\n", "t.toml:4:13",
+     "keyframes must be a list", "position = [0, 1, 0]"},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 2}, {at = 1}]\n", "t.toml:4:30",
      "forward in time, but 1 s comes after 2 s", ""},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {position = [0,1,0]}]\n",
-     "t.toml:4:19", "needs a time", "at = 1.5"},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1, postion = [0,1,0]}]\n",
-     "t.toml:4:28", "unknown key \"postion\"", "\"position\""},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nvelocity = [1,0,0]\npath = [{at = 0}, {at = 1}]\n",
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}, {position = [0,1,0]}]\n",
+     "t.toml:4:24", "needs a time", "at = 1.5"},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}, {at = 1, postion = "
+     "[0,1,0]}]\n",
+     "t.toml:4:33", "unknown key \"postion\"", "\"position\""},
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nvelocity = [1,0,0]\nkeyframes = [{at = 0}, {at = "
+     "1}]\n",
      "t.toml:4:1", "does not belong here", "the path says"},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}, {at = 1}]\n", "t.toml:3:10",
-     "has no path", ""},
-    {"[[body]]\nkind = \"plane\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1, rotation = [9,0,0]}]\n",
-     "t.toml:4:39", "a plane cannot turn", "box"},
-    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nbreakable = true\nmotion = \"scripted\"\npath = [{at = "
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1}]\n", "t.toml:3:10",
+     "has no keyframes", ""},
+    {"[[body]]\nkind = \"plane\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}, {at = 1, rotation = "
+     "[9,0,0]}]\n",
+     "t.toml:4:44", "a plane cannot turn", "box"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nbreakable = true\nmotion = \"scripted\"\nkeyframes = "
+     "[{at = "
      "0}, "
      "{at = 1}]\n",
      "t.toml:4:13", "does not break", ""},
-    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, {at = 1}]\nrepeat = {count = 2, "
+    {"[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = 0}, {at = 1}]\nrepeat = {count "
+     "= 2, "
      "every "
      "= 1}\n",
      "t.toml:5:10", "from the start", "every"},
-    {"[scene]\ncontact = \"paper\"\n[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\npath = [{at = 0}, "
+    {"[scene]\ncontact = \"paper\"\n[[body]]\nkind = \"sphere\"\nmotion = \"scripted\"\nkeyframes = [{at = "
+     "0}, "
      "{at = "
      "1}]\n",
      "t.toml:3:1", "the paper's contact does not know", ""},
