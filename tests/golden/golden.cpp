@@ -47,7 +47,7 @@ TEST_CASE("a processor that rounds otherwise passes, though its pictures are oth
   const Folder folder;
   const std::string other =
       "GALLIUM_OVERRIDE_CPU_CAPS=nosse MESA_SHADER_CACHE_DISABLE=true " SHATTERBOX_PROGRAM;
-  const auto outcome = shell(folder, other + " golden check '" + kGoldens + "' ornament window");
+  const auto outcome = shell(folder, other + " golden check '" + kGoldens + "' window");
   INFO(outcome.out << outcome.err);
   CHECK(outcome.status == 0);
   CHECK(outcome.out.find("within the tolerance") != std::string::npos);
