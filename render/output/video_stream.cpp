@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "render/output/ending.h"
 #include "render/output/palette.h"
 
 extern "C" {
@@ -21,9 +22,7 @@ constexpr int kFramesBetweenKeys = 30;  // what a killed run may lose, beside th
 }  // namespace
 
 const VideoFormat* find_format(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string ending = lower_case_ending(path);
   for (const VideoFormat& format : kFormats) {
     if (ending == format.ending) return &format;
   }

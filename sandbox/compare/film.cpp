@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "render/output/ending.h"
 #include "render/output/image_file.h"
 
 namespace shatterbox::sandbox::compare {
@@ -11,13 +12,6 @@ namespace shatterbox::sandbox::compare {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_case_ending(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return ending;
-}
 
 }  // namespace
 
@@ -28,12 +22,12 @@ Film::Film(fs::path path) : path_(std::move(path)) {
   } else if (fs::is_directory(path_, code)) {
     has_names_ = true;
     for (const auto& entry : fs::directory_iterator(path_, code))
-      if (entry.is_regular_file() && lower_case_ending(entry.path()) == ".png")
+      if (entry.is_regular_file() && render::lower_case_ending(entry.path()) == ".png")
         files_.push_back(entry.path());
     std::sort(files_.begin(), files_.end());
     if (code) error_ = fmt::format("{}: {}", path_.string(), code.message());
     if (!code && files_.empty()) error_ = fmt::format("{}: the folder holds no PNG", path_.string());
-  } else if (lower_case_ending(path_) == ".png") {
+  } else if (render::lower_case_ending(path_) == ".png") {
     files_.push_back(path_);
   } else {
     video_ = std::make_unique<render::VideoReader>(path_);

@@ -65,17 +65,24 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
   command.add_flag("--brief", options.is_brief, "a tenth of a second each: does everything run?");
 }
 
+void add_finding_options(CLI::App& command, FindingOptions& options) {
+  command
+      .add_option("--tolerance", options.tolerance,
+                  "of pictures: default, exact, video, or levels=2,share=0.0001,..")
+      ->capture_default_str();
+  command.add_option("--report", options.report, "what was found, in JSON")->type_name("FILE");
+  command.add_option("--junit", options.junit, "the same as JUnit XML, for test farms")->type_name("FILE");
+  command
+      .add_option("--pictures", options.pictures_folder, "folder for pictures of every frame that differs")
+      ->type_name("DIR");
+}
+
 void add_diff_options(CLI::App& command, DiffOptions& options) {
   command.add_option("EXPECTED", options.expected, "a PNG, a folder of PNGs or a video")->required();
   command.add_option("ACTUAL", options.actual, "another one of the kind")->required();
-  command.add_option("--tolerance", options.tolerance, "default, exact, video, or levels=2,share=0.0001,..")
-      ->capture_default_str();
-  command.add_option("--report", options.report, "every frame's numbers in JSON")->type_name("FILE");
-  command.add_option("--junit", options.junit, "the same as JUnit XML, for test farms")->type_name("FILE");
+  add_finding_options(command, options.findings);
   command.add_option("--picture", options.picture, "the worst frame's difference as a PNG")
       ->type_name("FILE");
-  command.add_option("--pictures", options.pictures_folder, "folder for every differing frame's")
-      ->type_name("DIR");
 }
 
 void add_golden_options(CLI::App& make, CLI::App& check, GoldenOptions& options) {
@@ -87,12 +94,7 @@ void add_golden_options(CLI::App& make, CLI::App& check, GoldenOptions& options)
   add_picture_options(make, options.run);
   check.add_option("DIR", options.folder, "the folder of the goldens")->required();
   check.add_option("NAME", options.names, "goldens; none: all");
-  check.add_option("--tolerance", options.tolerance, "of pictures: default, exact, video, or levels=2,..")
-      ->capture_default_str();
-  check.add_option("--report", options.report, "what was found, in JSON")->type_name("FILE");
-  check.add_option("--junit", options.junit, "the same as JUnit XML, for test farms")->type_name("FILE");
-  check.add_option("--pictures", options.pictures_folder, "folder for pictures of what differs")
-      ->type_name("DIR");
+  add_finding_options(check, options.findings);
 }
 
 /// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.

@@ -3,16 +3,34 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "sandbox/compare/difference_report.h"
+#include "sandbox/scene/problem.h"
+
 namespace shatterbox::sandbox::run {
 
-struct DiffOptions {
-  std::string expected, actual;
+/// What to call a difference, and where to tell of it.
+struct FindingOptions {
   std::string tolerance = "default";
   std::string report;           // JSON
   std::string junit;            // XML
-  std::string picture;          // PNG of the worst frame's difference
-  std::string pictures_folder;  // one for every frame that differs
+  std::string pictures_folder;  // PNGs of what differs
 };
+
+struct DiffOptions {
+  std::string expected, actual;
+  std::string picture;  // PNG of the worst frame's difference
+  FindingOptions findings;
+};
+
+/// Finds out, before any work, what cannot be written, and makes the folder.
+void prepare_findings(const FindingOptions& options, scene::Problems& problems);
+
+/// Writes JSON and JUnit where they were asked for; a sentence if that fails, else empty.
+std::string write_findings(const FindingOptions& options, const nlohmann::ordered_json& report,
+                           const std::string& suite, const std::vector<compare::TestCase>& cases);
 
 /// Compares, says what it found, writes what was asked for. Returns the exit status.
 int run_diff(const DiffOptions& options);

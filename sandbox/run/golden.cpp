@@ -177,8 +177,8 @@ std::optional<Checked> check(const std::string& name, const GoldenOptions& optio
   const auto report = play(*golden, folder, work.path(), refusal);
   if (!report) return std::nullopt;
   std::string differences;
-  if (!options.pictures_folder.empty()) {
-    differences = (fs::path(options.pictures_folder) / name).string();
+  if (!options.findings.pictures_folder.empty()) {
+    differences = (fs::path(options.findings.pictures_folder) / name).string();
     std::error_code code;
     fs::create_directories(differences, code);
   }
@@ -200,7 +200,7 @@ std::optional<Checked> check(const std::string& name, const GoldenOptions& optio
   return checked;
 }
 
-std::string write_findings(const GoldenOptions& options, const std::vector<Checked>& all) {
+std::string tell_findings(const GoldenOptions& options, const std::vector<Checked>& all) {
   Json rows = Json::array();
   std::vector<compare::TestCase> cases;
   for (const Checked& one : all) {
@@ -210,11 +210,7 @@ std::string write_findings(const GoldenOptions& options, const std::vector<Check
                     {"pictures", compare::make_json(one.pictures)}});
     cases.push_back({one.name, one.failure});
   }
-  std::string fault;
-  if (!options.report.empty()) fault = report::write_text(options.report, rows.dump(2) + "\n");
-  if (fault.empty() && !options.junit.empty())
-    fault = report::write_text(options.junit, compare::make_junit("shatterbox golden", cases));
-  return fault;
+  return write_findings(options.findings, rows, "shatterbox golden", cases);
 }
 
 bool is_plain(const std::string& name) {
@@ -270,11 +266,10 @@ int make_goldens(const GoldenOptions& options) {
 int check_goldens(const GoldenOptions& options) {
   catch_interrupts();
   Refusal refusal;
-  const auto tolerance = compare::parse_tolerance(options.tolerance, refusal.words);
+  const auto tolerance = compare::parse_tolerance(options.findings.tolerance, refusal.words);
   if (!tolerance) return tell({kBadInput, "--tolerance: " + refusal.words});
   scene::Problems problems;
-  check_file("--report", options.report, problems);
-  check_file("--junit", options.junit, problems);
+  prepare_findings(options.findings, problems);
   if (!problems.empty()) return tell({kBadInput, scene::describe(problems)});
   const auto names = find_goldens(options.folder, options.names, refusal);
   if (!names) return tell(refusal);
@@ -287,7 +282,7 @@ int check_goldens(const GoldenOptions& options) {
     std::fflush(stdout);
     all.push_back(std::move(*checked));
   }
-  const std::string fault = write_findings(options, all);
+  const std::string fault = tell_findings(options, all);
   if (!fault.empty()) return tell({kFailed, "failed: " + fault});
   const auto failures =
       std::count_if(all.begin(), all.end(), [](const Checked& one) { return !one.failure.empty(); });

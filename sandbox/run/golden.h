@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sandbox/run/diff.h"
 #include "sandbox/run/options.h"
 
 namespace shatterbox::sandbox::run {
@@ -17,10 +18,7 @@ struct GoldenOptions {
   std::string name;                // of one to make; empty: the scene's
   std::string reason;              // why it is made, or made again
   std::vector<std::string> names;  // to check; empty: all
-  std::string tolerance = "default";
-  std::string report;           // JSON
-  std::string junit;            // XML
-  std::string pictures_folder;  // for pictures of what differs: DIR/NAME/frame_000012.png
+  FindingOptions findings;         // of a check; pictures: DIR/NAME/frame_000012.png
 };
 
 /// Makes one golden of a scene; without a scene, makes those that are there again. Returns the exit status.

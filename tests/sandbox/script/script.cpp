@@ -9,6 +9,19 @@
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
 
+namespace {
+
+std::optional<scene::BuiltScene> build(const scene::Reading& reading) {
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  return built;
+}
+
+}  // namespace
+
 TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
   for (const Vec3& gravity : {Vec3(0, -9.81, 0), Vec3(0, 0, 0), Vec3(3, -1, 2)}) {
     const Vec3 from(-1, 0.5, 2), target(0.3, 1.2, 0);
@@ -36,11 +49,7 @@ TEST_CASE("events land on the first step border at or after their time") {
       "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"a\"\nkind = \"sphere\"\nposition = [5,0,0]\n"
       "[[event]]\nat = 0.1\ndo = \"projectile\"\nfrom = [0,3,0]\nat_point = [0,4,0]\nspeed = 1\n"
       "[[event]]\nat = 0.1001\ndo = \"drop\"\nbody = {kind = \"box\", size = 0.1}\nposition = [0,9,0]\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
+  auto built = build(reading);
   CHECK(built->world.bodies().size() == 1);  // what events bring in waits
   script::Script script(*reading.scene);
   std::vector<std::size_t> counts;
@@ -66,11 +75,7 @@ TEST_CASE(
       "[[event]]\nat = 0\ndo = \"push\"\nbody = \"box\"\nimpulse = [0,0,12]\npoint = [0.1,0,0.3]\n"
       "[[event]]\nat = 0.1\ndo = \"remove\"\nbody = \"row\"\n"
       "[[event]]\nat = 0.2\ndo = \"push\"\nbody = \"row\"\nimpulse = [1,0,0]\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
+  auto built = build(reading);
   script::Script script(*reading.scene);
   CHECK(script.play(*built).empty());
   const auto bodies = built->world.bodies();
@@ -97,11 +102,7 @@ TEST_CASE("copies with a time between them come in one after another, named and 
   const auto reading = scene::read(
       "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"drops\"\nkind = \"sphere\"\n"
       "repeat = {count = 3, spacing = [1, 0, 0], every = 0.1}\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
+  auto built = build(reading);
   script::Script script(*reading.scene);
   std::vector<std::size_t> counts;
   for (int step = 0; step < 50; ++step) {
@@ -127,11 +128,7 @@ TEST_CASE("a copy waits until there is room for it, an event into another body i
       "edge_length = 0.05\nbreakable = false\nvelocity = [1, 0, 0]\nrepeat = {count = 2, every = 0.1}\n"
       "[[event]]\nname = \"late\"\nat = 0.12\ndo = \"drop\"\nbody = {kind = \"box\", size = 0.1}\n"
       "position = [0.15, 0, 0]\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
+  auto built = build(reading);
   script::Script script(*reading.scene);
   std::vector<std::string> words;
   int second_step = -1;
