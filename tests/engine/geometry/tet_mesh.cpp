@@ -51,5 +51,8 @@ TEST_CASE("solid mesh: uncut, each element is one whole cell") {
   const SolidMesh solid = make_solid_mesh(elements);
   REQUIRE(solid.cells.size() == 6);
   CHECK(solid.degree_of_freedom_count() == 24);
-  for (const SolidCell& cell : solid.cells) CHECK(volume_fraction(solid, cell) == Approx(1.0));
+  for (const SolidCell& cell : solid.cells) {
+    CHECK(volume_fraction(solid, cell) == Approx(1.0));
+    CHECK(cell.centroid == Vec3::Constant(0.25));
+  }
 }
