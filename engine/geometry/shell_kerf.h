@@ -1,4 +1,5 @@
-// The kerf of a cut shell's surface: how its vertices stand back from crack faces. For shell_surface.cpp.
+// The kerf of a cut shell's surface: how its vertices stand back from crack faces without leaving the surface
+// of the whole. For shell_surface.cpp.
 #pragma once
 
 #include <vector>
@@ -17,8 +18,11 @@ struct BorderNormal {
 };
 
 /// Moves the vertices of `mesh` back from their crack faces by `kerf` m (> 0) or, where the material is too
-/// narrow for that, by less. `normals` ascending by vertex. Returns the narrowest stand-off of a crack vertex
-/// that is not a tip, m; `kerf` without any.
-double stand_back(TriangleMesh& mesh, const std::vector<BorderNormal>& normals, double kerf);
+/// narrow for that, by less. A vertex stays in the planes of all its triangles: where two meet in a fold it
+/// goes along the fold, so that a piece never sticks out of the whole that it was born from.
+/// `triangle_normals` (|T|, unit) of the elements that the triangles lie in; `normals` ascending by vertex.
+/// Returns the narrowest stand-off of a crack vertex that is not a tip, m; `kerf` without any.
+double stand_back(TriangleMesh& mesh, const std::vector<Vec3>& triangle_normals,
+                  const std::vector<BorderNormal>& normals, double kerf);
 
 }  // namespace shatterbox::geometry

@@ -43,7 +43,8 @@ class SurfaceBuilder {
     weld();
     triangulate();
     place_vertices();
-    surface_.least_kerf = kerf > 0.0 ? stand_back(surface_.mesh, collect_normals(), kerf) : kerf;
+    surface_.least_kerf =
+        kerf > 0.0 ? stand_back(surface_.mesh, triangle_normals(), collect_normals(), kerf) : kerf;
     return std::move(surface_);
   }
 
@@ -272,6 +273,14 @@ class SurfaceBuilder {
     const int id = corner(cell, side).side_id;
     for (const int n : {ends.front(), ends.back()})
       normals.push_back({vertex_of_node_[at(n)], inward, is_crack, cell.element, id});
+  }
+
+  std::vector<Vec3> triangle_normals() const {
+    std::vector<Vec3> normals;
+    normals.reserve(surface_.triangle_cells.size());
+    for (const int c : surface_.triangle_cells)
+      normals.push_back(facet_frame(elements_, mesh_.cells[at(c)].element).col(2));
+    return normals;
   }
 
   std::vector<BorderNormal> collect_normals() const {

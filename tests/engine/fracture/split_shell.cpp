@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "engine/geometry/crossings.h"
 #include "engine/geometry/shell_surface.h"
 #include "tests/engine/fracture/shapes.h"
 
@@ -80,6 +81,30 @@ void check_twins(const geometry::ShellMesh& mesh) {
   }
 }
 
+/// How far a piece's surface leaves its elements: out of their planes, and (`beyond`) over their edges.
+struct Stray {
+  double out_of_plane = 0.0, beyond = 0.0;  // m; share of an element
+};
+
+Stray find_stray(const geometry::ShellMesh& piece, const geometry::ShellSurface& surface) {
+  Stray worst;
+  for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t) {
+    const int element = piece.cells[static_cast<std::size_t>(surface.triangle_cells[t])].element;
+    const Vec3 corner = position_in_element(*piece.elements, element, Vec2::Zero());
+    const Vec3 ab = position_in_element(*piece.elements, element, Vec2(1.0, 0.0)) - corner;
+    const Vec3 ac = position_in_element(*piece.elements, element, Vec2(0.0, 1.0)) - corner;
+    const Vec3 normal = ab.cross(ac);
+    for (const int v : surface.mesh.triangles[t]) {
+      const Vec3 p = surface.mesh.positions[static_cast<std::size_t>(v)] - corner;
+      worst.out_of_plane = std::max(worst.out_of_plane, std::abs(normal.normalized().dot(p)));
+      const double b = p.cross(ac).dot(normal) / normal.squaredNorm();
+      const double c = ab.cross(p).dot(normal) / normal.squaredNorm();
+      worst.beyond = std::max({worst.beyond, -b, -c, b + c - 1.0});
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 TEST_CASE("a straight cut over a plate gives two pieces of the right areas") {
@@ -127,13 +152,20 @@ TEST_CASE("nothing is lost over hundreds of random cuts") {
     CHECK(split.pieces.size() > 20);
     check_sums(whole, split.pieces);
     std::size_t cells = 0;
+    std::vector<geometry::TriangleMesh> surfaces;
     for (const auto& piece : split.pieces) {
       cells += piece.cells.size();
       CHECK(fracture::split_shell(piece).pieces.size() == 1);
       const auto surface = geometry::extract_surface(piece, 1e-5);
       CHECK(surface.mesh.triangles.size() >= piece.cells.size());
       for (const Vec3& p : surface.mesh.positions) CHECK(p.allFinite());
+      // What a piece meets at its birth, the whole had met: its surface is a part of the whole's.
+      const Stray stray = find_stray(piece, surface);
+      CHECK(stray.out_of_plane < 1e-12);
+      if (is_closed) CHECK(stray.beyond < 1e-9);
+      surfaces.push_back(surface.mesh);
     }
+    CHECK(geometry::count_crossing_pairs(surfaces) == 0);
     CHECK(cells == mesh.cells.size());
 
     // Narrow pieces join a neighbour; all material stays.
