@@ -1,0 +1,124 @@
+#include "engine/fracture/split_solid.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "engine/core/disjoint_sets.h"
+#include "engine/core/index.h"
+
+namespace shatterbox::fracture {
+namespace {
+
+using geometry::FacetKind;
+using geometry::SolidComplex;
+using geometry::SolidContact;
+using geometry::SolidFacet;
+using Size = std::size_t;
+using core::at;
+
+constexpr int kMergePasses = 8;
+
+/// The number of each cell's piece; pieces are numbered by their first cells.
+std::vector<int> label_cells(Size cell_count, const std::vector<SolidContact>& contacts, int& piece_count) {
+  core::DisjointSets pieces(cell_count);
+  for (const SolidContact& contact : contacts) pieces.unite(contact.cell_a, contact.cell_b);
+  std::vector<int> label(cell_count, -1);
+  piece_count = 0;
+  for (Size c = 0; c < cell_count; ++c) {
+    const int root = pieces.find(static_cast<int>(c));
+    label[c] = root == static_cast<int>(c) ? piece_count++ : label[at(root)];
+  }
+  return label;
+}
+
+bool is_open(const SolidFacet& facet) {
+  return facet.parts[0] < 0 && facet.kind == FacetKind::crack && facet.cells[0] >= 0 && facet.cells[1] >= 0;
+}
+
+/// One round of joining pieces that are too narrow; false if there was nothing to do.
+bool merge_once(SolidComplex& complex, const std::vector<SolidContact>& contacts, double least_width,
+                SolidSplit& split) {
+  int count = 0;
+  const std::vector<int> label = label_cells(complex.cells.size(), contacts, count);
+  std::vector<double> volume(at(count), 0.0), area(at(count), 0.0);
+  for (Size c = 0; c < complex.cells.size(); ++c) volume[at(label[c])] += complex.cells[c].volume;
+  for (const SolidFacet& facet : complex.facets) {
+    if (!is_open(facet)) continue;
+    const double own = facet_area_vector(complex, facet).norm();
+    for (const int c : facet.cells) area[at(label[at(c)])] += own;
+  }
+  const auto is_narrow = [&](int p) { return volume[at(p)] <= 0.5 * least_width * area[at(p)]; };
+  std::map<std::pair<int, int>, double> common;  // narrow piece, neighbour: area of their common crack
+  for (const SolidFacet& facet : complex.facets) {
+    if (!is_open(facet)) continue;
+    const int a = label[at(facet.cells[0])];
+    const int b = label[at(facet.cells[1])];
+    if (a == b || (!is_narrow(a) && !is_narrow(b))) continue;
+    const double own = facet_area_vector(complex, facet).norm();
+    if (is_narrow(a)) common[{a, b}] += own;
+    if (is_narrow(b)) common[{b, a}] += own;
+  }
+  if (common.empty()) return false;
+  std::vector<int> partner(at(count), -1);
+  std::vector<double> greatest(at(count), -1.0);
+  for (const auto& [pieces, own] : common)
+    if (own > greatest[at(pieces.first)]) {
+      greatest[at(pieces.first)] = own;
+      partner[at(pieces.first)] = pieces.second;
+    }
+  for (SolidFacet& facet : complex.facets) {
+    if (!is_open(facet)) continue;
+    const int a = label[at(facet.cells[0])];
+    const int b = label[at(facet.cells[1])];
+    if (a != b && (partner[at(a)] == b || partner[at(b)] == a)) facet.kind = FacetKind::grain;
+  }
+  for (int p = 0; p < count; ++p) {
+    const int q = partner[at(p)];
+    if (q < 0 || (partner[at(q)] == p && q > p)) continue;  // of two that join each other one is counted
+    ++split.merged_count;
+    split.merged_volume += volume[at(p)];
+  }
+  return true;
+}
+
+}  // namespace
+
+SolidSplit split_solid(SolidComplex complex, double least_width) {
+  SolidSplit split;
+  settle(complex);
+  std::vector<SolidContact> contacts = find_solid_contacts(complex);
+  for (int pass = 0; pass < kMergePasses; ++pass) {
+    if (!merge_once(complex, contacts, least_width, split)) break;
+    contacts = find_solid_contacts(complex);
+  }
+  int count = 0;
+  const std::vector<int> label = label_cells(complex.cells.size(), contacts, count);
+  std::vector<std::vector<int>> cells(at(count));
+  std::vector<int> own_number(complex.cells.size());
+  std::vector<double> volumes(at(count), 0.0);
+  for (Size c = 0; c < complex.cells.size(); ++c) {
+    own_number[c] = static_cast<int>(cells[at(label[c])].size());
+    cells[at(label[c])].push_back(static_cast<int>(c));
+    volumes[at(label[c])] += complex.cells[c].volume;
+  }
+  std::vector<std::vector<SolidContact>> own_contacts(at(count));
+  for (const SolidContact& contact : contacts)
+    own_contacts[at(label[at(contact.cell_a)])].push_back(
+        {own_number[at(contact.cell_a)], own_number[at(contact.cell_b)], contact.area});
+  std::vector<int> order(at(count));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&volumes](int a, int b) {
+    return volumes[at(a)] != volumes[at(b)] ? volumes[at(a)] > volumes[at(b)] : a < b;
+  });
+  for (const int p : order) {
+    SolidPiece piece;
+    piece.complex = extract_cells(complex, cells[at(p)]);
+    piece.mesh = make_solid_mesh(piece.complex, own_contacts[at(p)]);
+    split.pieces.push_back(std::move(piece));
+  }
+  return split;
+}
+
+}  // namespace shatterbox::fracture
