@@ -67,11 +67,23 @@ void keep_own_share(std::vector<Load>& loads, const Vec3& passed_on) {
   std::erase_if(loads, [](const Load& load) { return !(load.impulse_body.squaredNorm() > 0.0); });
 }
 
-std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
+std::vector<OwnImpulses> sort_by_body(const body::ImpulseLog& log, const std::vector<body::BodyId>& ids) {
+  std::vector<OwnImpulses> own(ids.size());
+  for (const body::LoggedImpulse& entry : log)
+    for (const body::BodyId id : {entry.body_a, entry.body_b}) {
+      const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+      if (found != ids.end() && *found == id)
+        own[static_cast<std::size_t>(found - ids.begin())].push_back(&entry);
+    }
+  return own;
+}
+
+std::vector<Load> gather_loads(const OwnImpulses& impulses, body::ImpulseKind kind, const body::Body& struck,
                                double radius, double step_start, const PassOver& pass_over) {
   std::vector<Load> loads;
-  for (const body::LoggedImpulse& entry : log) {
-    if (entry.kind != kind || (entry.body_a != struck.id && entry.body_b != struck.id)) continue;
+  for (const body::LoggedImpulse* logged : impulses) {
+    const body::LoggedImpulse& entry = *logged;
+    if (entry.kind != kind) continue;
     const bool is_a = entry.body_a == struck.id;
     Load load;
     load.other = is_a ? entry.body_b : entry.body_a;

@@ -62,9 +62,15 @@ void keep_own_share(std::vector<Load>& loads, const Vec3& passed_on);
 /// Whether an impulse is to be passed over.
 using PassOver = std::function<bool(const Load& load)>;
 
+/// What a log says of one body, in the log's order.
+using OwnImpulses = std::vector<const body::LoggedImpulse*>;
+
+/// For each body of `ids` (ascending) what `log` says of it. The log must outlive the answer.
+std::vector<OwnImpulses> sort_by_body(const body::ImpulseLog& log, const std::vector<body::BodyId>& ids);
+
 /// Loads of one kind of one step on `struck`, which began at `step_start` (s), gathered: same other body,
 /// nearer than `radius` (m), similar direction.
-std::vector<Load> gather_loads(const body::ImpulseLog& log, body::ImpulseKind kind, const body::Body& struck,
+std::vector<Load> gather_loads(const OwnImpulses& impulses, body::ImpulseKind kind, const body::Body& struck,
                                double radius, double step_start, const PassOver& pass_over = {});
 
 /// Adds `loads` to the sums in `event`, at the place of a load that is already there.

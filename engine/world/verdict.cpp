@@ -112,7 +112,7 @@ std::vector<Load> gather_by_place(const std::vector<Load>& loads, double radius)
 }
 
 /// [BHTF07] sec. VI: collision and contact of one step together.
-void gather_paper_step(const body::ImpulseLog& log, const body::Body& body, double radius, double time,
+void gather_paper_step(const OwnImpulses& log, const body::Body& body, double radius, double time,
                        std::vector<Load>& loads) {
   for (const auto kind :
        {body::ImpulseKind::collision, body::ImpulseKind::contact, body::ImpulseKind::continuous})
@@ -120,7 +120,7 @@ void gather_paper_step(const body::ImpulseLog& log, const body::Body& body, doub
 }
 
 /// Collisions of this step, less what is charged already and what passes through to seated neighbours.
-std::vector<Load> gather_collisions(const Judge& judge, const body::ImpulseLog& log, const body::Body& body,
+std::vector<Load> gather_collisions(const Judge& judge, const OwnImpulses& log, const body::Body& body,
                                     double radius, double time, const ImpactMemory& memory) {
   Vec3 passed_on = Vec3::Zero();
   const auto passes_on = [&](const Load& load) {
@@ -142,7 +142,7 @@ std::vector<Load> gather_collisions(const Judge& judge, const body::ImpulseLog& 
 }
 
 /// The impact of this step on one body, if there is anything to evaluate.
-bool gather_impact(const Judge& judge, const body::ImpulseLog& log, const body::Body& body, double time,
+bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body& body, double time,
                    ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
   const double radius = kGatherRadius * body.shape->bounding_radius;
   const bool is_paper = judge.settings.criterion == Criterion::paper;
@@ -245,13 +245,16 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 
+  const std::vector<OwnImpulses> impulses = sort_by_body(log, touched);
+
   std::vector<Candidate> candidates;
-  for (const body::BodyId id : touched) {
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    const body::BodyId id = touched[i];
     Candidate candidate;
     candidate.body = body::find_body(bodies, id);
     if (!candidate.body) continue;
     candidate.fragile = fragiles.at(id).get();
-    if (!gather_impact(judge, log, *candidate.body, time, memories[id], candidate, figures)) continue;
+    if (!gather_impact(judge, impulses[i], *candidate.body, time, memories[id], candidate, figures)) continue;
     if (is_like_borne(candidate, borne))
       ++figures.skipped;
     else

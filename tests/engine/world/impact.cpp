@@ -45,7 +45,8 @@ TEST_CASE("impulses are gathered by other body, place and direction, their sum i
                              push(3, 1, Vec3(0, -1, 0), Vec3(0, -5, 0)),
                              push(1, 2, Vec3(0, -1, 0), Vec3(0, 9, 0), body::ImpulseKind::contact),
                              push(4, 5, Vec3(0, -1, 0), Vec3(0, 7, 0))};
-  const auto loads = world::gather_loads(log, body::ImpulseKind::collision, struck, 0.25, 0.5);
+  const auto loads = world::gather_loads(world::sort_by_body(log, {struck.id})[0],
+                                         body::ImpulseKind::collision, struck, 0.25, 0.5);
   REQUIRE(loads.size() == 3);
   Vec3 sum = Vec3::Zero();
   for (const Load& load : loads) sum += load.impulse_body;
@@ -63,7 +64,7 @@ TEST_CASE("a load is as the struck body felt it, wherever it has gone since") {
   body::LoggedImpulse entry = push(2, 1, Vec3(5, 1, 0), Vec3(0, 1, 0));
   entry.point_b = Vec3(1, 0, 0);
   entry.impulse_b = Vec3(-1, 0, 0);
-  const auto loads = world::gather_loads({entry}, body::ImpulseKind::collision, struck, 0.25, 0.0);
+  const auto loads = world::gather_loads({&entry}, body::ImpulseKind::collision, struck, 0.25, 0.0);
   REQUIRE(loads.size() == 1);
   CHECK((loads[0].point_body - Vec3(1, 0, 0)).norm() < 1e-15);
   CHECK((loads[0].impulse_body - Vec3(-1, 0, 0)).norm() < 1e-15);
