@@ -37,4 +37,10 @@ EdgeTopology build_edge_topology(const std::vector<Triangle>& triangles) {
   return topology;
 }
 
+int direction_along(const Triangle& triangle, const std::array<int, 2>& edge) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (triangle[i] == edge[0] && triangle[(i + 1) % 3] == edge[1]) return 1;
+  return -1;
+}
+
 }  // namespace shatterbox::geometry

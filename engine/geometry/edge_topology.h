@@ -26,4 +26,7 @@ struct EdgeTopology {
 /// triangles.
 EdgeTopology build_edge_topology(const std::vector<Triangle>& triangles);
 
+/// 1 if a triangle runs along its edge from the edge's first vertex to the second, -1 otherwise.
+int direction_along(const Triangle& triangle, const std::array<int, 2>& edge);
+
 }  // namespace shatterbox::geometry

@@ -31,7 +31,9 @@ std::vector<Part<kCorners>> sorted_parts(const std::vector<Tetrahedron>& tetrahe
       parts.push_back(part);
     }
   std::sort(parts.begin(), parts.end(), [](const Part<kCorners>& p, const Part<kCorners>& q) {
-    return p.vertices != q.vertices ? p.vertices < q.vertices : p.tetrahedron < q.tetrahedron;
+    for (Size k = 0; k < kCorners; ++k)
+      if (p.vertices[k] != q.vertices[k]) return p.vertices[k] < q.vertices[k];
+    return p.tetrahedron < q.tetrahedron;
   });
   return parts;
 }
@@ -60,6 +62,15 @@ TetTopology build_tet_topology(const std::vector<Tetrahedron>& tetrahedra) {
         static_cast<int>(topology.edges.size()) - 1;
   }
   return topology;
+}
+
+int face_direction(const Tetrahedron& tetrahedron, int face) {
+  const auto& corners = kTetrahedronFaces[at(face)];
+  Size least = 0;
+  for (Size k = 1; k < 3; ++k)
+    if (tetrahedron[at(corners[k])] < tetrahedron[at(corners[least])]) least = k;
+  const int next = tetrahedron[at(corners[(least + 1) % 3])];
+  return next < tetrahedron[at(corners[(least + 2) % 3])] ? 1 : -1;
 }
 
 double tetrahedron_volume(const TetMesh& mesh, int tetrahedron) {

@@ -35,6 +35,10 @@ struct TetTopology {
 /// Faces and edges of `tetrahedra`, of which no three may share a face.
 TetTopology build_tet_topology(const std::vector<Tetrahedron>& tetrahedra);
 
+/// 1 if a face's vertices in ascending order turn counter-clockwise seen from outside of the tetrahedron, -1
+/// otherwise. `face` 0 to 3: opposite to that corner.
+int face_direction(const Tetrahedron& tetrahedron, int face);
+
 /// Volume of a tetrahedron, m3; negative if it is inside out.
 double tetrahedron_volume(const TetMesh& mesh, int tetrahedron);
 

@@ -12,13 +12,6 @@ namespace {
 
 using core::at;
 
-/// +1 if the triangle runs along the edge from its lesser to its greater vertex, -1 otherwise.
-int direction_along(const Triangle& t, const std::array<int, 2>& edge) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (t[i] == edge[0] && t[(i + 1) % 3] == edge[1]) return 1;
-  return -1;
-}
-
 /// The walk over the edges, part by part.
 class WindingWalk {
  public:
