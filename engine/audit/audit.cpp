@@ -189,7 +189,7 @@ std::vector<std::pair<int, int>> Audit::find_pairs(const std::vector<Actor>& act
     if (!a.is_dynamic && !b.is_dynamic) return false;
     if (!a.is_moving && !b.is_moving && !a.is_new && !b.is_new) return crossing_.count({a.id, b.id}) > 0;
     if (a.kind == ShapeKind::plane || b.kind == ShapeKind::plane) return a.kind != b.kind;
-    return a.kind == ShapeKind::shell || b.kind == ShapeKind::shell;
+    return body::is_mesh(a.kind) || body::is_mesh(b.kind);
   };
   std::vector<int> order;
   for (int i = 0; i < static_cast<int>(actors.size()); ++i) {

@@ -81,7 +81,7 @@ std::shared_ptr<const Surface> make_surface(const std::shared_ptr<const body::Sh
   surface->shape = shape;
   if (shape->kind == body::ShapeKind::box) {
     add_box(shape->half_extent, *surface);
-  } else if (shape->kind == body::ShapeKind::shell) {
+  } else if (body::is_mesh(shape->kind)) {
     surface->vertices = shape->surface.positions;
     surface->triangles = shape->surface.triangles;
   }

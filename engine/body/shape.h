@@ -18,21 +18,27 @@ enum class ShapeKind : std::uint8_t {
   box,     // half_extent about the origin
   sphere,  // radius about the origin
   shell,   // an infinitely thin triangle mesh; open or closed
+  solid,   // the inside of a closed triangle mesh
 };
+
+/// True for what is a triangle mesh to contact, pictures, audit and export.
+constexpr bool is_mesh(ShapeKind kind) {
+  return kind == ShapeKind::shell || kind == ShapeKind::solid;
+}
 
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Vec3 half_extent = Vec3::Zero();  // box, m
   double radius = 0.0;              // sphere, m
 
-  // Shell: the one surface for contact, pictures, audit and export.
+  // Shell and solid: the one surface for contact, pictures, audit and export.
   geometry::TriangleMesh surface;            // body space
   geometry::EdgeTopology topology;           // of the surface
   std::vector<std::uint8_t> crack_edges;     // per edge of the surface: 1 on a crack face
   std::vector<int> triangle_grains;          // per triangle: number of the grain, -1 without
   std::vector<int> triangle_cells;           // per triangle: cell of `shell` it belongs to
   std::vector<std::uint8_t> triangle_parts;  // per triangle: number of the look; empty for all 0
-  double thickness = 0.0;                    // m
+  double thickness = 0.0;                    // m; 0 for solids
 
   // What breaks: cells in material space; x_material = x_body + material_from_body.
   std::shared_ptr<const geometry::ShellMesh> shell;

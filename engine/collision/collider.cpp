@@ -86,6 +86,7 @@ std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
       topology = geometry::build_edge_topology(collider->triangles);
       break;
     case body::ShapeKind::shell:
+    case body::ShapeKind::solid:
       collider->vertices = shape.surface.positions;
       collider->triangles = shape.surface.triangles;
       topology =

@@ -1,6 +1,6 @@
 // What collision needs of a shape, built once: features (vertices, edges, triangles), who is whose neighbour,
-// and the triangle tree. Shells, boxes and spheres are all seen as features: a sphere is one vertex with a
-// radius.
+// and the triangle tree. Shells, solids, boxes and spheres are all seen as features: a sphere is one vertex
+// with a radius.
 #pragma once
 
 #include <array>

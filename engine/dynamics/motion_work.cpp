@@ -22,8 +22,8 @@ void place(WorkBody& body) {
 
 Vec3 direction_hint(const WorkBody& a, const WorkBody& b, const collision::FeaturePoints& points) {
   const Vec3& touch = points.points[0];
-  if (b.shape->kind != body::ShapeKind::shell) return touch - b.start.translation;
-  if (a.shape->kind != body::ShapeKind::shell) return a.start.translation - touch;
+  if (!body::is_mesh(b.shape->kind)) return touch - b.start.translation;
+  if (!body::is_mesh(a.shape->kind)) return a.start.translation - touch;
   return a.start.translation - b.start.translation;
 }
 

@@ -223,8 +223,8 @@ void adapt_gap(const ContactSettings& settings, const MotionWork& work, PairStat
   memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
   pair.kept_gap = memory.kept_gap;
   pair.threshold = impact_threshold(settings, memory.kept_gap);
-  const auto is_shell = [&](int i) { return work.bodies[at(i)].shape->kind == ShapeKind::shell; };
-  pair.is_close = memory.kept_gap < kClose * usual && !is_shell(pair.a) && !is_shell(pair.b);
+  const auto is_mesh = [&](int i) { return body::is_mesh(work.bodies[at(i)].shape->kind); };
+  pair.is_close = memory.kept_gap < kClose * usual && !is_mesh(pair.a) && !is_mesh(pair.b);
 }
 
 bool is_crossing(const MotionWork& work, const PairState& memory, const WorkPair& pair) {

@@ -56,7 +56,7 @@ class Parting {
   int choose(const WorkPair& pair) const {
     if (!bodies_[at(pair.a)].is_dynamic()) return pair.b;
     if (!bodies_[at(pair.b)].is_dynamic()) return pair.a;
-    const bool b_is_solid = work_.bodies[at(pair.b)].shape->kind != ShapeKind::shell;
+    const bool b_is_solid = !body::is_mesh(work_.bodies[at(pair.b)].shape->kind);
     return b_is_solid ? pair.a : pair.b;
   }
 
@@ -75,8 +75,8 @@ class Parting {
     const double length = sum.norm();
     const Vec3 away = length > 0.0 ? Vec3(sum / length) : first;
     Vec3 way = mover == pair.a ? away : Vec3(-away);
-    const bool has_solid = work_.bodies[at(pair.a)].shape->kind != ShapeKind::shell ||
-                           work_.bodies[at(pair.b)].shape->kind != ShapeKind::shell;
+    const bool has_solid = !body::is_mesh(work_.bodies[at(pair.a)].shape->kind) ||
+                           !body::is_mesh(work_.bodies[at(pair.b)].shape->kind);
     if (!has_solid && way.dot(up()) < 0.0) way = -way;
     return way;
   }

@@ -258,7 +258,7 @@ int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& sett
 int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
   std::size_t newborn = 0;
   for (const Body& b : bodies) {
-    if (!b.is_dynamic() || b.shape->kind != body::ShapeKind::shell) continue;
+    if (!b.is_dynamic() || !body::is_mesh(b.shape->kind)) continue;
     const auto known = std::lower_bound(state.bodies.begin(), state.bodies.end(), b.id,
                                         [](const BodyState& s, body::BodyId id) { return s.id < id; });
     newborn += known == state.bodies.end() || known->id != b.id ? 1 : 0;

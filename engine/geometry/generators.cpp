@@ -204,6 +204,17 @@ core::Result<TriangleMesh> make_torus(double ring_radius, double wire_radius, co
   return mesh;
 }
 
+TriangleMesh make_box_surface(const Vec3& half_extent) {
+  TriangleMesh mesh;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+    mesh.positions.emplace_back(sign.cwiseProduct(half_extent));
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
 double least_angle(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0.0;
   double sharpest = -1.0;

@@ -69,6 +69,9 @@ core::Result<TriangleMesh> make_bowl(const BowlSizes& sizes, const Meshing& mesh
 /// straight to the bit.
 core::Result<TriangleMesh> make_pane(double width, double height, const Meshing& meshing);
 
+/// The surface of a box about the origin: its eight corners and twelve triangles.
+TriangleMesh make_box_surface(const Vec3& half_extent);
+
 /// An open hull, double-ended: keel along x through the origin's height, bow at +x, gunwales up. A lattice of
 /// stations and strakes, the same on all four quarters; `Meshing::jitter` and `seed` do not apply. An edge
 /// length of 1/15 of the usual length gives 300 triangles. One sheet; thickness is a number.

@@ -11,15 +11,22 @@
 namespace shatterbox::world {
 namespace {
 
+/// Of the mesh, its looks and density.
+core::Hash hash_mesh(const geometry::TriangleMesh& mesh, const std::vector<std::uint8_t>& parts,
+                     double density) {
+  core::Hash hash;
+  for (const Vec3& p : mesh.positions) hash.add(p);
+  for (const geometry::Triangle& t : mesh.triangles)
+    for (const int v : t) hash.add(static_cast<std::uint64_t>(v));
+  for (const std::uint8_t part : parts) hash.add(std::uint64_t{part});
+  return hash.add(density);
+}
+
 std::uint64_t form_key(const ShellDescription& shell, const material::Material& material, int number,
                        double density) {
-  core::Hash hash;
-  for (const Vec3& p : shell.mesh.positions) hash.add(p);
-  for (const geometry::Triangle& t : shell.mesh.triangles)
-    for (const int v : t) hash.add(static_cast<std::uint64_t>(v));
-  for (const std::uint8_t part : shell.parts) hash.add(std::uint64_t{part});
+  core::Hash hash = hash_mesh(shell.mesh, shell.parts, density);
   for (const int vertex : shell.clamped) hash.add(static_cast<std::uint64_t>(vertex) + 1);
-  hash.add(shell.thickness).add(density).add(material.young).add(static_cast<std::uint64_t>(number));
+  hash.add(shell.thickness).add(material.young).add(static_cast<std::uint64_t>(number));
   return hash.add(std::uint64_t{shell.is_breakable}).value();
 }
 
@@ -58,23 +65,42 @@ std::shared_ptr<body::Shape> make_analytic_shape(const BodyDescription& descript
   return shape;
 }
 
+std::string find_mesh_fault(const geometry::TriangleMesh& mesh, const std::vector<std::uint8_t>& parts,
+                            const std::string& what) {
+  if (mesh.triangles.empty()) return "the mesh has no triangles";
+  if (!parts.empty() && parts.size() != mesh.triangles.size())
+    return "a " + what + "'s parts must be one number a triangle";
+  const int count = static_cast<int>(mesh.positions.size());
+  for (const geometry::Triangle& t : mesh.triangles)
+    for (const int v : t)
+      if (v < 0 || v >= count) return "a triangle names a vertex that is not there; mend the mesh first";
+  return {};
+}
+
+std::string find_solid_fault(const SolidDescription& solid) {
+  std::string fault = find_mesh_fault(solid.mesh, solid.parts, "solid");
+  if (!fault.empty()) return fault;
+  const geometry::EdgeTopology topology = geometry::build_edge_topology(solid.mesh.triangles);
+  for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e)
+    if (topology.triangle_count(e) != 2) return "a solid's mesh must be closed: each edge of two triangles";
+  if (!(geometry::enclosed_volume(solid.mesh) > 0.0)) return "the mesh is inside out, or flat";
+  return {};
+}
+
 std::string find_form_fault(const BodyDescription& description) {
   if (const auto* box = std::get_if<BoxDescription>(&description.form))
     if (!(box->half_extent.minCoeff() > 0.0)) return "a box needs an extent above zero along every axis";
   if (const auto* sphere = std::get_if<SphereDescription>(&description.form))
     if (!(sphere->radius > 0.0)) return "a sphere needs a radius above zero";
   if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
-    if (shell->mesh.triangles.empty()) return "the mesh has no triangles";
+    std::string fault = find_mesh_fault(shell->mesh, shell->parts, "shell");
+    if (!fault.empty()) return fault;
     if (!(shell->thickness > 0.0)) return "a shell needs a thickness above zero";
-    if (!shell->parts.empty() && shell->parts.size() != shell->mesh.triangles.size())
-      return "a shell's parts must be one number a triangle";
     const int count = static_cast<int>(shell->mesh.positions.size());
-    for (const geometry::Triangle& t : shell->mesh.triangles)
-      for (const int v : t)
-        if (v < 0 || v >= count) return "a triangle names a vertex that is not there; mend the mesh first";
     for (const int v : shell->clamped)
       if (v < 0 || v >= count) return "the support names a vertex that is not there";
   }
+  if (const auto* solid = std::get_if<SolidDescription>(&description.form)) return find_solid_fault(*solid);
   return {};
 }
 
@@ -115,6 +141,30 @@ SharedForm make_shell_form(const ShellDescription& shell, const material::Materi
         fragile->subject, stress::make_shell_stiffness(elements, fracture::properties_of(fragile->subject)));
   }
   return {key, make_shell_shape(mesh, *fragile, shell.thickness), fragile};
+}
+
+SharedForm make_solid_form(const SolidDescription& solid, double density, std::uint64_t key) {
+  auto shape = std::make_shared<body::Shape>();
+  const geometry::MassProperties mass = geometry::solid_mass_properties(solid.mesh, density);
+  shape->kind = body::ShapeKind::solid;
+  shape->surface = solid.mesh;
+  for (Vec3& p : shape->surface.positions) {
+    p -= mass.centre;
+    shape->bounding_radius = std::max(shape->bounding_radius, p.norm());
+  }
+  shape->topology = geometry::build_edge_topology(shape->surface.triangles);
+  shape->triangle_parts = solid.parts;
+  shape->mass = mass.mass;
+  shape->inertia = mass.inertia;
+  return {key, shape, nullptr};
+}
+
+/// The form of that key among `forms`; what `make` makes if there is none yet.
+template <class Make>
+const SharedForm& share_form(std::vector<SharedForm>& forms, std::uint64_t key, const Make& make) {
+  const auto form =
+      std::find_if(forms.begin(), forms.end(), [&](const SharedForm& f) { return f.key == key; });
+  return form != forms.end() ? *form : forms.emplace_back(make());
 }
 
 }  // namespace
@@ -186,11 +236,9 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     }
     const ShellDescription* shell = whole ? &*whole : given;
     const std::uint64_t key = form_key(*shell, material, description.material, density);
-    auto form =
-        std::find_if(s.forms.begin(), s.forms.end(), [&](const SharedForm& f) { return f.key == key; });
-    if (form == s.forms.end())
-      form = s.forms.insert(s.forms.end(), make_shell_form(*shell, material, density, key));
-    born.shape = form->shape;
+    const SharedForm& form =
+        share_form(s.forms, key, [&] { return make_shell_form(*shell, material, density, key); });
+    born.shape = form.shape;
     // The mesh's own frame is that of the description; material space has its origin at the centre of mass.
     const geometry::MassProperties mass =
         geometry::shell_mass_properties(shell->mesh, shell->thickness, density);
@@ -198,13 +246,18 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     born.pose.translation = born.pose.apply(centre);
     if (!shell->clamped.empty()) born.motion = body::Motion::fixed;
     if (shell->is_breakable) {
-      auto own = std::make_shared<Fragile>(*form->fragile);
+      auto own = std::make_shared<Fragile>(*form.fragile);
       own->subject.seed = core::Hash(s.settings.seed).add(std::uint64_t{s.moving.next_id}).value();
       own->subject.flaws = std::make_shared<const fracture::FlawField>(
           fracture::draw_flaws(*own->subject.mesh->elements, material, own->subject.seed));
       own->contact_duration = description.contact_duration;
       fragile = std::move(own);
     }
+  } else if (const auto* solid = std::get_if<SolidDescription>(&description.form)) {
+    const std::uint64_t key = hash_mesh(solid->mesh, solid->parts, density).value();
+    born.shape = share_form(s.forms, key, [&] { return make_solid_form(*solid, density, key); }).shape;
+    centre = geometry::solid_mass_properties(solid->mesh, density).centre;
+    born.pose.translation = born.pose.apply(centre);
   } else {
     born.shape = make_analytic_shape(description, density);
     if (born.shape->kind == body::ShapeKind::plane && born.motion == body::Motion::dynamic)

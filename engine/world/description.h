@@ -23,6 +23,13 @@ struct ShellDescription {
   bool is_breakable = true;         // scripted ones are not
 };
 
+/// The inside of a closed triangle mesh, wound counter-clockwise seen from outside. The mesh must have passed
+/// geometry::diagnose.
+struct SolidDescription {
+  geometry::TriangleMesh mesh;      // in the mesh's own frame, m
+  std::vector<std::uint8_t> parts;  // per triangle: number of the look; empty for all 0
+};
+
 struct BoxDescription {
   Vec3 half_extent = Vec3::Constant(0.5);  // m
 };
@@ -44,7 +51,7 @@ struct PathDescription {
 
 struct BodyDescription {
   std::string name;
-  std::variant<PlaneDescription, BoxDescription, SphereDescription, ShellDescription> form;
+  std::variant<PlaneDescription, BoxDescription, SphereDescription, ShellDescription, SolidDescription> form;
   int material = 0;                             // from World::add_material
   body::Motion motion = body::Motion::dynamic;  // a breakable shell that is clamped is always fixed
   Pose pose;                                    // of the mesh's (or the analytic form's) own frame

@@ -8,19 +8,9 @@
 #include <fmt/format.h>
 
 #include "engine/core/elementary.h"
+#include "engine/geometry/generators.h"
 
 namespace shatterbox::sandbox::report {
-
-geometry::TriangleMesh box_surface(const Vec3& half_extent) {
-  geometry::TriangleMesh mesh;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
-    mesh.positions.emplace_back(sign.cwiseProduct(half_extent));
-  }
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
-}
 
 geometry::TriangleMesh sphere_surface(double radius) {
   constexpr int kRings = 16, kSectors = 32;
@@ -60,12 +50,13 @@ std::string make_obj(const world::World& world) {
       case body::ShapeKind::plane:
         continue;
       case body::ShapeKind::box:
-        made = box_surface(body.shape->half_extent);
+        made = geometry::make_box_surface(body.shape->half_extent);
         break;
       case body::ShapeKind::sphere:
         made = sphere_surface(body.shape->radius);
         break;
       case body::ShapeKind::shell:
+      case body::ShapeKind::solid:
         mesh = &body.shape->surface;
         break;
     }

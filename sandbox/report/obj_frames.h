@@ -18,7 +18,6 @@ std::string make_obj(const world::World& world);
 std::string write_obj_frame(const std::string& folder, int number, const world::World& world);
 
 /// The surface of a box or a sphere (latitudes and longitudes), for export.
-geometry::TriangleMesh box_surface(const Vec3& half_extent);
 geometry::TriangleMesh sphere_surface(double radius);
 
 }  // namespace shatterbox::sandbox::report

@@ -46,22 +46,26 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const geometry::BoatSizes& sizes) const {
     return with_parts(geometry::make_boat(sizes, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const SlabShape& slab) const {
+    return one_part(geometry::make_box_surface(0.5 * slab.size));
+  }
   core::Result<geometry::PartedMesh> operator()(const MeshFileShape&) const {
     return core::Error{"not a generated shape"};
   }
 };
 
 /// A length that the shape is large against: the first, coarse mesh only tells its area.
-double coarse_edge(const ShellShape& shape) {
+double coarse_edge(const MeshShape& shape) {
   if (const auto* ornament = std::get_if<geometry::OrnamentSizes>(&shape)) return 0.2 * ornament->radius;
   if (const auto* sphere = std::get_if<SphereShape>(&shape)) return 0.2 * sphere->radius;
   if (const auto* bowl = std::get_if<geometry::BowlSizes>(&shape)) return 0.2 * bowl->rim_radius;
   if (const auto* boat = std::get_if<geometry::BoatSizes>(&shape)) return boat->length / kStationsOfBoat;
+  if (const auto* slab = std::get_if<SlabShape>(&shape)) return slab->size.maxCoeff();
   const auto& pane = std::get<PaneShape>(shape);
   return 0.1 * std::min(pane.width, pane.height);
 }
 
-core::Result<geometry::PartedMesh> generate(const ShellForm& form) {
+core::Result<geometry::PartedMesh> generate(const MeshForm& form) {
   Generate generator;
   if (form.edge_length) {
     generator.meshing.edge_length = *form.edge_length;
@@ -69,7 +73,9 @@ core::Result<geometry::PartedMesh> generate(const ShellForm& form) {
   }
   generator.meshing.edge_length = coarse_edge(form.shape);
   auto coarse = std::visit(generator, form.shape);
-  if (!coarse || std::holds_alternative<geometry::BoatSizes>(form.shape)) return coarse;
+  if (!coarse || std::holds_alternative<geometry::BoatSizes>(form.shape) ||
+      std::holds_alternative<SlabShape>(form.shape))
+    return coarse;
   const double area = geometry::surface_area(coarse.value().mesh);
   const double triangle_area = area / kUsualTriangles;
   generator.meshing.edge_length = core::sqrt(triangle_area * 4.0 / core::sqrt(3.0));
@@ -126,7 +132,7 @@ Bounds bounds_of(const std::vector<Vec3>& positions) {
 
 /// Turns, then stretches to a size (about the origin) or by a scale. False with a problem if a flat side
 /// cannot be stretched to the size asked for.
-bool fit(geometry::TriangleMesh& mesh, const ShellForm& form, const Place& place, Problems& problems) {
+bool fit(geometry::TriangleMesh& mesh, const MeshForm& form, const Place& place, Problems& problems) {
   if (form.up_is_z) {
     for (Vec3& p : mesh.positions) p = Vec3(p.x(), p.z(), -p.y());
   }
@@ -150,7 +156,7 @@ bool fit(geometry::TriangleMesh& mesh, const ShellForm& form, const Place& place
 
 }  // namespace
 
-std::optional<BuiltMesh> build_mesh(const ShellForm& form, const Place& place, Problems& problems,
+std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Problems& problems,
                                     std::vector<std::string>& notes) {
   std::optional<geometry::PartedMesh> parted;
   if (const auto* files = std::get_if<MeshFileShape>(&form.shape)) {

@@ -1,5 +1,5 @@
-// The mesh of a shell: generated or read, mended, turned and stretched as the scene says; and what its
-// support clamps.
+// The mesh of a shell or a solid: generated or read, mended, turned and stretched as the scene says; and what
+// its support clamps.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct BuiltMesh {
 
 /// Builds the mesh of `form`. Nothing if it cannot be had, with problems at `place`; what was mended goes to
 /// `notes`.
-std::optional<BuiltMesh> build_mesh(const ShellForm& form, const Place& place, Problems& problems,
+std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Problems& problems,
                                     std::vector<std::string>& notes);
 
 /// The vertices that `support` holds, ascending; `rotation` turns the mesh into the scene (the foot is what

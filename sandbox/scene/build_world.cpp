@@ -7,6 +7,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/random.h"
 #include "engine/geometry/mass_properties.h"
+#include "engine/geometry/mesh_diagnosis.h"
 #include "sandbox/scene/build_mesh.h"
 
 namespace shatterbox::sandbox::scene {
@@ -28,6 +29,23 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
   shell.mesh = std::move(built->mesh);
   shell.parts = std::move(built->parts);
   return shell;
+}
+
+/// A solid's mesh has an inside: closed, of one or several parts that each enclose some.
+std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, const SolidForm& form,
+                                                      BodyPlan& plan, std::vector<std::string>& notes,
+                                                      Problems& problems) {
+  auto built = build_mesh(form, body.place, problems, notes);
+  if (!built) return std::nullopt;
+  if (!geometry::diagnose(built->mesh, {.allow_loose_parts = true}).is_closed) {
+    book(problems, body.place,
+         fmt::format("body \"{}\" is a solid, but its mesh has an open border", body.name),
+         "close the mesh's holes, or write kind = \"shell\" with a thickness");
+    return std::nullopt;
+  }
+  for (const Vec3& p : built->mesh.positions) plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
+  plan.centre = geometry::solid_mass_properties(built->mesh, 1.0).centre;
+  return world::SolidDescription{std::move(built->mesh), std::move(built->parts)};
 }
 
 int group_number(std::vector<std::string>& groups, const std::string& name) {
@@ -70,6 +88,10 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
     auto shell = describe_shell(body, *form, scene, plan, notes, problems);
     if (!shell) return std::nullopt;
     description.form = std::move(*shell);
+  } else if (const auto* solid_form = std::get_if<SolidForm>(&body.form)) {
+    auto solid = describe_solid(body, *solid_form, plan, notes, problems);
+    if (!solid) return std::nullopt;
+    description.form = std::move(*solid);
   } else {
     description.form = world::PlaneDescription{};
   }

@@ -6,16 +6,16 @@
 
 #include "engine/core/elementary.h"
 #include "sandbox/scene/nearest_name.h"
-#include "sandbox/scene/read_shell.h"
+#include "sandbox/scene/read_mesh_form.h"
 
 namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kKinds{"shell", "plane", "box", "sphere"};
-const std::vector<std::string> kLaterKinds{"solid", "capsule"};
-const std::vector<std::string> kShellKeys{"mesh",      "shape",     "scale",  "up",
-                                          "thickness", "breakable", "support"};
+const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere"};
+const std::vector<std::string> kLaterKinds{"capsule"};
+const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up"};
+const std::vector<std::string> kShellKeys{"thickness", "breakable", "support"};
 
 Support read_support(TableReader& reader) {
   const TomlValue* value = reader.value("support");
@@ -75,11 +75,12 @@ Quat read_rotation(TableReader& reader) {
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> read_form(TableReader& reader,
-                                                                  const std::string& kind,
-                                                                  const SceneDescription& scene) {
+decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind,
+                                    const SceneDescription& scene) {
   if (kind == "shell") return read_shell(reader, scene);
   reader.foreign(kShellKeys, fmt::format("it is for kind = \"shell\"; this is a {}", kind));
+  if (kind == "solid") return read_solid(reader, scene);
+  reader.foreign(kMeshKeys, fmt::format("it is for kind = \"shell\" or \"solid\"; this is a {}", kind));
   if (kind == "sphere") {
     SphereForm form;
     form.radius = reader.number("radius", positive("m")).value_or(form.radius);
@@ -171,7 +172,8 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
       reader.add_problem_at("support", "only a breakable body has a support", "use motion = \"static\"");
     }
   }
-  const std::string fallback = form_kind == "shell" ? "glass" : form_kind == "plane" ? "ceramic" : "steel";
+  const bool is_ceramic = form_kind == "plane" || form_kind == "solid";
+  const std::string fallback = form_kind == "shell" ? "glass" : is_ceramic ? "ceramic" : "steel";
   const std::string material = reader.text("material").value_or(fallback);
   const TomlValue* material_value = table.find("material");
   body.material = find_material(material, material_value != nullptr ? material_value->place : table.place,

@@ -30,7 +30,7 @@ struct PairEntry {
   std::optional<double> friction, restitution;
 };
 
-// Shapes of shells.
+// Shapes of shells and solids.
 struct MeshFileShape {
   std::vector<std::string> files;  // as found from the scene's folder; several are one body
 };
@@ -40,8 +40,11 @@ struct SphereShape {
 struct PaneShape {
   double width = 1.0, height = 1.0;
 };
-using ShellShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
-                                PaneShape, geometry::BoatSizes>;
+struct SlabShape {
+  Vec3 size = Vec3::Ones();  // m
+};
+using MeshShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
+                               PaneShape, geometry::BoatSizes, SlabShape>;
 
 // Kinds of bodies.
 struct PlaneForm {};
@@ -51,15 +54,18 @@ struct BoxForm {
 struct SphereForm {
   double radius = 0.1;
 };
-struct ShellForm {
-  ShellShape shape;
+struct MeshForm {
+  MeshShape shape;
   std::optional<double> edge_length;  // m, of generated meshes; nothing: kUsualTriangles, a boat 300
-  std::optional<double> thickness;    // m; nothing: the material's
   Vec3 scale = Vec3::Ones();
   std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
   bool up_is_z = false;      // the mesh's z axis points up in the scene
+};
+struct ShellForm : MeshForm {
+  std::optional<double> thickness;  // m; nothing: the material's
   bool is_breakable = true;
 };
+struct SolidForm : MeshForm {};
 
 // What holds a body to the world. A box is in the mesh's own frame, after scale, size and up.
 struct EdgeSupport {};
@@ -102,7 +108,7 @@ struct LookEntry {
 struct BodyEntry {
   Place place;
   std::string name;
-  std::variant<PlaneForm, BoxForm, SphereForm, ShellForm> form;
+  std::variant<PlaneForm, BoxForm, SphereForm, ShellForm, SolidForm> form;
   int material = 0;  // number in SceneDescription::materials
   std::optional<double> density;
   Vec3 position = Vec3::Zero();

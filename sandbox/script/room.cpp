@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/elementary.h"
 #include "engine/geometry/closest_points.h"
 #include "engine/geometry/crossings.h"
+#include "engine/geometry/generators.h"
 
 namespace shatterbox::sandbox::script {
 
@@ -13,25 +15,15 @@ namespace {
 using body::ShapeKind;
 using geometry::TriangleMesh;
 
-/// A form in world space: the surface of a shell or a box, the ball of a sphere, or a half space.
+/// A form in world space: the surface of a shell, a solid or a box, the ball of a sphere, or a half space.
 struct Placed {
   ShapeKind kind = ShapeKind::shell;
-  TriangleMesh surface;  // shells and boxes, m
+  TriangleMesh surface;  // shells, solids and boxes, m
   Pose pose;             // of the form's own frame
   Vec3 half_extent = Vec3::Zero();
   double radius = 0.0;                             // of the sphere, m
   Vec3 least = Vec3::Zero(), most = Vec3::Zero();  // bounds; planes have none
 };
-
-TriangleMesh box_mesh(const Vec3& half_extent) {
-  TriangleMesh mesh;
-  for (int corner = 0; corner < 8; ++corner)
-    mesh.positions.push_back(half_extent.cwiseProduct(
-        Vec3(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0)));
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
 
 void place(Placed& form) {
   const Vec3 reach = Vec3::Constant(form.radius);
@@ -49,10 +41,13 @@ Placed placed(const world::BodyDescription& description) {
   form.pose = description.pose;
   if (const auto* shell = std::get_if<world::ShellDescription>(&description.form)) {
     form.surface = shell->mesh;
+  } else if (const auto* solid = std::get_if<world::SolidDescription>(&description.form)) {
+    form.kind = ShapeKind::solid;
+    form.surface = solid->mesh;
   } else if (const auto* box = std::get_if<world::BoxDescription>(&description.form)) {
     form.kind = ShapeKind::box;
     form.half_extent = box->half_extent;
-    form.surface = box_mesh(box->half_extent);
+    form.surface = geometry::make_box_surface(box->half_extent);
   } else if (const auto* sphere = std::get_if<world::SphereDescription>(&description.form)) {
     form.kind = ShapeKind::sphere;
     form.radius = sphere->radius;
@@ -69,7 +64,8 @@ Placed placed(const body::Body& body) {
   form.pose = body.pose;
   form.half_extent = body.shape->half_extent;
   if (form.kind == ShapeKind::sphere) form.radius = body.shape->radius;
-  form.surface = form.kind == ShapeKind::box ? box_mesh(form.half_extent) : body.shape->surface;
+  form.surface =
+      form.kind == ShapeKind::box ? geometry::make_box_surface(form.half_extent) : body.shape->surface;
   place(form);
   return form;
 }
@@ -108,10 +104,31 @@ bool is_in_box(const Placed& form, const Placed& box) {
          std::any_of(form.surface.positions.begin(), form.surface.positions.end(), is_inside);
 }
 
+/// How often a closed surface is wound about a point, from the solid angles of its triangles: 1 inside.
+double winding_number(const TriangleMesh& surface, const Vec3& point) {
+  double angle = 0.0;
+  for (const geometry::Triangle& t : surface.triangles) {
+    const Vec3 a = surface.positions[static_cast<std::size_t>(t[0])] - point;
+    const Vec3 b = surface.positions[static_cast<std::size_t>(t[1])] - point;
+    const Vec3 c = surface.positions[static_cast<std::size_t>(t[2])] - point;
+    const double x = a.norm(), y = b.norm(), z = c.norm();
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+  }
+  return angle / (4.0 * core::kPi);
+}
+
+/// One whose surface does not cross the solid's lies wholly in it.
+bool is_in_solid(const Placed& form, const Placed& solid) {
+  if (solid.kind != ShapeKind::solid || form.kind == ShapeKind::plane) return false;
+  const Vec3& point = form.kind == ShapeKind::sphere ? form.pose.translation : form.surface.positions.front();
+  return winding_number(solid.surface, point) > 0.5;
+}
+
 bool cross(const Placed& a, const Placed& b) {
   if (b.kind == ShapeKind::plane) return is_in_half_space(a, b);
   if (a.kind == ShapeKind::plane) return is_in_half_space(b, a);
   if ((a.least.array() > b.most.array()).any() || (b.least.array() > a.most.array()).any()) return false;
+  if (is_in_solid(a, b) || is_in_solid(b, a)) return true;
   if (b.kind == ShapeKind::sphere) return meets_sphere(a, b);
   if (a.kind == ShapeKind::sphere) return meets_sphere(b, a);
   return is_in_box(a, b) || is_in_box(b, a) || geometry::count_crossing_pairs({a.surface, b.surface}) > 0;

@@ -24,10 +24,10 @@ bool is_drawn_as_ground(const body::Body& body) {
   return body.shape->kind == body::ShapeKind::plane && is_level(body);
 }
 
-std::shared_ptr<const render::Mesh> make_shell_mesh(const body::Shape& shape, std::uint64_t id) {
+std::shared_ptr<const render::Mesh> make_surface_mesh(const body::Shape& shape, std::uint64_t id) {
   auto mesh = std::make_shared<render::Mesh>();
   mesh->id = id;
-  mesh->surface = render::Surface::shell;
+  mesh->surface = shape.kind == body::ShapeKind::solid ? render::Surface::solid : render::Surface::shell;
   mesh->thickness = static_cast<float>(shape.thickness);
   mesh->parts = shape.triangle_parts;
   for (const Vec3& p : shape.surface.positions) {
@@ -132,9 +132,10 @@ std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uin
     case body::ShapeKind::plane:
       return render::make_box(id, to_glm(Vec3(kSlabWidth, kSlabDepth, kSlabWidth)));
     case body::ShapeKind::shell:
+    case body::ShapeKind::solid:
       break;
   }
-  return make_shell_mesh(shape, id);
+  return make_surface_mesh(shape, id);
 }
 
 View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built)
@@ -196,7 +197,7 @@ void View::add_body(const body::Body& body, render::Frame& frame) {
   draw.looks = looks_of(ancestry.original != 0 ? ancestry.original : body.id);
   const bool is_piece = ancestry.parent != 0;
   draw.colour_index = is_piece ? body.id : render::Draw::kNoColour;
-  if (frame.overlay.kind == render::OverlayKind::stress && body.shape->kind == body::ShapeKind::shell) {
+  if (frame.overlay.kind == render::OverlayKind::stress && body::is_mesh(body.shape->kind)) {
     draw.scalars = vertex_stress(*body.shape, built_.world.stress_picture(body.id).triangle_stress);
   }
   frame.draws.push_back(std::move(draw));

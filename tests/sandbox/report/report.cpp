@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/obj_frames.h"
@@ -155,7 +156,8 @@ TEST_CASE("the closing words tell verdicts, breaks and speed") {
 }
 
 TEST_CASE("exported boxes and spheres are closed and wound outwards") {
-  CHECK(geometry::enclosed_volume(box_surface(Vec3(0.5, 1.0, 1.5))) == Approx(6.0).epsilon(1e-14));
+  CHECK(geometry::enclosed_volume(geometry::make_box_surface(Vec3(0.5, 1.0, 1.5))) ==
+        Approx(6.0).epsilon(1e-14));
   const double volume = geometry::enclosed_volume(sphere_surface(1.0));
   CHECK(volume > 4.0);
   CHECK(volume < 4.18879);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "sandbox/scene/build_mesh.h"
+#include "tests/sandbox/scene/mesh_file_folder.h"
 #include "tests/sandbox/scene/reading.h"
 
 using namespace shatterbox;
@@ -31,6 +32,18 @@ TEST_CASE("generated meshes have about 5000 triangles unless told otherwise") {
     CHECK(built->mesh.triangles.size() < 7000);
     CHECK(built->parts.size() == built->mesh.triangles.size());
   }
+}
+
+TEST_CASE("a solid needs a closed mesh") {
+  const MeshFileFolder folder;
+  const std::string open =
+      folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const Reading reading = read("[[body]]\nname = \"tent\"\nkind = \"solid\"\nmesh = \"" + open + "\"\n");
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  CHECK(!build_world(*reading.scene, problems).has_value());
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].message.find("open border") != std::string::npos);
 }
 
 TEST_CASE("size stretches to a box, up = z turns") {

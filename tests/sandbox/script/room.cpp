@@ -24,6 +24,11 @@ world::BodyDescription make(const char* kind, const Vec3& position) {
     shell.is_breakable = false;
     description.form = shell;
   }
+  if (word == "solid")
+    description.form = world::SolidDescription{geometry::make_box_surface(Vec3::Constant(0.5)), {}};
+  if (word == "marble") description.form = world::SphereDescription{0.1};
+  if (word == "crumb")
+    description.form = world::SolidDescription{geometry::make_box_surface(Vec3::Constant(0.1)), {}};
   return description;
 }
 
@@ -41,6 +46,10 @@ TEST_CASE("bodies just apart leave room, bodies just in each other do not") {
       {"sphere", "box", {0, 1.01, 0}, {0, 0.99, 0}},    {"sphere", "sphere", {0, 0, 1.01}, {0, 0, 0.99}},
       {"sphere", "shell", {0, 0, 0.51}, {0, 0, 0.49}},  {"shell", "sphere", {0, 0, 0.51}, {0, 0, -0.49}},
       {"shell", "box", {0.1, 0, 0.51}, {0.1, 0, 0.49}}, {"box", "box", {3, 0, 0}, {0, 0, 0}},
+      {"plane", "solid", {0, 0.51, 0}, {0, 0.49, 0}},   {"solid", "box", {1.01, 0.1, 0}, {0.99, 0.1, 0}},
+      {"solid", "sphere", {0, 1.01, 0}, {0, 0.99, 0}},  {"solid", "shell", {0, 0, 0.51}, {0.1, 0, 0.2}},
+      {"solid", "marble", {0.61, 0, 0}, {0.1, 0.2, 0}}, {"solid", "crumb", {0.61, 0, 0}, {0.1, 0.2, 0}},
+      {"crumb", "solid", {0.61, 0, 0}, {0.1, 0.2, 0}},
   };
   for (const Case& c : cases) {
     INFO(c.fresh << " into " << c.old);

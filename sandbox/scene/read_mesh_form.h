@@ -1,4 +1,4 @@
-// The form of a shell: a mesh from files, or a shape with sizes.
+// The form of a shell or a solid: a mesh from files, or a shape with sizes.
 #pragma once
 
 #include <string>
@@ -14,5 +14,6 @@ const std::vector<std::string>& shape_keys();
 
 /// Reads mesh or shape, sizes, scale, thickness; every fault is told to the reader.
 ShellForm read_shell(TableReader& reader, const SceneDescription& scene);
+SolidForm read_solid(TableReader& reader, const SceneDescription& scene);
 
 }  // namespace shatterbox::sandbox::scene

@@ -1,4 +1,4 @@
-#include "sandbox/scene/read_shell.h"
+#include "sandbox/scene/read_mesh_form.h"
 
 #include <filesystem>
 
@@ -10,8 +10,12 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kShapes{"ornament", "sphere", "bowl", "pane", "boat"};
-const std::vector<std::string> kLaterShapes{"vase", "bottle", "egg", "slab", "bricks"};
+/// What shapes there are for a kind of body, and which there will be.
+struct Shapes {
+  std::vector<std::string> known, later;
+};
+const Shapes kShellShapes{{"ornament", "sphere", "bowl", "pane", "boat"}, {}};
+const Shapes kSolidShapes{{"sphere", "slab"}, {"vase", "bottle", "egg", "bricks"}};
 const std::vector<std::string> kShapeKeys{
     "radius", "neck_radius", "neck_height", "cap",  "foot_radius", "foot_height", "height",
     "width",  "edge_length", "length",      "beam", "depth",       "sheer"};
@@ -51,7 +55,17 @@ std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDes
   return shape;
 }
 
-ShellShape read_shape(TableReader& reader, const std::string& shape) {
+SlabShape read_slab(TableReader& reader) {
+  SlabShape slab;
+  slab.size = reader.number_or_vector("size", positive("m")).value_or(slab.size);
+  if (!reader.has("size"))
+    reader.add_problem(reader.table().place, fmt::format("{} has no size", reader.what()),
+                       "add size = [x, y, z] in metres");
+  return slab;
+}
+
+MeshShape read_shape(TableReader& reader, const std::string& shape) {
+  if (shape == "slab") return read_slab(reader);
   const auto set = [&reader](const char* key, double& target, const Range& range) {
     target = reader.number(key, range).value_or(target);
   };
@@ -99,14 +113,8 @@ ShellShape read_shape(TableReader& reader, const std::string& shape) {
   return sizes;
 }
 
-}  // namespace
-
-const std::vector<std::string>& shape_keys() {
-  return kShapeKeys;
-}
-
-ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
-  ShellForm form;
+void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Shapes& shapes,
+                    MeshForm& form) {
   if (reader.has("mesh") && reader.has("shape")) {
     reader.add_problem_at("shape", "a body has either a mesh or a shape, not both", "remove one of them");
   }
@@ -116,11 +124,11 @@ ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
     form.size = reader.vector("size", positive("m"));
     reader.value("shape");
   } else {
-    const auto shape = reader.choice("shape", kShapes, kLaterShapes);
+    const auto shape = reader.choice("shape", shapes.known, shapes.later);
     if (!reader.has("shape")) {
-      reader.add_problem(reader.table().place,
-                         fmt::format("{} has neither a mesh nor a shape", reader.what()),
-                         fmt::format("add mesh = \"file.obj\", or shape = one of {}", quoted_list(kShapes)));
+      reader.add_problem(
+          reader.table().place, fmt::format("{} has neither a mesh nor a shape", reader.what()),
+          fmt::format("add mesh = \"file.obj\", or shape = one of {}", quoted_list(shapes.known)));
     }
     reader.value("mesh");
     form.shape = read_shape(reader, shape.value_or("sphere"));
@@ -130,15 +138,32 @@ ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
     } else {
       for (const std::string& key : kShapeKeys) reader.value(key);  // one fault is enough
     }
-    form.size = reader.vector("size", positive("m"));
+    if (shape != "slab") form.size = reader.vector("size", positive("m"));
   }
   form.scale = reader.number_or_vector("scale", positive()).value_or(form.scale);
   if (form.size && reader.has("scale")) {
     reader.add_problem_at("size", "a body has either a scale or a size, not both", "remove one of them");
   }
   form.up_is_z = reader.choice("up", {"y", "z"}).value_or("y") == "z";
+}
+
+}  // namespace
+
+const std::vector<std::string>& shape_keys() {
+  return kShapeKeys;
+}
+
+ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
+  ShellForm form;
+  read_mesh_form(reader, scene, kShellShapes, form);
   form.thickness = reader.number("thickness", positive("m"));
   form.is_breakable = reader.truth("breakable").value_or(true);
+  return form;
+}
+
+SolidForm read_solid(TableReader& reader, const SceneDescription& scene) {
+  SolidForm form;
+  read_mesh_form(reader, scene, kSolidShapes, form);
   return form;
 }
 
