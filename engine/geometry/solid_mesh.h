@@ -23,9 +23,9 @@ struct SolidCell {
   int element = 0;
   std::array<int, 4> vertices{};  // degrees of freedom: virtual vertices at the element's corners
   double volume = 0.0;            // m3, of the material
-  Vec3 centroid =
-      Vec3::Constant(0.25);  // weights of corners 1, 2, 3 at the material's centroid; corner 0 has 1 - sum
-  int grain = -1;            // number of the grain, -1 without grains
+  // Weights of corners 1, 2, 3 at the material's centroid; corner 0 has 1 - sum.
+  Vec3 centroid = Vec3::Constant(0.25);
+  int grain = -1;  // number of the grain, -1 without grains
 };
 
 struct SolidMesh {

@@ -16,6 +16,26 @@ core::DisjointSets parts_of(const geometry::ShellMesh& mesh) {
   return parts;
 }
 
+std::vector<int> part_of_dofs(const geometry::ShellMesh& mesh) {
+  core::DisjointSets parts = parts_of(mesh);
+  std::vector<char> is_used(mesh.vertex_source.size(), 0);
+  for (const geometry::ShellCell& cell : mesh.cells)
+    for (const int vertex : cell.vertices) is_used[at(vertex)] = 1;
+  std::vector<int> part_of(at(mesh.degree_of_freedom_count()), -1);
+  std::vector<int> number(is_used.size(), -1);
+  int count = 0;
+  for (int v = 0; v < static_cast<int>(is_used.size()); ++v) {
+    if (is_used[at(v)] == 0) continue;
+    int& part = number[at(parts.find(v))];
+    if (part < 0) part = count++;
+    for (int axis = 0; axis < 3; ++axis) part_of[at(vertex_dof(v) + axis)] = part;
+  }
+  for (const geometry::ShellCell& cell : mesh.cells)
+    for (const int edge : cell.edges)
+      part_of[at(edge_dof(mesh, edge))] = part_of[at(vertex_dof(cell.vertices[0]))];
+  return part_of;
+}
+
 geometry::ShellMesh loaded_parts(const geometry::ShellMesh& mesh, const std::vector<const VecX*>& loads) {
   core::DisjointSets parts = parts_of(mesh);
   std::vector<char> is_loaded(mesh.vertex_source.size(), 0);

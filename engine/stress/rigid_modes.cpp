@@ -3,11 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "engine/core/disjoint_sets.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
-#include "engine/stress/loaded_parts.h"
-#include "engine/stress/shell_stiffness.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -36,17 +33,18 @@ Mat6 orthonormal_combinations(const Mat6& products, const Vec6& least) {
 
 }  // namespace
 
-RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>& positions,
+RigidModes::RigidModes(std::vector<int> part_of_dof, const std::vector<Vec3>& positions,
                        const std::vector<Vec3>& edge_directions, const VecX& mass,
                        const std::vector<char>& is_clamped)
-    : mass_(mass) {
-  find_parts(mesh);
+    : mass_(mass), part_(std::move(part_of_dof)) {
+  for (const int part : part_)
+    if (at(part + 1) > part_mass_.size()) part_mass_.resize(at(part + 1), 0.0);
   const Size parts = part_mass_.size();
   modes_ = Modes::Zero(mass.size(), 6);
   std::vector<Vec3> centre(parts, Vec3::Zero()), low(parts), high(parts);
   std::vector<char> has_box(parts, 0);
   for (Size v = 0; v < positions.size(); ++v) {
-    const int dof = vertex_dof(static_cast<int>(v));
+    const int dof = 3 * static_cast<int>(v);
     if (part_[at(dof)] < 0) continue;
     const Size part = at(part_[at(dof)]);
     part_mass_[part] += mass(dof);
@@ -65,7 +63,7 @@ RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>&
   // radian's arm.
   std::vector<std::vector<int>> dofs(parts);
   for (Size v = 0; v < positions.size(); ++v) {
-    const int dof = vertex_dof(static_cast<int>(v));
+    const int dof = 3 * static_cast<int>(v);
     if (part_[at(dof)] < 0) continue;
     const Size part = at(part_[at(dof)]);
     const Vec3 arm = (positions[v] - centre[part]) / part_size_[part];
@@ -76,33 +74,13 @@ RigidModes::RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>&
     }
   }
   for (Size e = 0; e < edge_directions.size(); ++e) {
-    const int dof = edge_dof(mesh, static_cast<int>(e));
+    const int dof = 3 * static_cast<int>(positions.size()) + static_cast<int>(e);
     if (part_[at(dof)] < 0) continue;
     const Size part = at(part_[at(dof)]);
     modes_.block<1, 3>(dof, 3) = edge_directions[e].transpose() / part_size_[part];
     dofs[part].push_back(dof);
   }
   for (Size part = 0; part < parts; ++part) orthonormalise(dofs[part], is_clamped);
-}
-
-void RigidModes::find_parts(const geometry::ShellMesh& mesh) {
-  core::DisjointSets parts = parts_of(mesh);
-  std::vector<char> is_used(mesh.vertex_source.size(), 0);
-  for (const geometry::ShellCell& cell : mesh.cells)
-    for (const int vertex : cell.vertices) is_used[at(vertex)] = 1;
-  part_.assign(at(mesh.degree_of_freedom_count()), -1);
-  std::vector<int> number(is_used.size(), -1);
-  int count = 0;
-  for (int v = 0; v < static_cast<int>(is_used.size()); ++v) {
-    if (is_used[at(v)] == 0) continue;
-    int& part = number[at(parts.find(v))];
-    if (part < 0) part = count++;
-    for (int axis = 0; axis < 3; ++axis) part_[at(vertex_dof(v) + axis)] = part;
-  }
-  for (const geometry::ShellCell& cell : mesh.cells)
-    for (const int edge : cell.edges)
-      part_[at(edge_dof(mesh, edge))] = part_[at(vertex_dof(cell.vertices[0]))];
-  part_mass_.assign(at(count), 0.0);
 }
 
 void RigidModes::orthonormalise(const std::vector<int>& dofs, const std::vector<char>& is_clamped) {

@@ -1,11 +1,10 @@
-// The rigid motions of the connected parts of a shell that its support allows, orthonormal in mass: what
-// inertia relief takes out of a load and what a displacement is free by.
+// The rigid motions of the connected parts of a shell or a solid that its support allows, orthonormal in
+// mass: what inertia relief takes out of a load and what a displacement is free by.
 #pragma once
 
 #include <vector>
 
 #include "engine/core/vec.h"
-#include "engine/geometry/shell_mesh.h"
 
 namespace shatterbox::stress {
 
@@ -13,9 +12,11 @@ class RigidModes {
  public:
   RigidModes() = default;
 
-  /// `positions`: |virtual vertices| x 3, `edge_directions`: |virtual edges|, unit (or empty: rotations do
-  /// not count), `mass`: |dof|, `is_clamped`: |dof|. All lengths in one unit.
-  RigidModes(const geometry::ShellMesh& mesh, const std::vector<Vec3>& positions,
+  /// Unknowns are three displacements of each vertex, then one rotation of each edge (none in a solid).
+  /// `part_of_dof`: |dof|, the connected part, from 0; -1 for what is in no cell. `positions`: |virtual
+  /// vertices| x 3, `edge_directions`: |virtual edges|, unit (or empty: rotations do not count), `mass`:
+  /// |dof|, `is_clamped`: |dof|. All lengths in one unit.
+  RigidModes(std::vector<int> part_of_dof, const std::vector<Vec3>& positions,
              const std::vector<Vec3>& edge_directions, const VecX& mass, const std::vector<char>& is_clamped);
 
   /// x -= R R^T M x: no rigid motion in x.
@@ -38,7 +39,6 @@ class RigidModes {
 
  private:
   using Modes = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
-  void find_parts(const geometry::ShellMesh& mesh);
   void orthonormalise(const std::vector<int>& dofs, const std::vector<char>& is_clamped);
   Eigen::Matrix<double, 6, 6> mass_product(const std::vector<int>& dofs) const;
   void combine(const std::vector<int>& dofs, const Eigen::Matrix<double, 6, 6>& combinations);

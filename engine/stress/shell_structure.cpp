@@ -7,6 +7,7 @@
 #include "engine/core/parallel.h"
 #include "engine/stress/elimination_order.h"
 #include "engine/stress/front_tiles.h"
+#include "engine/stress/loaded_parts.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -111,7 +112,7 @@ void ShellStructure::build_rigid_modes(const geometry::ShellMesh& mesh, const Sh
   for (const int vertex : support.vertices)
     for (int axis = 0; axis < 3; ++axis) is_clamped[at(vertex_dof(vertex) + axis)] = 1;
   for (const int edge : support.edges) is_clamped[at(edge_dof(mesh, edge))] = 1;
-  rigid = RigidModes(mesh, positions, directions, mass, is_clamped);
+  rigid = RigidModes(part_of_dofs(mesh), positions, directions, mass, is_clamped);
 }
 
 void ShellStructure::build_tree(const geometry::ShellMesh& mesh, const ShellSupport& support) {

@@ -3,11 +3,45 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/geometry/edge_topology.h"
+#include "engine/geometry/solid_surface.h"
+#include "engine/geometry/vertex_fans.h"
 #include "tests/engine/geometry/solids.h"
 
 using namespace shatterbox;
 using namespace shatterbox::geometry;
 using fracture::split_solid;
+
+namespace {
+
+/// What is wrong with a piece's surface; empty if it is closed, a manifold, and encloses the piece's volume.
+std::string fault_of(const SolidSurface& surface, const SolidComplex& piece) {
+  const TriangleMesh& mesh = surface.mesh;
+  const EdgeTopology topology = build_edge_topology(mesh.triangles);
+  std::vector<int> balance(topology.edges.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      if (a == b) return "a triangle has a corner twice";
+      balance[static_cast<std::size_t>(topology.triangle_edges[t][k])] += a < b ? 1 : -1;
+    }
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    if (topology.triangle_count(static_cast<int>(e)) != 2)
+      return "an edge has " + std::to_string(topology.triangle_count(static_cast<int>(e))) + " triangles";
+    if (balance[e] != 0) return "triangles disagree about the outside";
+  }
+  TriangleMesh copy = mesh;
+  std::vector<int> source = surface.vertex_sources;
+  if (split_vertex_fans(copy, source).count > 0) return "a vertex has several fans";
+  const long euler = static_cast<long>(mesh.positions.size()) - static_cast<long>(topology.edges.size()) +
+                     static_cast<long>(mesh.triangles.size());
+  if (euler % 2 != 0) return "odd Euler characteristic";
+  const double error = enclosed_volume(mesh) - total_volume(piece);
+  if (std::abs(error) > 1e-12) return "volume off by " + std::to_string(error * 1e12) + " 1e-12";
+  return "";
+}
+
+}  // namespace
 
 TEST_CASE("split solid: a cube in eight") {
   SolidComplex complex = make_solid_complex(test::make_cube_elements(3, 0.2));
@@ -26,6 +60,10 @@ TEST_CASE("split solid: a cube in eight") {
     CHECK(total_volume(piece.complex) <= last);
     last = total_volume(piece.complex);
     sum += last;
+    const SolidSurface surface = extract_surface(piece.complex);
+    CHECK(fault_of(surface, piece.complex).empty());
+    for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t)
+      CHECK(surface.is_crack_face[t] == (surface.triangle_sources[t] < 0));
   }
   CHECK(sum == Approx(1.0).epsilon(1e-13));
   CHECK(total_volume(split.pieces[0].complex) == Approx(0.216).epsilon(0.05));
@@ -56,29 +94,52 @@ TEST_CASE("split solid: a boundary that holds keeps one piece, whose cells share
   CHECK(split.pieces[0].mesh.vertex_source.size() == 27);
 }
 
-TEST_CASE("split solid: random cuts") {
-  core::Random random(11);
-  for (int trial = 0; trial < 1500; ++trial) {
-    const int n = 1 + trial % 2;
-    SolidComplex complex =
-        make_solid_complex(test::make_cube_elements(n, 0.3, static_cast<std::uint64_t>(trial)));
-    SolidCutter cutter(complex, trial % 3 == 0 ? SolidCutter::kLeastSnap : SolidCutter::kUsualSnap);
-    SolidCut last = test::plane_cut(complex, Vec3::UnitX(), 0.4);
-    const int count = 1 + static_cast<int>(random.index(n == 1 ? 12 : 6));
-    for (int i = 0; i < count; ++i) {
-      SolidCut cut = test::random_cut(complex, random, i, &last);
-      if (random.index(3) == 0) keep_off_nodes(complex, 0.05, cut);
-      cutter.cut(cut);
-    }
-    const auto split = split_solid(complex, trial % 5 == 0 ? 0.05 : 0.0);
-    double sum = 0.0;
-    bool is_closed = true;
-    for (const auto& piece : split.pieces) {
-      is_closed = is_closed && are_cells_closed(piece.complex);
-      sum += total_volume(piece.complex);
-    }
-    INFO("trial " << trial);
-    CHECK(is_closed);
-    CHECK(std::abs(sum - 1.0) < 1e-12);
+namespace {
+
+/// A cube, cut up to a dozen times in any way, and split; returns the number of cuts.
+int try_random_cuts(int trial) {
+  core::Random random(11, static_cast<std::uint64_t>(trial));
+  const int n = 1 + trial % 2;
+  SolidComplex complex =
+      make_solid_complex(test::make_cube_elements(n, 0.3, static_cast<std::uint64_t>(trial)));
+  SolidCutter cutter(complex, trial % 3 == 0 ? SolidCutter::kLeastSnap : SolidCutter::kUsualSnap);
+  SolidCut last = test::plane_cut(complex, Vec3::UnitX(), 0.4);
+  const int count = 1 + static_cast<int>(random.index(n == 1 ? 12 : 6));
+  for (int i = 0; i < count; ++i) {
+    SolidCut cut = test::random_cut(complex, random, i, &last);
+    if (random.index(3) == 0) keep_off_nodes(complex, 0.05, cut);
+    cutter.cut(cut);
   }
+  const auto split = split_solid(complex, trial % 5 == 0 ? 0.05 : 0.0);
+  double sum = 0.0;
+  bool is_closed = true;
+  std::string fault;
+  std::vector<MassProperties> masses;
+  for (const auto& piece : split.pieces) {
+    is_closed = is_closed && are_cells_closed(piece.complex);
+    sum += total_volume(piece.complex);
+    if (fault.empty()) fault = fault_of(extract_surface(piece.complex), piece.complex);
+    masses.push_back(solid_mass_properties(piece.complex, 1000.0));
+  }
+  const MassProperties all = combined(masses);
+  INFO("trial " << trial << ": " << fault);
+  CHECK(is_closed);
+  CHECK(fault.empty());
+  CHECK(std::abs(sum - 1.0) < 1e-12);
+  CHECK(std::abs(all.mass / 1000.0 - 1.0) < 1e-12);
+  CHECK((all.centre - Vec3::Constant(0.5)).norm() < 1e-12);
+  CHECK((all.inertia - 1000.0 / 6.0 * Mat3::Identity()).norm() < 1e-12 * 1000.0);
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("split solid: 1e4 random cuts") {
+  int cuts = 0;
+  for (int trial = 0; cuts < 10'000; ++trial) cuts += try_random_cuts(trial);
+}
+
+TEST_CASE("split solid: 1e6 random cuts", "[.][long]") {
+  int cuts = 0;
+  for (int trial = 0; cuts < 1'000'000; ++trial) cuts += try_random_cuts(trial);
 }

@@ -1,0 +1,52 @@
+// Conjugate gradients on K + shift M with a block Jacobi preconditioner: the solver of solids. At the
+// accuracy that a strength asks for it costs what one back-substitution of a ready factor would, and nothing
+// is factored. Sums are made in fixed chunks: the same bits for any number of threads and for any company of
+// loads.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/stress/block_rows.h"
+
+namespace shatterbox::stress {
+
+/// A vertex whose displacement stays within a subspace.
+struct VertexHold {
+  int vertex = 0;
+  Mat3 allowed = Mat3::Zero();  // projector onto it; zero: clamped
+};
+
+/// What conjugate gradients ask of a matrix beside its rows.
+struct BlockSystem {
+  const BlockRows* rows = nullptr;
+  std::vector<double> inertia;  // |V|: shift times mass, added on the diagonal; empty for none
+  std::vector<double> inverse;  // |V| x 9: of the blocks on the diagonal, within what holds allow
+  std::vector<int> hold_of;     // |V|: into holds, -1 for free vertices
+  std::vector<VertexHold> holds;
+  /// Takes out of a residual (|dof|) what the singular matrix cannot answer; empty for none.
+  std::function<void(VecX&)> project;
+};
+
+/// Fills `inverse`; rows without stiffness or with nothing allowed get zeros.
+void invert_diagonal(BlockSystem& system);
+
+struct GradientSettings {
+  double tolerance = 2e-3;  // of the residual, relative to the (projected) load
+  int most_iterations = 1000;
+};
+
+struct GradientResult {
+  VecX x, image;          // |dof|; image: (K + shift M) x within what holds allow
+  double residual = 0.0;  // |b - image| / |b|, computed anew from x
+  int iterations = 0;
+  bool is_converged = false;
+};
+
+/// Answers to loads (|dof| each), each by itself; four share one pass over the matrix.
+std::vector<GradientResult> solve_by_gradients(const BlockSystem& system, std::span<const VecX> loads,
+                                               const GradientSettings& settings);
+
+}  // namespace shatterbox::stress
