@@ -48,6 +48,38 @@ Ear judge_ear(const std::vector<Vec2>& points, const std::vector<int>& ring, Siz
   return ear;
 }
 
+double shape_of(const std::vector<Vec2>& points, int i, int j, int k) {
+  const Vec2& a = points[at(i)];
+  const Vec2& b = points[at(j)];
+  const Vec2& c = points[at(k)];
+  const double lengths = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+  return lengths > 0.0 ? turn(a, b, c) / lengths : 0.0;
+}
+
+/// Replaces the diagonal of two triangles by the other one where that makes the worse of them better, until
+/// none does.
+void flip_diagonals(const std::vector<Vec2>& points, std::vector<Triangle>& triangles) {
+  bool has_changed = true;
+  for (Size round = 0; has_changed && round < 2 * points.size(); ++round) {
+    has_changed = false;
+    for (Size s = 0; s < triangles.size(); ++s)
+      for (Size t = s + 1; t < triangles.size(); ++t)
+        for (Size i = 0; i < 3; ++i)
+          for (Size j = 0; j < 3; ++j) {
+            // Triangle s is a, b, c; triangle t is b, a, d.
+            const int a = triangles[s][i], b = triangles[s][(i + 1) % 3], c = triangles[s][(i + 2) % 3];
+            if (triangles[t][j] != b || triangles[t][(j + 1) % 3] != a) continue;
+            const int d = triangles[t][(j + 2) % 3];
+            const double before = std::min(shape_of(points, a, b, c), shape_of(points, b, a, d));
+            const double after = std::min(shape_of(points, a, d, c), shape_of(points, d, b, c));
+            if (!(after > before * (1.0 + 1e-9) + kFlat)) continue;
+            triangles[s] = {a, d, c};
+            triangles[t] = {d, b, c};
+            has_changed = true;
+          }
+  }
+}
+
 bool do_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto opposite = [](double p, double q) { return (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0); };
   return opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b));
@@ -78,12 +110,21 @@ std::vector<Triangle> triangulate_ring(const std::vector<Vec2>& points) {
   std::iota(ring.begin(), ring.end(), 0);
   std::vector<Ear> ears(ring.size());
   for (Size i = 0; i < ring.size(); ++i) ears[i] = judge_ear(points, ring, i);
+  double left = twice_area(points);
+  const double least_left = kFlat * left;
   while (ring.size() >= 3) {
     const Size n = ring.size();
+    const auto area = [&](Size i) {
+      return turn(points[at(ring[(i + n - 1) % n])], points[at(ring[i])], points[at(ring[(i + 1) % n])]);
+    };
+    // Not one that leaves only a line behind.
+    const auto rank = [&](Size i) {
+      return n > 3 && ears[i].rank > 0 && left - area(i) <= least_left ? 0 : ears[i].rank;
+    };
     Size best = 0;
     for (Size i = 1; i < n; ++i)
-      if (ears[i].rank != ears[best].rank ? ears[i].rank > ears[best].rank : ears[i].shape > ears[best].shape)
-        best = i;
+      if (rank(i) != rank(best) ? rank(i) > rank(best) : ears[i].shape > ears[best].shape) best = i;
+    left -= area(best);
     triangles.push_back({ring[(best + n - 1) % n], ring[best], ring[(best + 1) % n]});
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(best));
     ears.erase(ears.begin() + static_cast<std::ptrdiff_t>(best));
@@ -94,6 +135,7 @@ std::vector<Triangle> triangulate_ring(const std::vector<Vec2>& points) {
     for (Size i = 0; i < ring.size(); ++i)
       if (ears[i].rank == 1) ears[i] = judge_ear(points, ring, i);
   }
+  flip_diagonals(points, triangles);
   return triangles;
 }
 

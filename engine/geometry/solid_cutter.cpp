@@ -14,7 +14,8 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kPlane = 1e-12;  // of its size: a cap that deviates less is one facet
+constexpr double kFlatLoop = 1e-9;  // of its squared length: the area of a loop that is no hole
+constexpr double kPlane = 1e-12;    // of its size: a cap that deviates less is one facet
 
 /// The point at `t` of the way from a to b, as a mean of their elements' nodes.
 SolidVertex between(const SolidVertex& a, const SolidVertex& b, double t) {
@@ -344,13 +345,17 @@ void SolidCutter::group_loops() {
   std::vector<double> areas;
   for (CapLoop& loop : loops_) {
     areas.push_back(twice_area(loop.points));
-    if (loops_.size() == 1 || areas.back() > 0.0) loop.group = group_count_++;
+    double length = 0.0;
+    for (Size i = 0; i < loop.points.size(); ++i)
+      length += (loop.points[(i + 1) % loop.points.size()] - loop.points[i]).norm();
+    // What is hardly wider than a line is no hole.
+    if (areas.back() > -kFlatLoop * length * length) loop.group = group_count_++;
   }
   for (Size h = 0; h < loops_.size(); ++h) {
     if (loops_[h].group >= 0) continue;
     int best = -1;
     for (Size l = 0; l < loops_.size(); ++l)
-      if (areas[l] > -areas[h] && is_inside(loops_[l].points, loops_[h].points[0]) &&
+      if (loops_[l].group >= 0 && areas[l] > -areas[h] && is_inside(loops_[l].points, loops_[h].points[0]) &&
           (best < 0 || areas[l] < areas[at(best)]))
         best = static_cast<int>(l);
     loops_[h].group = best >= 0 ? loops_[at(best)].group : group_count_++;
@@ -369,9 +374,33 @@ int SolidCutter::add_facet(const std::vector<int>& sides, const SolidCut& cut) {
   return static_cast<int>(complex_.facets.size()) - 1;
 }
 
+/// A hole that shares a corner with the loop about it becomes a part of it.
+void SolidCutter::splice_touching_loops(std::vector<CapLoop*>& loops) const {
+  for (Size h = 1; h < loops.size();) {
+    CapLoop& outer = *loops[0];
+    CapLoop& hole = *loops[h];
+    bool is_spliced = false;
+    for (Size i = 0; i < outer.sides.size() && !is_spliced; ++i)
+      for (Size k = 0; k < hole.sides.size() && !is_spliced; ++k) {
+        if (complex_.side_begin(outer.sides[i]) != complex_.side_begin(hole.sides[k])) continue;
+        const auto from = static_cast<std::ptrdiff_t>(k), to = static_cast<std::ptrdiff_t>(i);
+        std::rotate(hole.sides.begin(), hole.sides.begin() + from, hole.sides.end());
+        std::rotate(hole.points.begin(), hole.points.begin() + from, hole.points.end());
+        outer.sides.insert(outer.sides.begin() + to, hole.sides.begin(), hole.sides.end());
+        outer.points.insert(outer.points.begin() + to, hole.points.begin(), hole.points.end());
+        is_spliced = true;
+      }
+    if (is_spliced)
+      loops.erase(loops.begin() + static_cast<std::ptrdiff_t>(h)), h = 1;
+    else
+      ++h;
+  }
+}
+
 /// The facets that close one border (a loop, and then its holes): one where it is plane and convex, or else
 /// triangles.
-void SolidCutter::cap(const std::vector<CapLoop*>& loops, const SolidCut& cut, std::vector<int>& caps) {
+void SolidCutter::cap(std::vector<CapLoop*> loops, const SolidCut& cut, std::vector<int>& caps) {
+  splice_touching_loops(loops);
   const std::vector<int>& sides = loops[0]->sides;
   const std::vector<Vec2>& points = loops[0]->points;
   if (loops.size() == 1 && sides.size() > 3) {

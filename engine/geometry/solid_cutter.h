@@ -26,7 +26,7 @@ class SolidCutter {
   /// that no sliver is narrower. At least kLeastSnap, at most a quarter.
   explicit SolidCutter(SolidComplex& complex, double snap = kUsualSnap);
 
-  static constexpr double kUsualSnap = 0.02;
+  static constexpr double kUsualSnap = 1e-3;
   static constexpr double kLeastSnap = 1e-9;
 
   /// Divides the active cells into their parts on both sides. A cell keeps its number for its first part;
@@ -69,7 +69,8 @@ class SolidCutter {
   int sign_of_facet_in_surface(int cell, int facet_side) const;
   void collect_loops();
   void group_loops();
-  void cap(const std::vector<CapLoop*>& loops, const SolidCut& cut, std::vector<int>& caps);
+  void splice_touching_loops(std::vector<CapLoop*>& loops) const;
+  void cap(std::vector<CapLoop*> loops, const SolidCut& cut, std::vector<int>& caps);
   int new_edge(int from, int to);
   int add_facet(const std::vector<int>& sides, const SolidCut& cut);
   void assign_parts(int cell, const SolidCut& cut);

@@ -239,7 +239,7 @@ class BorderBuilder {
         const int middle = static_cast<int>(surface_.mesh.positions.size());
         surface_.mesh.positions.push_back(
             0.5 * (surface_.mesh.positions[at(ends[0])] + surface_.mesh.positions[at(ends[1])]));
-        surface_.vertex_sources.push_back(surface_.vertex_sources[at(ends[0])]);
+        surface_.vertex_sources.push_back(-1);
         for (const Size k : {i, i + 1}) split_triangle(spokes_[k].triangle, ends, middle);
       }
       first = last;

@@ -18,7 +18,7 @@ struct SolidSurface {
   std::vector<int> triangle_cells;    // per triangle: the cell behind it
   std::vector<int> triangle_grains;   // per triangle: that cell's grain, -1 without
   std::vector<std::uint8_t> is_crack_face;  // per triangle
-  std::vector<int> vertex_sources;          // per vertex: the vertex of the complex it is
+  std::vector<int> vertex_sources;  // per vertex: the vertex of the complex; -1 in the middle of an edge
 };
 
 /// The border of all cells of a settled complex, which is one piece's. Vertices and edges in which parts

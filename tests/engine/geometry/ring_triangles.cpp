@@ -64,6 +64,13 @@ TEST_CASE("ring triangles: corners on straight sides get triangles with area") {
   CHECK(least > 0.1);
 }
 
+TEST_CASE("ring triangles: the best ear is not clipped if it leaves a line") {
+  const std::vector<Vec2> ring{{0, 0}, {1, 0}, {2, 0}, {1, 1.7}};
+  double least = 0.0;
+  CHECK(area_of(ring, triangulate_ring(ring), least) == Approx(1.7));
+  CHECK(least > 0.8);
+}
+
 TEST_CASE("ring triangles: a square with two holes") {
   const std::vector<std::vector<Vec2>> loops{{{0, 0}, {4, 0}, {4, 4}, {0, 4}},
                                              {{1, 1}, {1, 2}, {2, 2}, {2, 1}},
