@@ -1,7 +1,7 @@
-// Meshes of shells by their sizes: sphere, ornament, bowl, pane, boat, and any surface of revolution.
-// Triangles are near-equilateral, of one size, and without directions that cracks could follow; vertices lie
-// on the exact surface, so that a finer mesh is the same shape. y is up. The same numbers give the same mesh
-// to the bit.
+// Surfaces by their sizes: sphere, ornament, bowl, pane, boat, vase, bottle, egg, and any surface of
+// revolution. Triangles are near-equilateral, of one size, and without directions that cracks could follow;
+// vertices lie on the exact surface, so that a finer mesh is the same shape. y is up. The same numbers give
+// the same mesh to the bit.
 #pragma once
 
 #include <cstdint>
@@ -71,6 +71,37 @@ core::Result<TriangleMesh> make_pane(double width, double height, const Meshing&
 
 /// The surface of a box about the origin: its eight corners and twelve triangles.
 TriangleMesh make_box_surface(const Vec3& half_extent);
+
+/// A vase with a wall: foot on y = 0, belly, neck, flared rim with a round lip; closed, for solids. Finer
+/// than twice the wall, whatever `meshing` says, so that the two sides of the wall keep apart.
+struct VaseSizes {
+  double height = 0.25;         // m, to the top of the lip
+  double foot_radius = 0.045;   // m
+  double belly_radius = 0.075;  // m, at a third of the height
+  double neck_radius = 0.03;    // m, at four fifths of it
+  double rim_radius = 0.042;    // m
+  double wall = 0.006;          // m, of the wall (measured along the radius) and of the floor
+};
+core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& meshing);
+
+/// A bottle with a wall: flat bottom with a rounded edge on y = 0, straight body, shoulder, straight neck
+/// with a round lip; closed, for solids. Finer than twice the wall, as a vase.
+struct BottleSizes {
+  double height = 0.3;         // m, to the top of the lip
+  double radius = 0.037;       // m, of the body
+  double neck_radius = 0.014;  // m
+  double neck_length = 0.08;   // m
+  double wall = 0.004;         // m, of the wall (along the radius); the floor has twice that
+};
+core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& meshing);
+
+/// An egg: half an ellipsoid above the plane y = 0 and a longer or shorter half below; closed.
+struct EggSizes {
+  double radius = 0.022;          // m, at y = 0, where it is widest
+  double blunt_height = 0.025;    // m, below
+  double pointed_height = 0.032;  // m, above
+};
+core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing);
 
 /// An open hull, double-ended: keel along x through the origin's height, bow at +x, gunwales up. A lattice of
 /// stations and strakes, the same on all four quarters; `Meshing::jitter` and `seed` do not apply. An edge

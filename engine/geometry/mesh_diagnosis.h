@@ -23,8 +23,10 @@ enum class MeshFault : std::uint8_t {
   non_manifold_vertices,  // mended: fans that meet in one vertex only get a vertex each
   mixed_winding,          // mended: turned to agree
   not_orientable,         // refused: a Moebius strip
-  loose_parts,            // refused, or noted where allowed
+  loose_parts,            // refused, or noted where allowed (of solids always)
   slivers,                // noted: very thin triangles
+  open_border,            // of solids: refused
+  self_crossing,          // of solids: refused: triangles that pass through each other
 };
 
 enum class Severity : std::uint8_t { noted, mended, refused };
@@ -71,5 +73,9 @@ MeshDiagnosis diagnose(const TriangleMesh& mesh, const MendOptions& options = {}
 /// triangle joins it. A single closed surface that was inside out is turned. Mending a mended mesh gives the
 /// same mesh. Refused meshes come back empty; diagnosis.refused() tells.
 MendedMesh mend(const TriangleMesh& mesh, const MendOptions& options = {});
+
+/// Likewise for the surface of a solid, which moreover is closed, faces outwards (a part inside another one
+/// is the border of a hollow and faces into it) and does not pass through itself. Loose parts are allowed.
+MendedMesh mend_solid(const TriangleMesh& mesh, const MendOptions& options = {});
 
 }  // namespace shatterbox::geometry

@@ -159,7 +159,8 @@ TEST_CASE("embedded material: a box in general position") {
   core::Random random(1, 1);
   for (int i = 0; i < 5; ++i) {
     const Vec3 axis(random.uniform(-1, 1), 1.0, 0.3);
-    check(elements, moved(turned(box_surface({0.27, 0.21, 0.13}), axis, 2.0 * i), {0.03, -0.04, 0.02}));
+    check(elements,
+          moved(turned(make_box_surface(Vec3(0.27, 0.21, 0.13)), axis, 2.0 * i), {0.03, -0.04, 0.02}));
   }
 }
 
@@ -170,7 +171,7 @@ TEST_CASE("embedded material: a box along the elements' faces, through their nod
                            Vec3(0.25, 0.125, 0.0625)})
     for (const Vec3& way :
          {Vec3(0, 0, 0), Vec3(0.125, 0, 0), Vec3(0.0625, 0.0625, 0.0625), Vec3(0.0625, 0, 0)}) {
-      const EmbeddedMaterial embedded = check(elements, moved(box_surface(half), way));
+      const EmbeddedMaterial embedded = check(elements, moved(make_box_surface(half), way));
       // What has no volume is nobody's cell.
       for (std::size_t c = 0; c < embedded.volumes.size(); ++c)
         CHECK(embedded.volumes[c] > 1e-6 * 0.125 * 0.125 * 0.125);
@@ -228,13 +229,13 @@ TEST_CASE("embedded material: sphere, torus, ornament, finer and coarser than th
 TEST_CASE("embedded material: plates thinner than an element, parallel sheets are cells of their own") {
   const auto elements = eighths();
   for (const double thickness : {0.03, 1e-3, 1e-6}) {
-    check(elements, turned(box_surface({0.3, 0.3, 0.5 * thickness}), {1.0, 0.4, 0.2}, 0.3));
-    check(elements, box_surface({0.3, 0.3, 0.5 * thickness}));
-    check(elements, moved(box_surface({0.25, 0.25, 0.5 * thickness}), {0.0, 0.0, 0.5 * thickness}));
+    check(elements, turned(make_box_surface(Vec3(0.3, 0.3, 0.5 * thickness)), {1.0, 0.4, 0.2}, 0.3));
+    check(elements, make_box_surface(Vec3(0.3, 0.3, 0.5 * thickness)));
+    check(elements, moved(make_box_surface(Vec3(0.25, 0.25, 0.5 * thickness)), {0.0, 0.0, 0.5 * thickness}));
   }
-  TriangleMesh sheets = moved(box_surface({0.3, 0.3, 0.005}), {0.0, 0.0, 0.026});
+  TriangleMesh sheets = moved(make_box_surface(Vec3(0.3, 0.3, 0.005)), {0.0, 0.0, 0.026});
   const EmbeddedMaterial one = check(elements, sheets);
-  append(sheets, moved(box_surface({0.3, 0.3, 0.005}), {0.0, 0.0, 0.040}));
+  append(sheets, moved(make_box_surface(Vec3(0.3, 0.3, 0.005)), {0.0, 0.0, 0.040}));
   const EmbeddedMaterial two = check(elements, sheets);
   const auto has_two_cells = [](const EmbeddedMaterial& embedded) {
     int count = 0;
@@ -282,13 +283,13 @@ TEST_CASE("embedded material: what is not covered, open or crosses itself is ref
     INFO(result.error());
     CHECK(result.error().find(words) != std::string::npos);
   };
-  says(box_surface(Vec3::Constant(0.6)), "do not cover");
-  says(box_surface({0.6, 0.1, 0.1}), "do not cover");
-  TriangleMesh open = box_surface(Vec3::Constant(0.2));
+  says(make_box_surface(Vec3::Constant(0.6)), "do not cover");
+  says(make_box_surface(Vec3(0.6, 0.1, 0.1)), "do not cover");
+  TriangleMesh open = make_box_surface(Vec3::Constant(0.2));
   open.triangles.pop_back();
   says(open, "not closed");
-  TriangleMesh crossing = box_surface(Vec3::Constant(0.2));
-  append(crossing, moved(box_surface(Vec3::Constant(0.2)), Vec3(0.11, 0.12, 0.13)));
+  TriangleMesh crossing = make_box_surface(Vec3::Constant(0.2));
+  append(crossing, moved(make_box_surface(Vec3::Constant(0.2)), Vec3(0.11, 0.12, 0.13)));
   says(crossing, "crosses itself");
 }
 

@@ -48,10 +48,10 @@ std::vector<Shape> shapes() {
   append(hollow, inner);
   return {{"sphere", make_sphere(0.1, fine(0.01)).value(), 0.025},
           {"coarse sphere", make_sphere(0.1, fine(0.08)).value(), 0.02},
-          {"box", box_surface({0.1, 0.07, 0.05}), 0.025},
+          {"box", make_box_surface(Vec3(0.1, 0.07, 0.05)), 0.025},
           {"torus", make_torus(0.1, 0.03, fine(0.01)).value(), 0.015},
           {"ornament", make_ornament(ornament, fine(0.004)).value().mesh, 0.01},
-          {"plate", box_surface({0.1, 0.1, 0.002}), 0.02},
+          {"plate", make_box_surface(Vec3(0.1, 0.1, 0.002)), 0.02},
           {"star", star, 0.02},
           {"hollow", hollow, 0.03}};
 }
@@ -159,7 +159,7 @@ TEST_CASE("tetrahedralise: moving vertices leaves hardly any element with a sliv
 TEST_CASE("tetrahedralise: about as many as asked for") {
   for (const int count : {2000, 20000})
     for (const Shape& shape : {Shape{"sphere", make_sphere(0.1, fine(0.02)).value(), 0.0},
-                               Shape{"box", box_surface({0.1, 0.07, 0.05}), 0.0},
+                               Shape{"box", make_box_surface(Vec3(0.1, 0.07, 0.05)), 0.0},
                                Shape{"torus", make_torus(0.1, 0.03, fine(0.02)).value(), 0.0}}) {
       INFO(shape.name);
       TetrahedraOptions options;
@@ -189,7 +189,7 @@ TEST_CASE("tetrahedralise: the scale and the place change nothing but rounding, 
 }
 
 TEST_CASE("tetrahedralise: nonsense is refused with a sentence") {
-  TriangleMesh surface = box_surface(Vec3::Constant(0.1));
+  TriangleMesh surface = make_box_surface(Vec3::Constant(0.1));
   TetrahedraOptions options;
   CHECK_FALSE(tetrahedralise(surface, options));
   options.element_size = 1e-5;

@@ -1,0 +1,152 @@
+// Closed surfaces for solids: vessels with a wall, and the egg.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/geometry/generator_faults.h"
+#include "engine/geometry/generators.h"
+
+namespace shatterbox::geometry {
+namespace {
+
+/// One side of a wall: from its lower end up, smooth, with the radius `inset` less than given.
+class WallProfile {
+ public:
+  WallProfile(const Vec2& from, double inset) : end_(from.x() - inset, from.y()), inset_(inset) {}
+
+  void add_line(double radius, double y) { add(ProfileSegment::Kind::line, radius, y, Vec2::Zero()); }
+
+  /// A parabola that leaves, or arrives, upright: `control_y` is where the tangents of its ends meet.
+  void add_leaving_upright(double radius, double y, double control_y) {
+    add(ProfileSegment::Kind::parabola, radius, y, Vec2(end_.x(), control_y));
+  }
+  void add_arriving_upright(double radius, double y, double control_y) {
+    add(ProfileSegment::Kind::parabola, radius, y, Vec2(radius - inset_, control_y));
+  }
+
+  /// Upright at both ends: two parabolas that meet half way.
+  void add_shoulder(double radius, double y) {
+    const double low = end_.y(), old_radius = end_.x() + inset_;
+    add_leaving_upright(0.5 * (old_radius + radius), 0.5 * (low + y), 0.75 * low + 0.25 * y);
+    add_arriving_upright(radius, y, 0.25 * low + 0.75 * y);
+  }
+
+  const Vec2& end() const { return end_; }
+  const std::vector<ProfileSegment>& segments() const { return segments_; }
+
+ private:
+  void add(ProfileSegment::Kind kind, double radius, double y, const Vec2& control) {
+    const Vec2 to(radius - inset_, y);
+    segments_.push_back({kind, end_, to, control, Part::body});
+    end_ = to;
+  }
+
+  Vec2 end_;
+  double inset_;
+  std::vector<ProfileSegment> segments_;
+};
+
+void add_quarter(std::vector<ProfileSegment>& profile, const Vec2& to, const Vec2& centre) {
+  profile.push_back({ProfileSegment::Kind::arc, profile.back().to, to, centre, Part::body});
+}
+
+/// Up the outer side (which begins where `profile` ends), over the lip, down the inner side and to the axis.
+core::Result<TriangleMesh> close_vessel(std::vector<ProfileSegment> profile, const WallProfile& outer,
+                                        const WallProfile& inner, double wall, Meshing meshing) {
+  profile.insert(profile.end(), outer.segments().begin(), outer.segments().end());
+  const Vec2 rim = outer.end();
+  const Vec2 middle(rim.x() - 0.5 * wall, rim.y());
+  add_quarter(profile, middle + Vec2(0.0, 0.5 * wall), middle);
+  add_quarter(profile, inner.end(), middle);
+  for (auto s = inner.segments().rbegin(); s != inner.segments().rend(); ++s) {
+    profile.push_back(*s);
+    std::swap(profile.back().from, profile.back().to);
+  }
+  const Vec2 floor(0.0, profile.back().to.y());
+  profile.push_back({ProfileSegment::Kind::line, profile.back().to, floor, Vec2::Zero(), Part::body});
+  if (meshing.edge_length > 2.0 * wall) meshing.edge_length = 2.0 * wall;
+  core::Result<PartedMesh> vessel = make_surface_of_revolution(profile, meshing);
+  if (!vessel) return core::Error{vessel.error()};
+  return std::move(vessel.value().mesh);
+}
+
+struct NamedSize {
+  const char* name;
+  double value, least;
+};
+
+template <std::size_t kCount>
+std::optional<std::string> find_fault_of(const char* thing, const std::array<NamedSize, kCount>& sizes) {
+  for (const NamedSize& size : sizes)
+    if (auto fault = find_size_fault(std::string(thing) + " " + size.name, size.value, size.least))
+      return fault;
+  return std::nullopt;
+}
+
+}  // namespace
+
+core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& meshing) {
+  const double wall = sizes.wall;
+  if (const auto fault = find_fault_of(
+          "a vase's", std::array<NamedSize, 6>{{{"wall", wall, 0.0},
+                                                {"height", sizes.height, 10.0 * wall},
+                                                {"foot_radius", sizes.foot_radius, 2.0 * wall},
+                                                {"neck_radius", sizes.neck_radius, 2.0 * wall},
+                                                {"rim_radius", sizes.rim_radius, 2.0 * wall},
+                                                {"belly_radius", sizes.belly_radius,
+                                                 std::max(sizes.foot_radius, sizes.neck_radius)}}}))
+    return core::Error{*fault};
+  const double top = sizes.height - 0.5 * wall;
+  const auto side = [&](double floor, double inset) {
+    WallProfile profile({sizes.foot_radius, floor}, inset);
+    profile.add_arriving_upright(sizes.belly_radius, 0.33 * top, 0.15 * top);
+    profile.add_shoulder(sizes.neck_radius, 0.8 * top);
+    profile.add_leaving_upright(sizes.rim_radius, top, 0.92 * top);
+    return profile;
+  };
+  std::vector<ProfileSegment> bottom{
+      {ProfileSegment::Kind::line, {0.0, 0.0}, {sizes.foot_radius, 0.0}, Vec2::Zero(), Part::body}};
+  return close_vessel(std::move(bottom), side(0.0, 0.0), side(wall, wall), wall, meshing);
+}
+
+core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& meshing) {
+  const double wall = sizes.wall;
+  if (const auto fault = find_fault_of(
+          "a bottle's",
+          std::array<NamedSize, 5>{{{"wall", wall, 0.0},
+                                    {"neck_radius", sizes.neck_radius, 2.0 * wall},
+                                    {"radius", sizes.radius, sizes.neck_radius},
+                                    {"neck_length", sizes.neck_length, wall},
+                                    {"height", sizes.height, 2.0 * sizes.radius + sizes.neck_length}}}))
+    return core::Error{*fault};
+  const double top = sizes.height - 0.5 * wall;
+  const double shoulder_end = sizes.height - sizes.neck_length;
+  const double shoulder_begin = shoulder_end - 1.5 * (sizes.radius - sizes.neck_radius);
+  const double edge = 1.5 * wall;  // radius of the rounded edge of the bottom
+  const auto side = [&](double low, double inset) {
+    WallProfile profile({sizes.radius, low}, inset);
+    profile.add_line(sizes.radius, shoulder_begin);
+    profile.add_shoulder(sizes.neck_radius, shoulder_end);
+    profile.add_line(sizes.neck_radius, top);
+    return profile;
+  };
+  std::vector<ProfileSegment> bottom{
+      {ProfileSegment::Kind::line, {0.0, 0.0}, {sizes.radius - edge, 0.0}, Vec2::Zero(), Part::body}};
+  add_quarter(bottom, {sizes.radius, edge}, {sizes.radius - edge, edge});
+  return close_vessel(std::move(bottom), side(edge, 0.0), side(2.0 * wall, wall), wall, meshing);
+}
+
+core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing) {
+  if (const auto fault = find_fault_of(
+          "an egg's", std::array<NamedSize, 3>{{{"radius", sizes.radius, 0.0},
+                                                {"blunt_height", sizes.blunt_height, 0.0},
+                                                {"pointed_height", sizes.pointed_height, 0.0}}}))
+    return core::Error{*fault};
+  core::Result<TriangleMesh> egg = make_sphere(sizes.radius, meshing);
+  if (!egg) return egg;
+  for (Vec3& p : egg.value().positions)
+    p.y() *= (p.y() < 0.0 ? sizes.blunt_height : sizes.pointed_height) / sizes.radius;
+  return egg;
+}
+
+}  // namespace shatterbox::geometry

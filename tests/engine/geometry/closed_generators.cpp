@@ -1,0 +1,187 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "engine/core/elementary.h"
+#include "engine/geometry/generators.h"
+#include "engine/geometry/mass_properties.h"
+#include "engine/geometry/mesh_diagnosis.h"
+#include "engine/geometry/tetrahedralise.h"
+#include "tests/engine/geometry/closed_surfaces.h"
+
+using namespace shatterbox;
+using namespace shatterbox::geometry;
+
+namespace {
+
+Meshing fine(double edge_length) {
+  Meshing meshing;
+  meshing.edge_length = edge_length;
+  return meshing;
+}
+
+/// pi times the integral of r^2 dy along a parabola (or, with the control in the middle, a line): a
+/// polynomial of degree 5, by Gauss' rule of three points.
+double swept(const Vec2& a, const Vec2& control, const Vec2& b) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double t = 0.5 + 0.5 * (k - 1) * core::sqrt(0.6);
+    const Vec2 p = (1 - t) * (1 - t) * a + 2 * t * (1 - t) * control + t * t * b;
+    const Vec2 d = 2 * (1 - t) * (control - a) + 2 * t * (b - control);
+    sum += (k == 1 ? 8.0 : 5.0) / 18.0 * p.x() * p.x() * d.y();
+  }
+  return core::kPi * sum;
+}
+
+double swept_line(const Vec2& a, const Vec2& b) {
+  return swept(a, 0.5 * (a + b), b);
+}
+
+/// Upright at both ends, as vases and bottles have it.
+double swept_shoulder(const Vec2& a, const Vec2& b) {
+  const Vec2 middle = 0.5 * (a + b);
+  return swept(a, {a.x(), 0.75 * a.y() + 0.25 * b.y()}, middle) +
+         swept(middle, {b.x(), 0.25 * a.y() + 0.75 * b.y()}, b);
+}
+
+/// Half a torus' section above the rim, by Pappus.
+double lip(double radius, double wall) {
+  return 2.0 * core::kPi * (radius - 0.5 * wall) * 0.5 * core::kPi * 0.25 * wall * wall;
+}
+
+double vase_volume(const VaseSizes& s) {
+  const double top = s.height - 0.5 * s.wall;
+  const auto side = [&](double low, double inset) {
+    const Vec2 foot(s.foot_radius - inset, low), belly(s.belly_radius - inset, 0.33 * top),
+        neck(s.neck_radius - inset, 0.8 * top), rim(s.rim_radius - inset, top);
+    return swept(foot, {belly.x(), 0.15 * top}, belly) + swept_shoulder(belly, neck) +
+           swept(neck, {neck.x(), 0.92 * top}, rim);
+  };
+  return side(0.0, 0.0) - side(s.wall, s.wall) + lip(s.rim_radius, s.wall);
+}
+
+double bottle_volume(const BottleSizes& s) {
+  const double top = s.height - 0.5 * s.wall, end = s.height - s.neck_length,
+               begin = end - 1.5 * (s.radius - s.neck_radius), edge = 1.5 * s.wall;
+  const auto side = [&](double low, double inset) {
+    const double r = s.radius - inset, n = s.neck_radius - inset;
+    return swept_line({r, low}, {r, begin}) + swept_shoulder({r, begin}, {n, end}) +
+           swept_line({n, end}, {n, top});
+  };
+  // The rounded edge: a cylinder, and a quarter of a disc about it, by Pappus.
+  const double inner = s.radius - edge;
+  const double bottom = core::kPi * inner * inner * edge + 2.0 * core::kPi *
+                                                               (inner + 4.0 * edge / (3.0 * core::kPi)) *
+                                                               0.25 * core::kPi * edge * edge;
+  return bottom + side(edge, 0.0) - side(2.0 * s.wall, s.wall) + lip(s.neck_radius, s.wall);
+}
+
+/// Sound, and its volume tends to the exact one like the square of the edge length.
+template <class Make>
+void check(const Make& make, double volume, double edge_length) {
+  double coarse_error = 0.0;
+  for (const double h : {edge_length, 0.5 * edge_length}) {
+    const TriangleMesh mesh = make(h);
+    const MendedMesh mended = mend_solid(mesh);
+    INFO(mended.diagnosis.sentences(Severity::refused) + mended.diagnosis.sentences(Severity::mended));
+    CHECK(mended.diagnosis.findings.empty());
+    CHECK(mended.diagnosis.is_closed);
+    const double error = std::abs(enclosed_volume(mesh) / volume - 1.0);
+    CHECK(error < (h == edge_length ? 0.02 : 0.4 * coarse_error));
+    coarse_error = error;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("vase, bottle and egg: closed, facing outwards, of the exact volume") {
+  check([](double h) { return make_vase({}, fine(h)).value(); }, vase_volume({}), 0.006);
+  check([](double h) { return make_bottle({}, fine(h)).value(); }, bottle_volume({}), 0.004);
+  const EggSizes egg;
+  check([&](double h) { return make_egg(egg, fine(h)).value(); },
+        2.0 / 3.0 * core::kPi * egg.radius * egg.radius * (egg.blunt_height + egg.pointed_height), 0.004);
+}
+
+TEST_CASE("vase and bottle: too coarse an edge length does not push the wall through itself") {
+  CHECK(mend_solid(make_vase({}, fine(0.1)).value()).diagnosis.findings.empty());
+  CHECK(mend_solid(make_bottle({}, fine(0.1)).value()).diagnosis.findings.empty());
+}
+
+TEST_CASE("vase, bottle and egg: sizes that make no sense are refused with a sentence") {
+  VaseSizes vase;
+  vase.wall = 0.03;
+  CHECK(make_vase(vase, fine(0.01)).error().find("must be greater") != std::string::npos);
+  BottleSizes bottle;
+  bottle.height = 0.1;
+  CHECK(make_bottle(bottle, fine(0.01)).error().find("height") != std::string::npos);
+  EggSizes egg;
+  egg.radius = -1.0;
+  CHECK_FALSE(make_egg(egg, fine(0.01)));
+}
+
+TEST_CASE("vase and bottle: walls thinner than the elements are solids too") {
+  TetrahedraOptions options;
+  options.element_size = 0.008;
+  for (const TriangleMesh& mesh :
+       {make_vase({}, fine(0.008)).value(), make_bottle({}, fine(0.006)).value()}) {
+    const EmbeddedSolid solid = tetrahedralise(mesh, options).value();
+    double sum = 0.0;
+    for (const double v : solid.embedded.volumes) sum += v;
+    CHECK(sum == Approx(enclosed_volume(mesh)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("solid diagnosis: what is open, inside out or passes through itself, with the place") {
+  const TriangleMesh box = make_box_surface({1.0, 0.5, 0.25});
+  CHECK(mend_solid(box).diagnosis.findings.empty());
+
+  TriangleMesh open = box;
+  open.triangles.erase(open.triangles.begin() + 3);
+  const MendedMesh refused = mend_solid(open);
+  CHECK(refused.mesh.triangles.empty());
+  REQUIRE(refused.diagnosis.find(MeshFault::open_border));
+  CHECK(refused.diagnosis.find(MeshFault::open_border)->count == 3);
+  CHECK(refused.diagnosis.refused());
+
+  TriangleMesh turned = box;
+  for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+  CHECK(enclosed_volume(mend_solid(turned).mesh) == Approx(1.0));
+
+  // Two that pass through each other, by a corner.
+  TriangleMesh crossing = box;
+  TriangleMesh other = box;
+  for (Vec3& p : other.positions) p += Vec3(1.9, 0.93, 0.41);
+  append(crossing, other);
+  const MendedMesh crossed = mend_solid(crossing);
+  const MeshFinding* finding = crossed.diagnosis.find(MeshFault::self_crossing);
+  REQUIRE(finding);
+  CHECK(crossed.mesh.triangles.empty());
+  // The place is on both boxes' surfaces, within their common corner.
+  CHECK((finding->place - Vec3(0.95, 0.465, 0.205)).cwiseAbs().maxCoeff() < 0.06);
+  CHECK(finding->sentence.find("triangle") != std::string::npos);
+
+  // A vertex pushed through the opposite side.
+  TriangleMesh pushed = make_sphere(1.0, fine(0.3)).value();
+  pushed.positions[5] *= -1.5;
+  CHECK(mend_solid(pushed).diagnosis.find(MeshFault::self_crossing));
+}
+
+TEST_CASE("solid diagnosis: hollows face into themselves, what is in them faces out again") {
+  TriangleMesh onion;
+  for (const double size : {1.0, 0.7, 0.4}) {
+    append(onion, make_box_surface(Vec3::Constant(size)));
+    if (size == 0.4)  // inside out
+      for (std::size_t t = onion.triangles.size() - 12; t < onion.triangles.size(); ++t)
+        std::swap(onion.triangles[t][1], onion.triangles[t][2]);
+  }
+  const MendedMesh mended = mend_solid(onion);
+  REQUIRE(mended.diagnosis.find(MeshFault::mixed_winding));
+  CHECK(mended.diagnosis.find(MeshFault::mixed_winding)->count == 2);
+  CHECK(enclosed_volume(mended.mesh) == Approx(8.0 - 8.0 * 0.343 + 8.0 * 0.064));
+  // Side by side, both face out.
+  TriangleMesh two = make_box_surface(Vec3::Ones());
+  TriangleMesh other = two;
+  for (Vec3& p : other.positions) p.x() += 3.0;
+  for (Triangle& t : other.triangles) std::swap(t[1], t[2]);
+  append(two, other);
+  CHECK(enclosed_volume(mend_solid(two).mesh) == Approx(16.0));
+}
