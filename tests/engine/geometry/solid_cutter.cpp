@@ -118,7 +118,7 @@ TEST_CASE("solid cutter: the same cut again, or hardly beside it, changes nothin
   }
 }
 
-TEST_CASE("solid cutter: a crack that ends inside is closed at its tip; one that ends at a crack parts") {
+TEST_CASE("solid cutter: a crack that ends inside is closed at its tip, one that ends at a crack parts") {
   SolidComplex complex = make_solid_complex(test::make_cube_elements(4));
   SolidCutter cutter(complex);
   SolidCut cut = test::plane_cut(complex, Vec3::UnitX(), 0.55);

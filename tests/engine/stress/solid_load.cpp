@@ -63,7 +63,7 @@ TEST_CASE("a solid's load patch is a paraboloid about the nearest point of the s
   CHECK(second == Approx(0.16 / 3.0).epsilon(0.03));
 }
 
-TEST_CASE("a solid's patch: all on one point if it is small; round an edge, never through a wall") {
+TEST_CASE("a solid's patch: all on one point if it is small, round an edge, never through a wall") {
   const Solids solids = lattice_box(Vec3(0.5, 0.5, 0.05), 0.05);
   const geometry::SolidMesh mesh = make_solid_mesh(solids);
   const SolidSkin skin = make_border_skin(mesh);

@@ -125,7 +125,7 @@ TEST_CASE("a solid's balanced load gives one stress, however its null space is r
 }
 
 TEST_CASE(
-    "a solid rod pulled at its ends is in tension, pushed in compression; pulled at one end N = F x / L") {
+    "a solid rod pulled at its ends is in tension, pushed in compression, pulled at one end N = F x / L") {
   const Beam beam(0.05, solid_properties(0.0));
   const auto system = make_solid_system(beam.stiffness, beam.mesh);
   for (const bool is_both : {true, false})
@@ -367,7 +367,7 @@ VecX integrate_motion(const Beam& beam, const SolidSystem& system, const VecX& i
 }  // namespace
 
 TEST_CASE(
-    "what a damped free solid feels over time is the balanced solve; through a window, the screened one") {
+    "what a damped free solid feels over time is the balanced solve, through a window, the screened one") {
   const Beam beam(0.1);
   const auto system = make_solid_system(beam.stiffness, beam.mesh);
   const double period = system->first_period(), first = 2.0 * core::kPi / period;
