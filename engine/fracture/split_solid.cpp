@@ -1,6 +1,7 @@
 #include "engine/fracture/split_solid.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -96,26 +97,36 @@ SolidSplit split_solid(SolidComplex complex, double least_width) {
   int count = 0;
   const std::vector<int> label = label_cells(complex.cells.size(), contacts, count);
   std::vector<std::vector<int>> cells(at(count));
-  std::vector<int> own_number(complex.cells.size());
   std::vector<double> volumes(at(count), 0.0);
   for (Size c = 0; c < complex.cells.size(); ++c) {
-    own_number[c] = static_cast<int>(cells[at(label[c])].size());
     cells[at(label[c])].push_back(static_cast<int>(c));
     volumes[at(label[c])] += complex.cells[c].volume;
   }
-  std::vector<std::vector<SolidContact>> own_contacts(at(count));
-  for (const SolidContact& contact : contacts)
-    own_contacts[at(label[at(contact.cell_a)])].push_back(
-        {own_number[at(contact.cell_a)], own_number[at(contact.cell_b)], contact.area});
   std::vector<int> order(at(count));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&volumes](int a, int b) {
     return volumes[at(a)] != volumes[at(b)] ? volumes[at(a)] > volumes[at(b)] : a < b;
   });
+  // No two pieces' cells share a copy of a node, but where nothing more than nodes ever joined them.
+  const geometry::SolidMesh whole = make_solid_mesh(complex, contacts);
+  std::vector<std::array<int, 2>> own_number(whole.vertex_source.size(), {-1, -1});  // piece, number in it
+  geometry::PieceExtractor extractor(complex);
   for (const int p : order) {
     SolidPiece piece;
-    piece.complex = extract_cells(complex, cells[at(p)]);
-    piece.mesh = make_solid_mesh(piece.complex, own_contacts[at(p)]);
+    piece.complex = extractor.extract(cells[at(p)]);
+    piece.mesh.elements = whole.elements;
+    for (const int c : cells[at(p)]) {
+      geometry::SolidCell cell = whole.cells[at(c)];
+      for (int& v : cell.vertices) {
+        auto& own = own_number[at(v)];
+        if (own[0] != p) {
+          own = {p, static_cast<int>(piece.mesh.vertex_source.size())};
+          piece.mesh.vertex_source.push_back(whole.vertex_source[at(v)]);
+        }
+        v = own[1];
+      }
+      piece.mesh.cells.push_back(cell);
+    }
     split.pieces.push_back(std::move(piece));
   }
   return split;

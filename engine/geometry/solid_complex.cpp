@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -205,30 +206,32 @@ SolidComplex build_solid_complex(std::shared_ptr<const SolidElements> elements,
 
 void settle_facet(SolidComplex& complex, int number) {
   SolidFacet& facet = complex.facets[at(number)];
+  const int old = facet.first_side;
   const int* sides = complex.sides_of(facet);
   if (std::none_of(sides, sides + facet.side_count,
                    [&](int side) { return complex.edges[at(side / 2)].parts[0] >= 0; }))
     return;
-  std::vector<int> whole;
-  whole.reserve(at(facet.side_count) + 4);
-  for (int i = 0; i < facet.side_count; ++i) append_side(complex, sides[i], whole);
   facet.first_side = static_cast<int>(complex.sides.size());
-  facet.side_count = static_cast<int>(whole.size());
-  complex.sides.insert(complex.sides.end(), whole.begin(), whole.end());
+  for (int i = 0; i < facet.side_count; ++i) append_side(complex, complex.sides[at(old + i)], complex.sides);
+  facet.side_count = static_cast<int>(complex.sides.size()) - facet.first_side;
+}
+
+void settle_facet_list(SolidComplex& complex, int number) {
+  SolidPart& cell = complex.cells[at(number)];
+  const int old = cell.first_facet;
+  const int* facets = complex.cell_facets.data() + old;
+  if (std::none_of(facets, facets + cell.facet_count,
+                   [&](int facet) { return complex.facets[at(facet / 2)].parts[0] >= 0; }))
+    return;
+  cell.first_facet = static_cast<int>(complex.cell_facets.size());
+  for (int i = 0; i < cell.facet_count; ++i)
+    append_facet(complex, complex.cell_facets[at(old + i)], complex.cell_facets);
+  cell.facet_count = static_cast<int>(complex.cell_facets.size()) - cell.first_facet;
 }
 
 void settle_cell(SolidComplex& complex, int number) {
-  SolidPart& cell = complex.cells[at(number)];
-  const auto first = complex.cell_facets.begin() + cell.first_facet;
-  if (std::any_of(first, first + cell.facet_count,
-                  [&](int facet) { return complex.facets[at(facet / 2)].parts[0] >= 0; })) {
-    std::vector<int> whole;
-    whole.reserve(at(cell.facet_count) + 4);
-    for (int i = 0; i < cell.facet_count; ++i) append_facet(complex, *(first + i), whole);
-    cell.first_facet = static_cast<int>(complex.cell_facets.size());
-    cell.facet_count = static_cast<int>(whole.size());
-    complex.cell_facets.insert(complex.cell_facets.end(), whole.begin(), whole.end());
-  }
+  settle_facet_list(complex, number);
+  const SolidPart& cell = complex.cells[at(number)];
   for (int i = 0; i < cell.facet_count; ++i)
     settle_facet(complex, complex.cell_facets[at(cell.first_facet + i)] / 2);
 }
@@ -253,10 +256,10 @@ double cell_volume(const SolidComplex& complex, int number) {
 void settle(SolidComplex& complex) {
   for (Size f = 0; f < complex.facets.size(); ++f)
     if (complex.facets[f].parts[0] < 0) settle_facet(complex, static_cast<int>(f));
-  for (Size c = 0; c < complex.cells.size(); ++c) {
-    settle_cell(complex, static_cast<int>(c));
+  for (Size c = 0; c < complex.cells.size(); ++c) settle_facet_list(complex, static_cast<int>(c));
+  core::parallel_for(complex.cells.size(), 1024, [&](Size c) {
     if (!complex.cells[c].is_measured) measure_cell(complex, static_cast<int>(c));
-  }
+  });
 }
 
 double total_volume(const SolidComplex& complex) {
@@ -265,50 +268,59 @@ double total_volume(const SolidComplex& complex) {
   return sum;
 }
 
-SolidComplex extract_cells(const SolidComplex& complex, const std::vector<int>& cells) {
+PieceExtractor::PieceExtractor(const SolidComplex& complex)
+    : complex_(complex),
+      vertices_(complex.vertices.size()),
+      edges_(complex.edges.size()),
+      facets_(complex.facets.size()) {}
+
+SolidComplex PieceExtractor::extract(const std::vector<int>& cells) {
   SolidComplex out;
-  out.elements = complex.elements;
-  std::vector<int> number_of_vertex(complex.vertices.size(), -1);
-  std::vector<int> number_of_edge(complex.edges.size(), -1);
-  std::vector<int> number_of_facet(complex.facets.size(), -1);
-  const auto renumber_side = [&](int side) {
-    int& number = number_of_edge[at(side / 2)];
-    if (number < 0) {
-      number = static_cast<int>(out.edges.size());
-      SolidEdge edge = complex.edges[at(side / 2)];
-      for (int& v : edge.ends) {
-        int& vertex = number_of_vertex[at(v)];
-        if (vertex < 0) {
-          vertex = static_cast<int>(out.vertices.size());
-          out.vertices.push_back(complex.vertices[at(v)]);
-        }
-        v = vertex;
-      }
-      out.edges.push_back(edge);
-    }
-    return 2 * number + side % 2;
-  };
+  out.elements = complex_.elements;
+  ++stamp_;
   for (Size c = 0; c < cells.size(); ++c) {
-    SolidPart cell = complex.cells[at(cells[c])];
-    const int* facets = complex.cell_facets.data() + cell.first_facet;
+    SolidPart cell = complex_.cells[at(cells[c])];
+    const int* facets = complex_.cell_facets.data() + cell.first_facet;
     cell.first_facet = static_cast<int>(out.cell_facets.size());
     for (int i = 0; i < cell.facet_count; ++i) {
-      int& number = number_of_facet[at(facets[i] / 2)];
-      if (number < 0) {
-        number = static_cast<int>(out.facets.size());
-        SolidFacet facet = complex.facets[at(facets[i] / 2)];
-        const int* sides = complex.sides_of(facet);
-        facet.first_side = static_cast<int>(out.sides.size());
-        for (int k = 0; k < facet.side_count; ++k) out.sides.push_back(renumber_side(sides[k]));
-        facet.cells = {-1, -1};
-        out.facets.push_back(facet);
-      }
+      const int number = copy_facet(facets[i] / 2, out);
       out.facets[at(number)].cells[at(facets[i] % 2)] = static_cast<int>(c);
       out.cell_facets.push_back(2 * number + facets[i] % 2);
     }
     out.cells.push_back(cell);
   }
   return out;
+}
+
+int PieceExtractor::copy_facet(int number, SolidComplex& out) {
+  Number& own = facets_[at(number)];
+  if (own.stamp == stamp_) return own.value;
+  own = {stamp_, static_cast<int>(out.facets.size())};
+  SolidFacet facet = complex_.facets[at(number)];
+  const int* sides = complex_.sides_of(facet);
+  facet.first_side = static_cast<int>(out.sides.size());
+  for (int k = 0; k < facet.side_count; ++k)
+    out.sides.push_back(2 * copy_edge(sides[k] / 2, out) + sides[k] % 2);
+  facet.cells = {-1, -1};
+  out.facets.push_back(facet);
+  return own.value;
+}
+
+int PieceExtractor::copy_edge(int number, SolidComplex& out) {
+  Number& own = edges_[at(number)];
+  if (own.stamp == stamp_) return own.value;
+  own = {stamp_, static_cast<int>(out.edges.size())};
+  SolidEdge edge = complex_.edges[at(number)];
+  for (int& v : edge.ends) {
+    Number& vertex = vertices_[at(v)];
+    if (vertex.stamp != stamp_) {
+      vertex = {stamp_, static_cast<int>(out.vertices.size())};
+      out.vertices.push_back(complex_.vertices[at(v)]);
+    }
+    v = vertex.value;
+  }
+  out.edges.push_back(edge);
+  return own.value;
 }
 
 bool are_cells_closed(const SolidComplex& complex) {

@@ -100,7 +100,8 @@ SolidComplex build_solid_complex(std::shared_ptr<const SolidElements> elements,
 /// Puts the parts of divided edges in a facet's list of sides.
 void settle_facet(SolidComplex& complex, int facet);
 
-/// Puts the parts of divided facets in a cell's list of facets, and settles those.
+/// Puts the parts of divided facets in a cell's list of facets; settle_cell settles these, too.
+void settle_facet_list(SolidComplex& complex, int cell);
 void settle_cell(SolidComplex& complex, int cell);
 
 /// Area vector of a settled facet, m2: its normal, pointing to the front, times its area.
@@ -115,9 +116,27 @@ void settle(SolidComplex& complex);
 /// Sum of the cells' volumes, m3, of a settled complex.
 double total_volume(const SolidComplex& complex);
 
-/// The part of a complex that consists of some of its cells, numbered anew in their order (`cells`
-/// ascending). Facets towards other cells have nothing there any more. The complex is settled.
-SolidComplex extract_cells(const SolidComplex& complex, const std::vector<int>& cells);
+/// Takes pieces out of a settled complex; what it needs for that is made once.
+class PieceExtractor {
+ public:
+  explicit PieceExtractor(const SolidComplex& complex);
+
+  /// The part of the complex that consists of some of its cells, numbered anew in their order. Facets towards
+  /// other cells have nothing there any more.
+  SolidComplex extract(const std::vector<int>& cells);
+
+ private:
+  struct Number {
+    int stamp = 0, value = 0;
+  };
+
+  int copy_facet(int number, SolidComplex& out);
+  int copy_edge(int number, SolidComplex& out);
+
+  const SolidComplex& complex_;
+  std::vector<Number> vertices_, edges_, facets_;  // in the piece that is being taken out
+  int stamp_ = 0;
+};
 
 /// True if every settled cell is closed: its facets' sides cancel in pairs. For tests and assertions.
 bool are_cells_closed(const SolidComplex& complex);

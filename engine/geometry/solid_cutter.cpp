@@ -86,12 +86,13 @@ void SolidCutter::cut(const SolidCut& cut) {
   for (const int c : cut.cells) {
     if (cell_marks_[at(c)].stamp == stamp_) continue;
     cell_marks_[at(c)] = {stamp_, 0, 0.0};
-    settle_cell(complex_, c);
+    settle_facet_list(complex_, c);
     const SolidPart& cell = complex_.cells[at(c)];
     for (int i = 0; i < cell.facet_count; ++i) {
       const int facet = complex_.cell_facets[at(cell.first_facet + i)] / 2;
       if (facet_marks_[at(facet)].stamp == stamp_) continue;
       facet_marks_[at(facet)].stamp = stamp_;
+      settle_facet(complex_, facet);
       touched_.push_back(facet);
     }
   }
@@ -202,16 +203,13 @@ void SolidCutter::split_facet(int number) {
   const int end = find_change(second, third);
   assert(end > begin && end - begin < n);
   const int chord = new_edge(vertex(begin), vertex(end));
-  std::array<std::vector<int>, 2> loops;
-  for (int i = begin; i < end; ++i) loops[0].push_back(complex_.sides[at(facet.first_side + i % n)]);
-  loops[0].push_back(2 * chord + 1);
-  for (int i = end; i < begin + n; ++i) loops[1].push_back(complex_.sides[at(facet.first_side + i % n)]);
-  loops[1].push_back(2 * chord);
   for (Size p = 0; p < 2; ++p) {
     SolidFacet part = facet;
     part.first_side = static_cast<int>(complex_.sides.size());
-    part.side_count = static_cast<int>(loops[p].size());
-    complex_.sides.insert(complex_.sides.end(), loops[p].begin(), loops[p].end());
+    for (int i = p == 0 ? begin : end; i < (p == 0 ? end : begin + n); ++i)
+      complex_.sides.push_back(int(complex_.sides[at(facet.first_side + i % n)]));
+    complex_.sides.push_back(2 * chord + (p == 0 ? 1 : 0));
+    part.side_count = static_cast<int>(complex_.sides.size()) - part.first_side;
     complex_.facets[at(number)].parts[p] = static_cast<int>(complex_.facets.size());
     touched_.push_back(static_cast<int>(complex_.facets.size()));
     complex_.facets.push_back(part);
@@ -251,7 +249,7 @@ int SolidCutter::sign_of_facet_in_surface(int number, int facet_side) const {
 
 /// The cell's facets and their signs; true if there are both signs.
 bool SolidCutter::collect_facets(int number) {
-  settle_cell(complex_, number);
+  settle_facet_list(complex_, number);  // the facets themselves are settled by split_facet
   const SolidPart& cell = complex_.cells[at(number)];
   local_facets_.assign(complex_.cell_facets.begin() + cell.first_facet,
                        complex_.cell_facets.begin() + cell.first_facet + cell.facet_count);
