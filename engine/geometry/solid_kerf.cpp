@@ -17,6 +17,7 @@ constexpr double kSamePlane = 0.9999;    // cosine: crack faces that turn by les
 constexpr double kSameFace = 0.87;       // cosine: outer faces that turn by less are one curved one
 constexpr double kLongestRetreat = 4.0;  // kerfs: how far a sharp corner retreats along its bisector
 constexpr double kLeastKept = 0.5;       // of a part's volume: two kerfs from two sides, each a quarter of it
+constexpr double kLeastArea = 0.2;       // of an outer triangle's area
 constexpr int kPropagations = 3;         // rounds in which vertices inside move along with the surface
 constexpr int kHalvings = 12;            // rounds in which a kerf that is still too wide is halved
 constexpr int kSweeps = 200;
@@ -110,6 +111,24 @@ class Guard {
     }
   }
 
+  /// Calls visit(triangle) for each triangle of the outer surface that would lose most of its area or turn
+  /// over.
+  template <class Visit>
+  void for_collapsed_outer(const std::vector<Vec3>& shift, const Visit& visit) const {
+    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t) {
+      const Triangle& slots = surface_.mesh.triangles[t];
+      if (surface_.is_crack_face[t] ||
+          std::all_of(slots.begin(), slots.end(), [&](int s) { return shift[at(s)].isZero(0.0); }))
+        continue;
+      const auto area = [&](double way) {
+        const auto p = [&](Size k) { return Vec3(positions_[at(slots[k])] + way * shift[at(slots[k])]); };
+        return Vec3((p(1) - p(0)).cross(p(2) - p(0)));
+      };
+      const Vec3 before = area(0.0);
+      if (!(area(1.0).dot(before) >= kLeastArea * before.squaredNorm())) visit(slots);
+    }
+  }
+
  private:
   struct Place {
     int vertex, cell;
@@ -139,6 +158,16 @@ class Guard {
     }
   }
 
+  /// Calls visit(facet, its cell, the surface's vertices at its corners) for each facet of the border.
+  template <class Visit>
+  void for_border(const Visit& visit) const {
+    for (const BorderFacet& border : surface_.border_facets) {
+      const SolidFacet& facet = piece_.facets[at(border.facet)];
+      visit(facet, std::max(facet.cells[0], facet.cells[1]),
+            surface_.corner_vertices.data() + border.first_corner);
+    }
+  }
+
   /// Which copy of a vertex that the surface has several times belongs to which cell: the one of the border
   /// that is reached through the cells about the vertex.
   void collect_places(int several) {
@@ -161,16 +190,21 @@ class Guard {
         together.unite(place_of(v, facet.cells[0]), place_of(v, facet.cells[1]));
     });
     slot_of_place_.assign(places_.size(), -1);
-    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t)
-      for (const int s : surface_.mesh.triangles[t]) {
-        const int v = surface_.vertex_sources[at(s)];
-        if (v < 0 || slot_of_vertex_[at(v)] != several) continue;
-        int& slot = slot_of_place_[at(together.find(place_of(v, surface_.triangle_cells[t])))];
-        if (slot >= 0 && slot != s) is_stuck_[at(slot)] = is_stuck_[at(s)] = 1;
-        slot = s;
+    for_border([&](const SolidFacet& facet, int cell, const int* vertices) {
+      for (int i = 0; i < facet.side_count; ++i) {
+        const int v = piece_.side_begin(piece_.sides_of(facet)[i]);
+        if (vertices[i] < 0 || slot_of_vertex_[at(v)] != several) continue;
+        int& slot = slot_of_place_[at(together.find(place_of(v, cell)))];
+        if (slot >= 0 && slot != vertices[i]) is_stuck_[at(slot)] = is_stuck_[at(vertices[i])] = 1;
+        slot = vertices[i];
       }
-    for (Size p = 0; p < places_.size(); ++p)
+    });
+    for (Size p = 0; p < places_.size(); ++p) {
       slot_of_place_[p] = slot_of_place_[at(together.find(static_cast<int>(p)))];
+      if (slot_of_place_[p] >= 0) continue;  // no corner of the surface is reached through this cell
+      slot_of_place_[p] = static_cast<int>(positions_.size());
+      positions_.push_back(piece_.vertices[at(places_[p].vertex)].position);
+    }
   }
 
   int place_of(int vertex, int cell) const {
@@ -183,32 +217,44 @@ class Guard {
     return slot >= 0 ? slot : slot_of_place_[at(place_of(vertex, cell))];
   }
 
-  /// Triangles by cell, outward: the surface's, and fans of facets inside.
+  /// Triangles by cell, outward: those of the surface's crack faces, fans of all other facets.
   void collect_triangles() {
     std::vector<int> count(piece_.cells.size() + 1, 0);
-    const auto for_inside = [&](auto&& visit) {
-      for (const SolidFacet& facet : piece_.facets)
-        if (facet.parts[0] < 0 && facet.cells[0] >= 0 && facet.cells[1] >= 0) visit(facet);
+    const auto fan_count = [](const SolidFacet& facet) { return std::max(facet.side_count - 2, 0); };
+    const auto is_inside = [](const SolidFacet& facet) {
+      return facet.parts[0] < 0 && facet.cells[0] >= 0 && facet.cells[1] >= 0;
     };
-    for (const int cell : surface_.triangle_cells) ++count[at(cell) + 1];
-    for_inside([&](const SolidFacet& facet) {
-      for (const int cell : facet.cells) count[at(cell) + 1] += std::max(facet.side_count - 2, 0);
+    for (const SolidFacet& facet : piece_.facets)
+      if (is_inside(facet))
+        for (const int cell : facet.cells) count[at(cell) + 1] += fan_count(facet);
+    for_border([&](const SolidFacet& facet, int cell, const int*) {
+      if (facet.kind == FacetKind::outer) count[at(cell) + 1] += fan_count(facet);
     });
+    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t)
+      if (surface_.is_crack_face[t]) ++count[at(surface_.triangle_cells[t]) + 1];
     for (Size c = 1; c < count.size(); ++c) count[c] += count[c - 1];
     first_triangle_ = count;
     triangles_.resize(at(count.back()));
-    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t)
-      triangles_[at(count[at(surface_.triangle_cells[t])]++)] = surface_.mesh.triangles[t];
-    for_inside([&](const SolidFacet& facet) {
-      const auto vertex = [&](int i) { return piece_.side_begin(piece_.sides_of(facet)[i]); };
-      for (int side = 0; side < 2; ++side)
-        for (int i = 1; i + 1 < facet.side_count; ++i) {
-          const int cell = facet.cells[at(side)];
-          const int a = slot_of(vertex(0), cell), b = slot_of(vertex(i), cell),
-                    c = slot_of(vertex(i + 1), cell);
-          triangles_[at(count[at(cell)]++)] = side == 0 ? std::array{a, b, c} : std::array{a, c, b};
-        }
+    const auto add_fan = [&](const SolidFacet& facet, int side, const int* vertices) {
+      const int cell = facet.cells[at(side)];
+      const auto slot = [&](int i) {
+        return vertices && vertices[i] >= 0 ? vertices[i]
+                                            : slot_of(piece_.side_begin(piece_.sides_of(facet)[i]), cell);
+      };
+      for (int i = 1; i + 1 < facet.side_count; ++i) {
+        const int a = slot(0), b = slot(i), c = slot(i + 1);
+        triangles_[at(count[at(cell)]++)] = side == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
+      }
+    };
+    for (const SolidFacet& facet : piece_.facets)
+      if (is_inside(facet))
+        for (const int side : {0, 1}) add_fan(facet, side, nullptr);
+    for_border([&](const SolidFacet& facet, int, const int* vertices) {
+      if (facet.kind == FacetKind::outer) add_fan(facet, facet.cells[0] >= 0 ? 0 : 1, vertices);
     });
+    for (Size t = 0; t < surface_.mesh.triangles.size(); ++t)
+      if (surface_.is_crack_face[t])
+        triangles_[at(count[at(surface_.triangle_cells[t])]++)] = surface_.mesh.triangles[t];
   }
 
   void collect_corners() {
@@ -329,11 +375,15 @@ void limit(const Guard& guard, std::vector<Vec3>& shift) {
         else
           for (const int* s = first; s != last; ++s) is_marked[at(*s)] = 1;
       });
+      guard.for_collapsed_outer(shift, [&](const Triangle& slots) {
+        is_fine = false;
+        for (const int s : slots) is_marked[at(s)] = 1;
+      });
       const double factor = round < kPropagations + kHalvings ? 0.5 : 0.0;
       for (Size s = 0; s < shift.size(); ++s)
         if (is_marked[s]) shift[s] *= factor;
     }
-    if (is_fine) return;
+    if (is_fine && round >= kPropagations) return;
   }
 }
 

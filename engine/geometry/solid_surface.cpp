@@ -14,24 +14,7 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-/// Triangles of a facet as places in its list of sides, in the direction that the list runs in.
-std::vector<Triangle> triangulate_facet(const SolidComplex& complex, const SolidFacet& facet) {
-  if (facet.side_count < 3) return {};
-  if (facet.side_count == 3) return {{0, 1, 2}};
-  const Vec3 normal = facet_area_vector(complex, facet);
-  int least = 0;
-  normal.cwiseAbs().minCoeff(&least);
-  const Vec3 u = normal.cross(Vec3::Unit(least)).normalized();
-  const Vec3 w = normal.cross(u).normalized();
-  const int* sides = complex.sides_of(facet);
-  const Vec3& origin = complex.position(complex.side_begin(sides[0]));
-  std::vector<Vec2> points;
-  for (int i = 0; i < facet.side_count; ++i) {
-    const Vec3 p = complex.position(complex.side_begin(sides[i])) - origin;
-    points.emplace_back(u.dot(p), w.dot(p));
-  }
-  return triangulate_ring(points);
-}
+constexpr double kStraight = 1e-11;  // sine: an edge that turns by less at a vertex is straight
 
 /// The border of a piece while it is put together.
 class BorderBuilder {
@@ -42,9 +25,12 @@ class BorderBuilder {
     collect_border();
     pair_over_edges();
     number_vertices();
-    join_edges_of_digons();
+    collect_regions();
+    mark_needless_vertices();
+    chain_loops();
     add_triangles();
     part_doubled_edges();
+    drop_needless_vertices();
     return std::move(surface_);
   }
 
@@ -58,6 +44,12 @@ class BorderBuilder {
   struct BorderSide {
     int edge, border, place;
     bool is_forward;
+  };
+  /// A closed part of a region's rim, counter-clockwise about the region.
+  struct Loop {
+    int region = 0;
+    std::vector<int> vertices,
+        keys;  // keys: numbers of the surface's edges, each from its vertex to the next
   };
   /// A triangle's side that belongs to an edge of the surface, or to a diagonal (numbered on from these).
   struct Spoke {
@@ -77,7 +69,7 @@ class BorderBuilder {
   /// Corners of two facets are one where the surface goes on from one to the other over an edge.
   void pair_over_edges() {
     welds_ = std::make_unique<core::DisjointSets>(at(corner_count_));
-    pair_of_side_.assign(at(corner_count_), -1);
+    partner_.assign(at(corner_count_), -1);
     std::vector<BorderSide> sides;
     sides.reserve(at(corner_count_));
     for (Size b = 0; b < borders_.size(); ++b) {
@@ -107,7 +99,8 @@ class BorderBuilder {
       return std::array{border.first_corner + s.place, border.first_corner + (s.place + 1) % count};
     };
     const auto p = corners(a), q = corners(b);
-    pair_of_side_[at(p[0])] = pair_of_side_[at(q[0])] = pair_count_++;
+    partner_[at(p[0])] = q[0];
+    partner_[at(q[0])] = p[0];
     const bool runs_same_way =
         complex_.sides_of(complex_.facets[at(borders_[at(a.border)].facet)])[a.place] ==
         complex_.sides_of(complex_.facets[at(borders_[at(b.border)].facet)])[b.place];
@@ -188,41 +181,212 @@ class BorderBuilder {
     surface_.triangle_sources.push_back(facet.kind == FacetKind::outer ? facet.tag : -1);
   }
 
-  /// A facet of two sides has no triangle: what it joins is joined in one edge.
-  void join_edges_of_digons() {
-    for (const Border& border : borders_) {
-      if (complex_.facets[at(border.facet)].side_count != 2) continue;
-      const int kept = pair_of_side_[at(border.first_corner)];
-      const int gone = pair_of_side_[at(border.first_corner) + 1];
-      std::replace(pair_of_side_.begin(), pair_of_side_.end(), gone, kept);
+  // Sides of border facets are numbered like the corners they begin in, and run with the material on their
+  // left seen from outside.
+  const Border& border_of(int side) const { return borders_[at(border_of_corner_[at(side)])]; }
+  int next_corner(int corner, int step) const {
+    const Border& border = border_of(corner);
+    const int count = complex_.facets[at(border.facet)].side_count;
+    return border.first_corner + (corner - border.first_corner + step + count) % count;
+  }
+  int begin_of(int side) const {
+    return vertex_of_corner_[at(border_of(side).is_reversed ? next_corner(side, 1) : side)];
+  }
+  int end_of(int side) const {
+    return vertex_of_corner_[at(border_of(side).is_reversed ? side : next_corner(side, 1))];
+  }
+  int next_side(int side) const { return next_corner(side, border_of(side).is_reversed ? -1 : 1); }
+
+  /// A region is a facet, or all connected ones of one given triangle.
+  void collect_regions() {
+    border_of_corner_.resize(at(corner_count_));
+    for (Size b = 0; b < borders_.size(); ++b)
+      for (int i = 0; i < complex_.facets[at(borders_[b].facet)].side_count; ++i)
+        border_of_corner_[at(borders_[b].first_corner + i)] = static_cast<int>(b);
+    core::DisjointSets together(borders_.size());
+    for (int side = 0; side < corner_count_; ++side) {
+      if (partner_[at(side)] < side) continue;
+      const SolidFacet& a = complex_.facets[at(border_of(side).facet)];
+      const SolidFacet& b = complex_.facets[at(border_of(partner_[at(side)]).facet)];
+      if (a.kind == FacetKind::outer && b.kind == FacetKind::outer && a.tag == b.tag && a.tag >= 0)
+        together.unite(border_of_corner_[at(side)], border_of_corner_[at(partner_[at(side)])]);
+    }
+    region_of_border_.resize(borders_.size());
+    for (Size b = 0; b < borders_.size(); ++b) region_of_border_[b] = together.find(static_cast<int>(b));
+  }
+
+  int region_of(int side) const { return region_of_border_[at(border_of_corner_[at(side)])]; }
+  bool is_rim(int side) const {
+    return partner_[at(side)] < 0 || region_of(partner_[at(side)]) != region_of(side);
+  }
+
+  /// The surface does without vertices inside regions, and on a straight edge between two.
+  void mark_needless_vertices() {
+    const Size count = surface_.mesh.positions.size();
+    std::vector<int> rims(count, 0);
+    std::vector<std::array<int, 2>> neighbours(count, {-1, -1});
+    for (int side = 0; side < corner_count_; ++side)
+      if (is_rim(side)) {
+        const int v = begin_of(side);
+        if (rims[at(v)] < 2) neighbours[at(v)][at(rims[at(v)])] = end_of(side);
+        ++rims[at(v)];
+      }
+    is_needless_.assign(count, 0);
+    for (Size v = 0; v < count; ++v) {
+      is_needless_[v] = rims[v] == 0;
+      if (rims[v] != 2 || neighbours[v][0] == neighbours[v][1]) continue;
+      const Vec3 a = surface_.mesh.positions[v] - surface_.mesh.positions[at(neighbours[v][0])];
+      const Vec3 b = surface_.mesh.positions[at(neighbours[v][1])] - surface_.mesh.positions[v];
+      is_needless_[v] = a.dot(b) > 0.0 &&
+                        a.cross(b).squaredNorm() <= kStraight * kStraight * a.squaredNorm() * b.squaredNorm();
     }
   }
 
-  void add_triangles() {
-    int next_key = pair_count_;
-    for (const Border& border : borders_) {
-      const SolidFacet& facet = complex_.facets[at(border.facet)];
-      std::vector<std::array<int, 3>> diagonals;  // place, place, key
-      for (const Triangle& t : triangulate_facet(complex_, facet)) {
-        Triangle triangle;
-        for (Size k = 0; k < 3; ++k) triangle[k] = vertex_of_corner_[at(border.first_corner + t[k])];
-        for (Size k = 0; k < 3; ++k) {
-          const int a = t[k], b = t[(k + 1) % 3];
-          int key = -1;
-          if (b == (a + 1) % facet.side_count) key = pair_of_side_[at(border.first_corner + a)];
-          for (const auto& d : diagonals)
-            if (d[0] == b && d[1] == a) key = d[2];
-          if (key < 0) {
-            key = next_key++;
-            diagonals.push_back({a, b, key});
-          }
-          const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
-          spokes_.push_back({{low, high}, key, static_cast<int>(surface_.mesh.triangles.size())});
-        }
-        if (border.is_reversed) std::swap(triangle[1], triangle[2]);
-        add_triangle(triangle, std::max(facet.cells[0], facet.cells[1]), facet);
+  /// The rims of all regions as loops of vertices that are needed.
+  void chain_loops() {
+    std::vector<char> is_used(at(corner_count_), 0);
+    for (int start = 0; start < corner_count_; ++start) {
+      if (is_used[at(start)] || !is_rim(start)) continue;
+      std::vector<int> sides;
+      for (int side = start; !is_used[at(side)];) {
+        is_used[at(side)] = 1;
+        sides.push_back(side);
+        side = next_side(side);
+        while (!is_rim(side)) side = next_side(partner_[at(side)]);
+      }
+      loops_.push_back(make_loop(sides));
+    }
+    // What has no width has no triangle: its two edges are one.
+    for (const Loop& loop : loops_) {
+      if (loop.vertices.size() != 2) continue;
+      const int kept = loop.keys[0], gone = loop.keys[1];
+      for (Loop& other : loops_) std::replace(other.keys.begin(), other.keys.end(), gone, kept);
+    }
+    std::stable_sort(loops_.begin(), loops_.end(),
+                     [](const Loop& a, const Loop& b) { return a.region < b.region; });
+  }
+
+  Loop make_loop(const std::vector<int>& sides) const {
+    Loop loop;
+    loop.region = region_of(sides[0]);
+    const int n = static_cast<int>(sides.size());
+    int first = 0;
+    while (first < n && is_needless_[at(begin_of(sides[at(first)]))]) ++first;
+    for (int i = 0; i < n; ++i) {
+      const int side = sides[at((first + i) % n)];
+      const int key = std::min(side, std::max(partner_[at(side)], 0));
+      if (loop.vertices.empty() || !is_needless_[at(begin_of(side))]) {
+        loop.vertices.push_back(begin_of(side));
+        loop.keys.push_back(key);
+      } else {
+        loop.keys.back() = std::min(loop.keys.back(), key);  // the same from both of the edge's regions
       }
     }
+    return loop;
+  }
+
+  void add_triangle(const Triangle& triangle, const Border& border) {
+    const SolidFacet& facet = complex_.facets[at(border.facet)];
+    const int cell = std::max(facet.cells[0], facet.cells[1]);
+    surface_.mesh.triangles.push_back(triangle);
+    surface_.triangle_cells.push_back(cell);
+    surface_.triangle_grains.push_back(complex_.cells[at(cell)].grain);
+    surface_.is_crack_face.push_back(facet.kind != FacetKind::outer);
+    surface_.triangle_sources.push_back(facet.kind == FacetKind::outer ? facet.tag : -1);
+  }
+
+  void add_triangles() {
+    std::vector<Vec3> normals(borders_.size(), Vec3::Zero());  // of regions
+    for (Size b = 0; b < borders_.size(); ++b)
+      normals[at(region_of_border_[b])] +=
+          (borders_[b].is_reversed ? -1.0 : 1.0) *
+          facet_area_vector(complex_, complex_.facets[at(borders_[b].facet)]);
+    next_key_ = corner_count_;
+    for (Size first = 0; first < loops_.size();) {
+      Size last = first + 1;
+      while (last < loops_.size() && loops_[last].region == loops_[first].region) ++last;
+      triangulate_region(first, last, normals[at(loops_[first].region)]);
+      first = last;
+    }
+  }
+
+  /// The triangles of one region: of the loop about it with its holes, if there is one such; of each loop
+  /// otherwise, which closes it all the same.
+  void triangulate_region(Size first, Size last, const Vec3& normal) {
+    int least = 0;
+    normal.cwiseAbs().minCoeff(&least);
+    const Vec3 u = normal.cross(Vec3::Unit(least)).normalized();
+    const Vec3 w = normal.cross(u).normalized();
+    const Vec3& origin = surface_.mesh.positions[at(loops_[first].vertices[0])];
+    std::vector<std::vector<Vec2>> points;
+    std::vector<Size> outer;
+    for (Size l = first; l < last; ++l) {
+      points.emplace_back();
+      for (const int v : loops_[l].vertices) {
+        const Vec3 p = surface_.mesh.positions[at(v)] - origin;
+        points.back().emplace_back(u.dot(p), w.dot(p));
+      }
+      if (twice_area(points.back()) > 0.0) outer.push_back(l);
+    }
+    if (outer.size() == 1) {
+      std::swap(points[0], points[outer[0] - first]);
+      std::swap(loops_[first], loops_[outer[0]]);
+      triangulate_loops(first, join_holes(points), points);
+      return;
+    }
+    for (Size l = first; l < last; ++l)
+      triangulate_loops(l, join_holes({points[l - first]}), {points[l - first]});
+  }
+
+  void triangulate_loops(Size first, const std::vector<std::array<int, 2>>& ring,
+                         const std::vector<std::vector<Vec2>>& points) {
+    if (ring.size() < 3) return;
+    std::vector<Vec2> ring_points;
+    for (const auto& [loop, place] : ring) ring_points.push_back(points[at(loop)][at(place)]);
+    std::vector<std::array<int, 5>> diagonals;  // loop, place, loop, place, key
+    const auto key_between = [&](const std::array<int, 2>& a, const std::array<int, 2>& b) {
+      const Loop& loop = loops_[first + at(a[0])];
+      if (a[0] == b[0] && b[1] == (a[1] + 1) % static_cast<int>(loop.vertices.size()))
+        return loop.keys[at(a[1])];
+      for (const auto& d : diagonals)
+        if (d[0] == b[0] && d[1] == b[1] && d[2] == a[0] && d[3] == a[1]) return d[4];
+      diagonals.push_back({a[0], a[1], b[0], b[1], next_key_++});
+      return diagonals.back()[4];
+    };
+    for (const Triangle& t : triangulate_ring(ring_points)) {
+      Triangle triangle;
+      for (Size k = 0; k < 3; ++k) {
+        const auto& a = ring[at(t[k])];
+        triangle[k] = loops_[first + at(a[0])].vertices[at(a[1])];
+      }
+      for (Size k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+        spokes_.push_back({{low, high},
+                           key_between(ring[at(t[k])], ring[at(t[(k + 1) % 3])]),
+                           static_cast<int>(surface_.mesh.triangles.size())});
+      }
+      add_triangle(triangle, borders_[at(loops_[first].region)]);
+    }
+  }
+
+  void drop_needless_vertices() {
+    std::vector<int> number(surface_.mesh.positions.size(), -1);
+    for (const Triangle& t : surface_.mesh.triangles)
+      for (const int v : t) number[at(v)] = 0;
+    int count = 0;
+    for (Size v = 0; v < number.size(); ++v) {
+      if (number[v] < 0) continue;
+      surface_.mesh.positions[at(count)] = Vec3(surface_.mesh.positions[v]);
+      surface_.vertex_sources[at(count)] = surface_.vertex_sources[v];
+      number[v] = count++;
+    }
+    surface_.mesh.positions.resize(at(count));
+    surface_.vertex_sources.resize(at(count));
+    for (Triangle& t : surface_.mesh.triangles)
+      for (int& v : t) v = number[at(v)];
+    for (const Border& border : borders_)
+      surface_.border_facets.push_back({border.facet, border.first_corner});
+    for (const int v : vertex_of_corner_) surface_.corner_vertices.push_back(number[at(v)]);
   }
 
   /// Two edges of the surface between the same two vertices (parts that touch along them): all but the first
@@ -279,8 +443,11 @@ class BorderBuilder {
   int corner_count_ = 0;
   std::unique_ptr<core::DisjointSets> welds_;
   std::vector<int> vertex_of_corner_;
-  std::vector<int> pair_of_side_;  // by the side's first corner: number of its edge of the surface
-  int pair_count_ = 0;
+  std::vector<int> partner_;  // of each side: that of the facet the surface goes on to
+  std::vector<int> border_of_corner_, region_of_border_;
+  std::vector<char> is_needless_;  // per vertex
+  std::vector<Loop> loops_;
+  int next_key_ = 0;
   std::vector<Spoke> spokes_;
   std::vector<std::array<int, 2>> divided_;  // triangle, its second part
   SolidSurface surface_;

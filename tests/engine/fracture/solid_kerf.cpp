@@ -5,6 +5,8 @@
 
 #include "engine/fracture/split_solid.h"
 #include "engine/geometry/crossings.h"
+#include "engine/geometry/generators.h"
+#include "engine/geometry/tetrahedralise.h"
 #include "tests/engine/geometry/solids.h"
 
 using namespace shatterbox;
@@ -110,4 +112,48 @@ TEST_CASE("solid kerf: pieces of random cuts cross neither each other nor themse
   CHECK(crossing == 0);
   CHECK(self_crossing == 0);
   CHECK(empty == 0);
+}
+
+TEST_CASE("solid kerf: an embedded ball keeps its given triangles, and its pieces cross nothing") {
+  const TriangleMesh given = make_sphere(0.5, {0.15, 0.3, 1}).value();
+  TetrahedraOptions options;
+  options.element_size = 0.25;
+  const EmbeddedSolid solid = tetrahedralise(given, options).value();
+  const SolidComplex whole = build_solid_complex(solid.elements, solid.embedded.material);
+  REQUIRE(are_cells_closed(whole));
+  const double volume = enclosed_volume(given);
+  CHECK(total_volume(whole) == Approx(volume).epsilon(1e-12));
+  const SolidSurface surface = extract_surface(whole);
+  CHECK(surface.mesh.triangles.size() < given.triangles.size() + 10);
+  std::vector<double> areas(given.triangles.size(), 0.0);
+  const auto area = [](const TriangleMesh& mesh, const Triangle& t) {
+    const auto p = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(t[k])]; };
+    return 0.5 * (p(1) - p(0)).cross(p(2) - p(0)).norm();
+  };
+  for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t)
+    areas[static_cast<std::size_t>(surface.triangle_sources[t])] +=
+        area(surface.mesh, surface.mesh.triangles[t]);
+  for (std::size_t t = 0; t < areas.size(); ++t)
+    CHECK(areas[t] == Approx(area(given, given.triangles[t])).epsilon(1e-9));
+
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    core::Random random(7, seed);
+    SolidComplex complex = whole;
+    SolidCutter cutter(complex);
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 normal = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+      SolidCut cut = test::plane_cut(complex, normal, 0.25 * random.normal(), i);
+      keep_off_nodes(complex, 0.05, cut);
+      cutter.cut(cut);
+    }
+    double sum = 0.0;
+    for (const auto& piece : fracture::split_solid(complex).pieces)
+      sum += solid_mass_properties(piece.complex, 1.0).mass;
+    CHECK(sum == Approx(volume).epsilon(1e-12));
+    double least = 0.0;
+    const auto pieces = pieces_with_kerf(complex, 0.002, least);
+    CHECK(pieces.size() > 4);
+    CHECK(count_crossing_pairs(pieces) == 0);
+    for (const TriangleMesh& piece : pieces) CHECK_FALSE(crosses_itself(piece));
+  }
 }
