@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/core/index.h"
 #include "engine/geometry/generator_faults.h"

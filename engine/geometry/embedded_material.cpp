@@ -1,6 +1,7 @@
 #include "engine/geometry/embedded_material.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 

@@ -1,7 +1,10 @@
 // Closed surfaces for solids: vessels with a wall, and the egg.
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/geometry/generator_faults.h"
 #include "engine/geometry/generators.h"

@@ -93,6 +93,30 @@ double turns_about(const std::vector<Vec3>& positions, const std::vector<Element
   return sum / (4.0 * core::kPi);
 }
 
+/// The part about a hollow: of those that most of its corners lie in (some may touch its border) the
+/// smallest.
+int find_owner(const std::vector<Vec3>& positions, const std::vector<ElementPolygon>& polygons,
+               const std::vector<MaterialPart>& parts, int hollow, double least_volume) {
+  std::vector<int> corners;
+  for (const ElementPolygon& polygon : polygons)
+    if (polygon.part == hollow)
+      corners.insert(corners.end(), polygon.corners, polygon.corners + polygon.corner_count);
+  int smallest = -1, likeliest = hollow;
+  double most = 0.0;
+  for (int part = 0; part < static_cast<int>(parts.size()); ++part) {
+    if (parts[at(part)].volume <= least_volume) continue;
+    double turns = 0.0;
+    for (const int v : corners) turns += turns_about(positions, polygons, part, positions[at(v)]);
+    turns /= static_cast<double>(corners.size());
+    if (turns > 0.5 && (smallest < 0 || parts[at(part)].volume < parts[at(smallest)].volume)) smallest = part;
+    if (turns > most) {
+      most = turns;
+      likeliest = part;
+    }
+  }
+  return smallest >= 0 ? smallest : likeliest;
+}
+
 }  // namespace
 
 std::vector<MaterialPart> divide_into_parts(const std::vector<Vec3>& positions,
@@ -103,19 +127,9 @@ std::vector<MaterialPart> divide_into_parts(const std::vector<Vec3>& positions,
   if (parts.size() < 2) return parts;
   std::vector<int> owner(parts.size());
   for (Size k = 0; k < parts.size(); ++k) {
+    const bool is_hollow = parts[k].volume < -least_volume;
     owner[k] = static_cast<int>(k);
-    if (parts[k].volume >= -least_volume) continue;
-    // A hollow: the smallest part around one of its corners.
-    const auto its = std::find_if(polygons.begin(), polygons.end(),
-                                  [&](const ElementPolygon& p) { return p.part == static_cast<int>(k); });
-    const Vec3& corner = positions[at(its->corners[0])];
-    for (Size other = 0; other < parts.size(); ++other) {
-      if (parts[other].volume <= least_volume) continue;
-      const bool is_better =
-          owner[k] == static_cast<int>(k) || parts[other].volume < parts[at(owner[k])].volume;
-      if (is_better && turns_about(positions, polygons, static_cast<int>(other), corner) > 0.5)
-        owner[k] = static_cast<int>(other);
-    }
+    if (is_hollow) owner[k] = find_owner(positions, polygons, parts, owner[k], least_volume);
   }
   std::vector<int> renumbered(parts.size(), -1);
   int count = 0;

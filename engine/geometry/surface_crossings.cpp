@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/core/index.h"
 #include "engine/geometry/bvh.h"

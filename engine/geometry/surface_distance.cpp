@@ -1,5 +1,7 @@
 #include "engine/geometry/surface_distance.h"
 
+#include <utility>
+
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/geometry/closest_points.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -9,6 +10,7 @@
 #include "engine/geometry/box_tets.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
+#include "engine/geometry/mesh_diagnosis.h"
 #include "tests/engine/geometry/closed_surfaces.h"
 
 using namespace shatterbox;
@@ -273,6 +275,28 @@ TEST_CASE("embedded material: spikes, saws and needles") {
     for (Vec3& p : star.positions) p *= random.uniform(0.05, 0.45);
     check(elements, star);
   }
+}
+
+TEST_CASE("embedded material: random polyhedra whose corners lie on nodes, edges and faces") {
+  const auto elements = eighths();
+  core::Random random(2, 1);
+  int checked = 0;
+  for (int run = 0; run < 20; ++run) {
+    Meshing meshing = fine(random.uniform(0.3, 0.9));
+    meshing.seed = static_cast<std::uint64_t>(run);
+    TriangleMesh surface = make_sphere(1.0, meshing).value();
+    const double depth = random.uniform(0.0, 0.5), steps = run % 3 == 0 ? 8.0 : run % 3 == 1 ? 16.0 : 32.0;
+    for (Vec3& p : surface.positions) {
+      p *= 0.4 * (1.0 - depth * random.uniform());
+      for (int axis = 0; axis < 3; ++axis) p[axis] = std::floor(p[axis] * steps + 0.5) / steps;
+    }
+    const MendedMesh mended = mend_solid(surface);
+    // Rounding to the lattice may make a surface cross or touch itself.
+    if (mended.diagnosis.refused() || !embed_surface(*elements, mended.mesh)) continue;
+    check(elements, mended.mesh);
+    ++checked;
+  }
+  CHECK(checked > 15);
 }
 
 TEST_CASE("embedded material: what is not covered, open or crosses itself is refused with the place") {
