@@ -464,9 +464,58 @@ void SolidCutter::cap(std::vector<CapLoop*> loops, const SolidCut& cut, std::vec
 void SolidCutter::divide_cell(int number, const SolidCut& cut) {
   if (!collect_facets(number)) return;
   collect_loops();
-  assert(!loops_.empty());
+  if (loops_.empty()) return;  // shells that nothing connects, each on one side
   group_loops();
   assign_parts(number, cut);
+}
+
+/// A closed border that encloses less than nothing is a cavity of the part about it: the smallest one of its
+/// side whose box holds a vertex of it.
+void SolidCutter::join_cavities(core::DisjointSets& parts, const std::vector<std::vector<int>>& caps) const {
+  struct Shell {
+    int root = 0, sign = 0;
+    double volume = 0.0;
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero(), vertex = Vec3::Zero();
+  };
+  const int facet_count = static_cast<int>(local_facets_.size());
+  std::vector<Shell> shells;
+  for (int root = 0; root < facet_count; ++root)
+    if (parts.find(root) == root) {
+      shells.emplace_back();
+      shells.back().root = root;
+      shells.back().sign = local_signs_[at(root)];
+    }
+  if (shells.size() < 3) return;
+  for (Shell& shell : shells) {
+    const SolidFacet& first = complex_.facets[at(local_facets_[at(shell.root)] / 2)];
+    shell.low = shell.high = shell.vertex =
+        complex_.position(complex_.side_begin(complex_.sides_of(first)[0]));
+    const auto add = [&](int facet_side) {
+      const SolidFacet& facet = complex_.facets[at(facet_side / 2)];
+      const int* sides = complex_.sides_of(facet);
+      const Vec3 arm = complex_.position(complex_.side_begin(sides[0])) - shell.vertex;
+      shell.volume += (facet_side % 2 == 0 ? 1.0 : -1.0) / 3.0 * facet_area_vector(complex_, facet).dot(arm);
+      for (int k = 0; k < facet.side_count; ++k) {
+        shell.low = shell.low.cwiseMin(complex_.position(complex_.side_begin(sides[k])));
+        shell.high = shell.high.cwiseMax(complex_.position(complex_.side_begin(sides[k])));
+      }
+    };
+    for (int i = shell.root; i < facet_count; ++i)
+      if (parts.find(i) == shell.root) add(local_facets_[at(i)]);
+    for (int g = 0; g < group_count_; ++g)
+      for (int side = 0; side < 2; ++side)
+        if (parts.find(facet_count + 2 * g + side) == shell.root)
+          for (const int facet : caps[at(g)]) add(2 * facet + side);
+  }
+  for (const Shell& cavity : shells) {
+    if (cavity.volume >= 0.0) continue;
+    const Shell* best = nullptr;
+    for (const Shell& shell : shells)
+      if (shell.sign == cavity.sign && shell.volume > 0.0 && (cavity.vertex - shell.low).minCoeff() >= 0.0 &&
+          (shell.high - cavity.vertex).minCoeff() >= 0.0 && (!best || shell.volume < best->volume))
+        best = &shell;
+    if (best) parts.unite(best->root, cavity.root);
+  }
 }
 
 /// Caps the parts of the cell and gives each its number.
@@ -497,6 +546,7 @@ void SolidCutter::assign_parts(int number, const SolidCut& cut) {
     });
     cap(loops, cut, caps[at(g)]);
   }
+  join_cavities(parts, caps);
   const SolidPart whole = complex_.cells[at(number)];
   for (int root = 0; root < facet_count; ++root) {
     if (parts.find(root) != root) continue;

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/core/vec.h"
 #include "engine/geometry/solid_complex.h"
 
@@ -73,6 +74,7 @@ class SolidCutter {
   void cap(std::vector<CapLoop*> loops, const SolidCut& cut, std::vector<int>& caps);
   int new_edge(int from, int to);
   int add_facet(const std::vector<int>& sides, const SolidCut& cut);
+  void join_cavities(core::DisjointSets& parts, const std::vector<std::vector<int>>& caps) const;
   void assign_parts(int cell, const SolidCut& cut);
   void open_facets_in_surface(const SolidCut& cut);
 

@@ -40,6 +40,54 @@ Vec3 first_moment(const SolidComplex& complex) {
   return sum;
 }
 
+/// One large element whose material is those unit cubes (x, y, z), of 3 x 3 x 3, that `holds` tells.
+template <class Holds>
+SolidComplex make_block(const Holds& holds) {
+  auto elements = std::make_shared<SolidElements>();
+  elements->mesh.positions = {{-1, -1, -1}, {20, -1, -1}, {-1, 20, -1}, {-1, -1, 20}};
+  elements->mesh.tetrahedra = {{0, 1, 2, 3}};
+  elements->topology = build_tet_topology(elements->mesh.tetrahedra);
+  SolidMaterial material;
+  material.cell_elements = {0};
+  const auto is_full = [&](int x, int y, int z) {
+    return x >= 0 && y >= 0 && z >= 0 && x <= 2 && y <= 2 && z <= 2 && holds(x, y, z);
+  };
+  for (int v = 0; v < 64; ++v) {
+    SolidVertex vertex;
+    vertex.position = Vec3(v & 3, (v >> 2) & 3, v >> 4);
+    vertex.nodes = {0, 1, 2, 3};
+    const Vec3 w = (vertex.position + Vec3::Ones()) / 21.0;
+    vertex.weights = {1.0 - w.sum(), w.x(), w.y(), w.z()};
+    material.vertices.push_back(vertex);
+  }
+  const auto number = [](const Eigen::Vector3i& p) { return p.x() + 4 * p.y() + 16 * p.z(); };
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 3; ++y)
+      for (int z = 0; z < 3; ++z)
+        for (int k = 0; k < 6 && is_full(x, y, z); ++k) {
+          const int axis = k / 2, up = k % 2;
+          Eigen::Vector3i next(x, y, z);
+          next[axis] += up ? 1 : -1;
+          if (is_full(next.x(), next.y(), next.z())) continue;
+          Eigen::Vector3i a(x, y, z);
+          a[axis] += up;
+          Eigen::Vector3i b = a, c = a, d = a;
+          b[(axis + 1) % 3] += 1;
+          c[(axis + 1) % 3] += 1;
+          c[(axis + 2) % 3] += 1;
+          d[(axis + 2) % 3] += 1;
+          const std::array<Eigen::Vector3i, 4> loop = up ? std::array{a, b, c, d} : std::array{a, d, c, b};
+          FacetLoop facet;
+          facet.first_corner = static_cast<int>(material.corners.size());
+          facet.corner_count = 4;
+          facet.cells = {0, -1};
+          facet.kind = FacetKind::outer;
+          for (const auto& p : loop) material.corners.push_back(number(p));
+          material.facets.push_back(facet);
+        }
+  return build_solid_complex(elements, material);
+}
+
 }  // namespace
 
 TEST_CASE("solid cutter: a tetrahedron loses a corner") {
@@ -171,52 +219,9 @@ TEST_CASE("solid cutter: ten planes through one tetrahedron") {
 }
 
 TEST_CASE("solid cutter: cells are not convex, caps have several loops and holes") {
-  // One large element with a block in it: 3 x 3 x 3 cubes less a pit of one in the middle of each of two
-  // opposite sides: planes across a pit cut a ring, planes along both cut a frame or an H.
-  auto elements = std::make_shared<SolidElements>();
-  elements->mesh.positions = {{-1, -1, -1}, {20, -1, -1}, {-1, 20, -1}, {-1, -1, 20}};
-  elements->mesh.tetrahedra = {{0, 1, 2, 3}};
-  elements->topology = build_tet_topology(elements->mesh.tetrahedra);
-  SolidMaterial material;
-  material.cell_elements = {0};
-  const auto is_full = [](int x, int y, int z) {
-    if (x < 0 || y < 0 || z < 0 || x > 2 || y > 2 || z > 2) return false;
-    return !(x == 1 && y == 1 && z != 1);
-  };
-  for (int v = 0; v < 64; ++v) {
-    SolidVertex vertex;
-    vertex.position = Vec3(v & 3, (v >> 2) & 3, v >> 4);
-    vertex.nodes = {0, 1, 2, 3};
-    const Vec3 w = (vertex.position + Vec3::Ones()) / 21.0;
-    vertex.weights = {1.0 - w.sum(), w.x(), w.y(), w.z()};
-    material.vertices.push_back(vertex);
-  }
-  const auto number = [](const Eigen::Vector3i& p) { return p.x() + 4 * p.y() + 16 * p.z(); };
-  for (int x = 0; x < 3; ++x)
-    for (int y = 0; y < 3; ++y)
-      for (int z = 0; z < 3; ++z)
-        for (int k = 0; k < 6 && is_full(x, y, z); ++k) {
-          const int axis = k / 2, up = k % 2;
-          Eigen::Vector3i next(x, y, z);
-          next[axis] += up ? 1 : -1;
-          if (is_full(next.x(), next.y(), next.z())) continue;
-          Eigen::Vector3i a(x, y, z);
-          a[axis] += up;
-          Eigen::Vector3i b = a, c = a, d = a;
-          b[(axis + 1) % 3] += 1;
-          c[(axis + 1) % 3] += 1;
-          c[(axis + 2) % 3] += 1;
-          d[(axis + 2) % 3] += 1;
-          const std::array<Eigen::Vector3i, 4> loop = up ? std::array{a, b, c, d} : std::array{a, d, c, b};
-          FacetLoop facet;
-          facet.first_corner = static_cast<int>(material.corners.size());
-          facet.corner_count = 4;
-          facet.cells = {0, -1};
-          facet.kind = FacetKind::outer;
-          for (const auto& p : loop) material.corners.push_back(number(p));
-          material.facets.push_back(facet);
-        }
-  const SolidComplex whole = build_solid_complex(elements, material);
+  // 3 x 3 x 3 cubes less a pit of one in the middle of each of two opposite sides: planes across a pit cut a
+  // ring, planes along both cut a frame or an H.
+  const SolidComplex whole = make_block([](int x, int y, int z) { return !(x == 1 && y == 1 && z != 1); });
   REQUIRE(are_cells_closed(whole));
   CHECK(whole.cells[0].volume == Approx(25.0));
 
@@ -259,5 +264,21 @@ TEST_CASE("solid cutter: cells are not convex, caps have several loops and holes
     settle(complex);
     CHECK(are_cells_closed(complex));
     CHECK(total_volume(complex) == Approx(25.0).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("solid cutter: a cavity stays with the part about it") {
+  const SolidComplex whole = make_block([](int x, int y, int z) { return !(x == 1 && y == 1 && z == 1); });
+  REQUIRE(whole.cells[0].volume == Approx(26.0));
+  for (const double offset : {0.5, 1.0, 1.5, 2.0, 2.5}) {
+    SolidComplex complex = whole;
+    SolidCutter cutter(complex, 1e-6);
+    cutter.cut(test::plane_cut(complex, Vec3::UnitY(), offset));
+    settle(complex);
+    CHECK(are_cells_closed(complex));
+    REQUIRE(complex.cells.size() == 2);
+    const int below = cutter.side_of(0) < 0 ? 0 : 1;
+    CHECK(complex.cells[static_cast<std::size_t>(below)].volume ==
+          Approx(9.0 * offset - std::clamp(offset - 1.0, 0.0, 1.0)));
   }
 }
