@@ -256,12 +256,6 @@ class BorderBuilder {
       }
       loops_.push_back(make_loop(sides));
     }
-    // What has no width has no triangle: its two edges are one.
-    for (const Loop& loop : loops_) {
-      if (loop.vertices.size() != 2) continue;
-      const int kept = loop.keys[0], gone = loop.keys[1];
-      for (Loop& other : loops_) std::replace(other.keys.begin(), other.keys.end(), gone, kept);
-    }
     std::stable_sort(loops_.begin(), loops_.end(),
                      [](const Loop& a, const Loop& b) { return a.region < b.region; });
   }
@@ -340,6 +334,8 @@ class BorderBuilder {
 
   void triangulate_loops(Size first, const std::vector<std::array<int, 2>>& ring,
                          const std::vector<std::vector<Vec2>>& points) {
+    if (ring.size() == 2)  // what has no width has no triangle: its two edges are one
+      joined_keys_.push_back({loops_[first].keys[0], loops_[first].keys[1]});
     if (ring.size() < 3) return;
     std::vector<Vec2> ring_points;
     for (const auto& [loop, place] : ring) ring_points.push_back(points[at(loop)][at(place)]);
@@ -392,6 +388,13 @@ class BorderBuilder {
   /// Two edges of the surface between the same two vertices (parts that touch along them): all but the first
   /// get a vertex in their middle.
   void part_doubled_edges() {
+    for (Size j = 0; j < joined_keys_.size(); ++j) {
+      const auto [kept, gone] = joined_keys_[j];
+      for (Spoke& spoke : spokes_)
+        if (spoke.key == gone) spoke.key = kept;
+      for (Size k = j + 1; k < joined_keys_.size(); ++k)
+        std::replace(joined_keys_[k].begin(), joined_keys_[k].end(), gone, kept);
+    }
     std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
       return a.ends != b.ends ? a.ends < b.ends : a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
     });
@@ -448,6 +451,7 @@ class BorderBuilder {
   std::vector<char> is_needless_;  // per vertex
   std::vector<Loop> loops_;
   int next_key_ = 0;
+  std::vector<std::array<int, 2>> joined_keys_;
   std::vector<Spoke> spokes_;
   std::vector<std::array<int, 2>> divided_;  // triangle, its second part
   SolidSurface surface_;
