@@ -13,32 +13,17 @@
 
 #include "engine/core/vec.h"
 #include "engine/fracture/flaws.h"
+#include "engine/fracture/fracture_settings.h"
 #include "engine/fracture/grains.h"
+#include "engine/fracture/impact.h"
 #include "engine/geometry/shell_mesh.h"
 #include "engine/material/material.h"
 #include "engine/stress/shell_system_cache.h"
 
 namespace shatterbox::fracture {
 
-/// A push on the body at one place. Collisions make their force from the closing speed and the compliances;
-/// contact (closing_speed = 0) and impacts of a given duration from `impulse`.
-struct ShellLoad {
-  Vec3 point_material = Vec3::Zero();  // m
-  Vec3 direction = Vec3::UnitX();      // unit; of the force on this body, material space
-  double impulse = 0.0;         // N s, sum of the event: (1 + restitution) x effective mass x closing speed
-  double closing_speed = 0.0;   // m/s; 0: not a collision, the impulse is averaged over `contact_average`
-  double effective_mass = 0.0;  // kg, of both bodies along the direction
-  double other_inverse_mass = 0.0;  // 1/kg, of the other body there; 0 for a floor
-  double hertz_compliance = 0.0;    // m/N, of the contact itself
-  double hertz_radius = 0.0;        // m, of the contact at its peak
-};
-
-struct ShellImpact {
-  std::vector<ShellLoad> loads;          // all loads of the event and of resting contact
-  Vec3 spin_material = Vec3::Zero();     // rad/s
-  std::optional<double> given_duration;  // s; replaces the computed one
-  double contact_average = 1.0 / 60.0;   // s
-};
+using ShellLoad = ImpactLoad;
+using ShellImpact = Impact;
 
 /// A place where a crack stopped inside the material; it can run on in a later generation or impact.
 struct CrackTip {
@@ -64,29 +49,6 @@ struct ShellSubject {
   std::shared_ptr<const GrainField> grains;  // null: no grains
   std::vector<CrackTip> tips;                // open tips, as the last decision left them
   std::uint64_t seed = 1;
-};
-
-struct FractureSettings {
-  int most_generations = 4;   // solves of the cracking body; 2 for speed
-  double waviness = 0.06;     // rad, of crack paths
-  double core_spacing = 4.0;  // crushed core: size of its cells at the hit, in thicknesses; 0: no core
-  double least_width = 0.0;   // m, what contact can resolve; cracks keep wider pieces than that
-  bool has_energy_guard = true;
-  double patch_radius = 0.0;  // m; 0: max(Hertz radius, thickness, 0.075 body size, 1.5 element sizes)
-};
-
-enum class Outcome : std::uint8_t { held, broke, not_evaluated };
-
-struct Verdict {
-  Outcome outcome = Outcome::not_evaluated;
-  std::string reason;         // why not evaluated, or how it was settled ("bound")
-  double duration = 0.0;      // s, of the impact
-  double impulse = 0.0;       // N s, greatest of the loads
-  double force = 0.0;         // N, peak, of the same load
-  double stress = 0.0;        // Pa, greatest ratio's principal stress, at the pulse's peak
-  double strength = 0.0;      // Pa, there
-  double ratio = 0.0;         // stress / strength; below 1 the body holds
-  Vec3 place = Vec3::Zero();  // m, material space
 };
 
 /// One straight stretch of a crack in one cell.

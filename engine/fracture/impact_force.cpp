@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
 #include "engine/core/clock.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
@@ -45,14 +43,10 @@ double plate_stiffness(const stress::ShellProperties& p) {
 
 /// Share of a load's energy that the cracks have left.
 double energy_left(const Press& press, const Decision& decision) {
-  return std::max(0.0, 1.0 - decision.fracture_energy / std::max(press.energy, 1e-300));
+  return share_left(press.energy, decision.fracture_energy);
 }
 
 }  // namespace
-
-bool is_collision(const ShellLoad& load) {
-  return load.closing_speed > 0.0 && load.effective_mass > 0.0;
-}
 
 ImpactForce::ImpactForce(const ShellSubject& subject, const ShellImpact& impact,
                          const FractureSettings& settings)
@@ -389,8 +383,8 @@ void ImpactForce::settle_force(Press& press, const ContactAnswer& answer) {
     press.first_force = stress::kPeakOverMeanHalfSine * load.impulse / press.duration;
   } else if (is_collision(load)) {
     press.duration = duration_of(press, answer);
-    press.first_force = load.closing_speed * core::sqrt(load.effective_mass / compliance);
-    press.energy = 0.5 * load.effective_mass * load.closing_speed * load.closing_speed;
+    press.first_force = collision_force(load, compliance);
+    press.energy = collision_energy(load);
   } else {
     press.duration = impact_.contact_average;
     press.first_force = load.impulse / press.duration;
@@ -406,21 +400,8 @@ void ImpactForce::prepare_cracked() {
   if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / system_->first_period());
   if (is_screened_ || !subject_.clamped_vertices.empty()) return;
   const double s = stress::screening_of(exponent_);
-  for (Press& press : presses_) press.first_compliance += rigid_mobility(*press.load) / (s * s);
-}
-
-/// Inverse mass at a load along its direction, 1/kg.
-double ImpactForce::rigid_mobility(const ShellLoad& load) const {
-  const geometry::MassProperties& mass = subject_.systems->figures().mass;
-  const Vec3 arm = (load.point_material - mass.centre).cross(load.direction);
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);
-  double turning = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double moment = axes.eigenvalues()[i];
-    const double a = axes.eigenvectors().col(i).dot(arm);
-    if (moment > 1e-12 * mass.mass * axes.eigenvalues()[2]) turning += a * a / moment;
-  }
-  return 1.0 / mass.mass + turning;
+  for (Press& press : presses_)
+    press.first_compliance += rigid_mobility(subject_.systems->figures().mass, *press.load) / (s * s);
 }
 
 bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
@@ -443,9 +424,8 @@ bool ImpactForce::settle_again(const geometry::ShellMesh& mesh,
     Press& press = presses_[i];
     const double hertz = press.contact.hertz_compliance;
     const double other = press.load->other_inverse_mass / (s * s);
-    press.force = press.first_force * (hertz + press.first_compliance + other) /
-                  (hertz + answers_[i].compliance + other) * core::sqrt(energy_left(press, decision));
-    press.force = std::min(press.force, press.first_force);
+    press.force = cracked_force(press.first_force, hertz, press.first_compliance, answers_[i].compliance,
+                                other, energy_left(press, decision));
   }
   cap_forces(decision);
   decision.solve_ms += milliseconds_since(solve_start);
@@ -469,8 +449,8 @@ void ImpactForce::cap_forces(const Decision& decision) {
   const std::vector<stress::LoadCompliance> compliances = system_->compliances(loads);
   for (Size k = 0; k < doubtful.size(); ++k) {
     Press& press = presses_[doubtful[k]];
-    const double most = core::sqrt(2.0 * press.energy * energy_left(press, decision) /
-                                   (press.contact.hertz_compliance + compliances[k].elastic));
+    const double most = force_of_energy(press.energy * energy_left(press, decision),
+                                        press.contact.hertz_compliance + compliances[k].elastic);
     press.force = std::min(press.force, most);
   }
 }

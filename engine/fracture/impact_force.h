@@ -24,8 +24,6 @@ struct Press {
   double energy = 0.0;            // J, kinetic energy behind a collision; else elastic energy
 };
 
-bool is_collision(const ShellLoad& load);
-
 /// All loads of one impact on one prepared subject. Both must outlive it.
 class ImpactForce {
  public:
@@ -89,7 +87,6 @@ class ImpactForce {
   void settle_force(Press& press, const ContactAnswer& answer);
   void cap_forces(const Decision& decision);
   void prepare_cracked();
-  double rigid_mobility(const ShellLoad& load) const;
 
   const ShellSubject& subject_;
   const ShellImpact& impact_;

@@ -13,11 +13,11 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr int kMostGroups = 24;        // pieces that share one load; the lightest beyond that carry nothing
+constexpr Size kMostGroups = 24;       // pieces that share one load; the lightest beyond that carry nothing
 constexpr double kLeastWeight = 0.01;  // nor do those with less than this share of the patch
 
 /// Shares p of the total force under which all pieces sink equally, none of them pulled; they sum to 1.
-Eigen::VectorXd share_force(const Eigen::MatrixXd& flexibility, std::vector<int> active) {
+Eigen::VectorXd share_among(const Eigen::MatrixXd& flexibility, std::vector<int> active) {
   const auto total = flexibility.rows();
   for (;;) {
     const auto n = static_cast<Eigen::Index>(active.size());
@@ -42,25 +42,38 @@ Eigen::VectorXd share_force(const Eigen::MatrixXd& flexibility, std::vector<int>
 
 }  // namespace
 
+std::vector<int> heaviest_groups(const std::vector<double>& weight, Size most) {
+  std::vector<int> heaviest(weight.size());
+  std::iota(heaviest.begin(), heaviest.end(), 0);
+  std::sort(heaviest.begin(), heaviest.end(), [&](int a, int b) {
+    return weight[at(a)] != weight[at(b)] ? weight[at(a)] > weight[at(b)] : a < b;
+  });
+  if (heaviest.size() > most) heaviest.resize(most);
+  while (heaviest.size() > 1 && weight[at(heaviest.back())] < kLeastWeight) heaviest.pop_back();
+  std::sort(heaviest.begin(), heaviest.end());
+  return heaviest;
+}
+
+Eigen::VectorXd share_force(const PressGroups& load, const Eigen::MatrixXd& flexibility) {
+  Eigen::MatrixXd pressed = flexibility;
+  for (Eigen::Index i = 0; i < pressed.rows(); ++i)
+    pressed(i, i) += load.hertz_compliance / load.weights[static_cast<Size>(i)];
+  std::vector<int> all(load.weights.size());
+  std::iota(all.begin(), all.end(), 0);
+  return share_among(pressed, std::move(all));
+}
+
 PressGroups find_press_groups(const geometry::ShellMesh& mesh,
                               const std::vector<geometry::CellContact>& contacts, const ContactPress& load) {
   const stress::LoadPatch patch = stress::find_load_patch(mesh, load.point, load.radius);
   const std::vector<int> group_of_share = stress::group_patch(patch, contacts);
   const int count =
       group_of_share.empty() ? 0 : *std::max_element(group_of_share.begin(), group_of_share.end()) + 1;
-  std::vector<int> heaviest(at(count));
-  std::iota(heaviest.begin(), heaviest.end(), 0);
   std::vector<double> weight(at(count));
   for (int g = 0; g < count; ++g) weight[at(g)] = stress::group_weight(patch, group_of_share, g);
-  std::sort(heaviest.begin(), heaviest.end(), [&](int a, int b) {
-    return weight[at(a)] != weight[at(b)] ? weight[at(a)] > weight[at(b)] : a < b;
-  });
-  if (count > kMostGroups) heaviest.resize(kMostGroups);
-  while (heaviest.size() > 1 && weight[at(heaviest.back())] < kLeastWeight) heaviest.pop_back();
-  std::sort(heaviest.begin(), heaviest.end());
   PressGroups groups;
   groups.hertz_compliance = load.hertz_compliance;
-  for (const int g : heaviest) {
+  for (const int g : heaviest_groups(weight, kMostGroups)) {
     groups.weights.push_back(weight[at(g)]);
     groups.forces.push_back(stress::group_load(mesh, patch, group_of_share, g, load.direction));
   }
@@ -71,12 +84,7 @@ namespace {
 
 /// One load's answer from the flexibility of its pieces (|pieces| x |pieces|).
 ContactAnswer combine(const PressGroups& load, const Eigen::MatrixXd& flexibility) {
-  Eigen::MatrixXd pressed = flexibility;
-  for (Eigen::Index i = 0; i < pressed.rows(); ++i)
-    pressed(i, i) += load.hertz_compliance / load.weights[static_cast<Size>(i)];
-  std::vector<int> all(load.weights.size());
-  std::iota(all.begin(), all.end(), 0);
-  const Eigen::VectorXd shares = share_force(pressed, all);
+  const Eigen::VectorXd shares = share_force(load, flexibility);
   ContactAnswer answer;
   answer.load = VecX::Zero(load.forces.front().size());
   for (Eigen::Index i = 0; i < shares.size(); ++i)

@@ -36,6 +36,13 @@ struct PressGroups {
   std::vector<VecX> forces;       // |dof| each
 };
 
+/// Which groups of a patch carry its load, ascending, by their weights: the heaviest, at most `most`.
+std::vector<int> heaviest_groups(const std::vector<double>& weights, std::size_t most);
+
+/// Share of the total force of each piece (|pieces|; they sum to 1) under which all sink equally and none is
+/// pulled. `flexibility`: load i . displacement j, m/N.
+Eigen::VectorXd share_force(const PressGroups& load, const Eigen::MatrixXd& flexibility);
+
 PressGroups find_press_groups(const geometry::ShellMesh& mesh,
                               const std::vector<geometry::CellContact>& contacts, const ContactPress& load);
 

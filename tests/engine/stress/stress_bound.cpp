@@ -6,9 +6,11 @@
 
 #include <algorithm>
 
+#include "engine/geometry/box_tets.h"
 #include "engine/stress/shell_stress.h"
 #include "engine/stress/shell_support.h"
 #include "engine/stress/shell_system.h"
+#include "engine/stress/solid_stress.h"
 #include "tests/engine/stress/meshes.h"
 
 using namespace shatterbox;
@@ -108,4 +110,46 @@ TEST_CASE("a strip bent over its length reaches its bound, anything broader stay
 
 TEST_CASE("no energy, no stress") {
   REQUIRE(stress_bound(ShellProperties{}, 1e-4, 0.0) == 0.0);
+}
+
+TEST_CASE("no stress of a solid exceeds what its energy allows") {
+  core::Random random(6, 0);
+  auto box = geometry::make_box_tets(Vec3(0.5, 0.4, 0.3), 0.2);
+  REQUIRE(box.ok());
+  auto elements = std::make_shared<geometry::SolidElements>();
+  elements->mesh = box.value();
+  elements->topology = geometry::build_tet_topology(elements->mesh.tetrahedra);
+  geometry::SolidMesh mesh = geometry::make_solid_mesh(elements);
+  std::vector<geometry::SolidContact> contacts;
+  for (const auto& [a, b] : elements->topology.face_tetrahedra)
+    if (b >= 0) contacts.push_back({a, b, 1.0});
+  for (std::size_t c = 0; c < mesh.cells.size(); c += 3) mesh.cells[c].volume *= random.uniform(0.001, 1.0);
+  for (const double nu : {0.0, 0.22, 0.4}) {
+    SolidProperties properties;
+    properties.poisson_ratio = nu;
+    const auto stiffness = make_solid_stiffness(elements, properties);
+    const std::vector<double> volumes = stressed_volumes(*stiffness, mesh, contacts);
+    double closest = 0.0;
+    const auto check = [&](const VecX& u) {
+      const double energy = 0.5 * u.dot(apply_stiffness(*stiffness, mesh, u));
+      const auto means = average_stresses(mesh, contacts, cell_stresses(*stiffness, mesh, u));
+      for (std::size_t c = 0; c < means.size(); ++c) {
+        const double first = principal_axes(means[c]).values(0);
+        const double bound = stress_bound(*stiffness, volumes[c], energy);
+        if (!(first <= bound)) FAIL("cell " << c << " is above its bound");
+        closest = std::max(closest, first / bound);
+      }
+    };
+    for (int trial = 0; trial < 20; ++trial) {
+      VecX u(mesh.degree_of_freedom_count());
+      for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.uniform(-1e-3, 1e-3);
+      check(u);
+    }
+    // The worst: all of the mesh strained along one axis and no other.
+    VecX u = VecX::Zero(mesh.degree_of_freedom_count());
+    for (std::size_t v = 0; v < mesh.vertex_source.size(); ++v)
+      u(static_cast<Eigen::Index>(3 * v)) = 1e-3 * elements->mesh.positions[v].x();
+    check(u);
+    CHECK(closest > 0.02);
+  }
 }

@@ -1,0 +1,215 @@
+#include "engine/fracture/decide_solid.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "engine/core/clock.h"
+#include "engine/core/disjoint_sets.h"
+#include "engine/core/hash.h"
+#include "engine/core/index.h"
+#include "engine/core/parallel.h"
+#include "engine/fracture/solid_force.h"
+#include "engine/fracture/solid_tracer.h"
+
+namespace shatterbox::fracture {
+namespace {
+
+using Size = std::size_t;
+using core::at;
+
+constexpr double kSolidWaveLength = 0.14;  // of the cracks' noise, share of the body's size
+constexpr double kSolidTurnLength = 0.04;  // over which a crack turns, share of the body's size
+constexpr double kSolidGrowthThatCounts =
+    0.04;  // of the cracks' area: a generation that adds less is the last
+
+class SolidDecider {
+ public:
+  SolidDecider(const SolidSubject& subject, const Impact& impact, const FractureSettings& settings)
+      : subject_(prepared(subject)), settings_(settings), force_(subject_, impact, settings) {}
+
+  SolidDecision decide() {
+    Verdict& verdict = decision_.verdict;
+    if (!force_.prepare(verdict.reason)) return std::move(decision_);
+    verdict.impulse = force_.hardest().load->impulse;
+    verdict.place = force_.hardest().load->point_material;
+    if (const auto bound = force_.harmless_bound()) {
+      verdict.outcome = Outcome::held;
+      verdict.reason = "bound";
+      verdict.stress = bound->stress;
+      verdict.strength = bound->strength;
+      verdict.ratio = bound->stress / bound->strength;
+      return std::move(decision_);
+    }
+    if (!force_.settle(decision_, verdict.reason)) return std::move(decision_);
+    verdict.duration = force_.duration();
+    verdict.force = force_.hardest().first_force;
+    solve_stresses(model().mesh, model().contacts);
+    std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
+    if (!(verdict.ratio > 1.0)) {
+      verdict.outcome = Outcome::held;
+      return std::move(decision_);
+    }
+    force_.complete(decision_);
+    run_generations(std::move(candidates));
+    return std::move(decision_);
+  }
+
+ private:
+  static SolidSubject prepared(SolidSubject subject) {
+    prepare_subject(subject);
+    return subject;
+  }
+  const SolidModel& model() const { return *subject_.model; }
+
+  /// Stress at the pulse's peak under all loads together, averaged once, and its principal axes.
+  void solve_stresses(const geometry::SolidMesh& mesh, const std::vector<geometry::SolidContact>& contacts) {
+    ++decision_.generations;
+    stresses_ = stress::average_stresses(
+        mesh, contacts, stress::cell_stresses(*model().stiffness, mesh, force_.displacement()));
+    tensions_.resize(stresses_.size());
+    core::parallel_for(stresses_.size(), 1024,
+                       [&](Size c) { tensions_[c] = stress::principal_axes(stresses_[c]).values(0); });
+    core::DisjointSets pieces(mesh.cells.size());
+    for (const geometry::SolidContact& contact : contacts) pieces.unite(contact.cell_a, contact.cell_b);
+    pieces_.resize(mesh.cells.size());
+    for (Size c = 0; c < pieces_.size(); ++c) pieces_[c] = pieces.find(static_cast<int>(c));
+  }
+
+  /// Flaws under more stress than they bear; and, for the verdict, the worst of all. Sound material breaks
+  /// too, but of places in it there are as many as cells: they count only where no flaw does.
+  std::vector<SolidCandidate> find_candidates(const geometry::SolidComplex& complex, bool is_first) {
+    const SolidFlawField& flaws = *subject_.flaws;
+    Verdict& verdict = decision_.verdict;
+    std::vector<SolidCandidate> candidates, sound;
+    std::vector<int> cells_in(complex.elements->mesh.tetrahedra.size(), 0);
+    for (const geometry::SolidPart& cell : complex.cells) ++cells_in[at(cell.element)];
+    if (is_first) decision_.element_stress.assign(cells_in.size(), 0.0);
+    const auto consider = [&](std::vector<SolidCandidate>& found, Size cell, const Vec3& place,
+                              double strength, int number) {
+      const double overload = tensions_[cell] / strength;
+      if (is_first && overload > verdict.ratio) {
+        verdict.ratio = overload;
+        verdict.stress = tensions_[cell];
+        verdict.strength = strength;
+        verdict.place = place;
+      }
+      if (overload > 1.0) found.push_back({static_cast<int>(cell), place, overload, number});
+    };
+    for (Size c = 0; c < tensions_.size(); ++c) {
+      const geometry::SolidPart& part = complex.cells[c];
+      if (is_first) {
+        double& here = decision_.element_stress[at(part.element)];
+        here = std::max(here, tensions_[c]);
+      }
+      bool has_flaw = false;
+      for (const SolidFlaw& flaw : flaws.of_element(part.element)) {
+        if (cells_in[at(part.element)] > 1 && !cell_holds(complex, static_cast<int>(c), flaw.place)) continue;
+        has_flaw = true;
+        consider(candidates, c, flaw.place, flaw.strength, static_cast<int>(&flaw - flaws.flaws.data()));
+      }
+      if (!has_flaw && part.volume > 0.0)
+        consider(sound, c, centroid_of(complex, part), flaws.greatest_strength,
+                 static_cast<int>(flaws.flaws.size() + c));
+    }
+    return candidates.empty() ? sound : candidates;
+  }
+
+  static Vec3 centroid_of(const geometry::SolidComplex& complex, const geometry::SolidPart& part) {
+    const geometry::TetMesh& mesh = complex.elements->mesh;
+    const geometry::Tetrahedron& t = mesh.tetrahedra[at(part.element)];
+    const Vec3& a = mesh.positions[at(t[0])];
+    Vec3 centroid = a;
+    for (int i = 0; i < 3; ++i) centroid += part.centroid(i) * (mesh.positions[at(t[at(i + 1)])] - a);
+    return centroid;
+  }
+
+  SolidTracerSetup tracer_setup() const {
+    SolidTracerSetup setup;
+    setup.stresses = &stresses_;
+    setup.pieces = &pieces_;
+    setup.material = &subject_.material;
+    setup.around = &*around_;
+    setup.noise_a = &*noise_a_;
+    setup.noise_b = &*noise_b_;
+    for (const SolidPress& press : force_.presses())
+      setup.centres.push_back({press.contact.point, press.contact.radius});
+    setup.turn_length = kSolidTurnLength * model().size;
+    setup.energy_budget = settings_.has_energy_guard
+                              ? std::max(0.0, decision_.elastic_energy - decision_.fracture_energy)
+                              : -1.0;
+    setup.first_id = subject_.first_cut_id + decision_.cracks;
+    return setup;
+  }
+
+  void run_generations(std::vector<SolidCandidate> candidates) {
+    around_.emplace(subject_.complex->elements->mesh);
+    noise_a_.emplace(kSolidWaveLength * model().size, settings_.waviness, subject_.seed);
+    noise_b_.emplace(kSolidWaveLength * model().size, settings_.waviness, core::mix(subject_.seed + 1));
+    auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
+    for (int generation = 0; generation < settings_.most_generations; ++generation) {
+      if (generation > 0) {
+        const std::vector<geometry::SolidContact> contacts = find_solid_contacts(*complex);
+        const geometry::SolidMesh mesh = make_solid_mesh(*complex, contacts);
+        if (!force_.settle_again(mesh, make_skin(*complex), decision_, decision_.verdict.reason)) break;
+        solve_stresses(mesh, contacts);
+        candidates = find_candidates(*complex, false);
+      }
+      const auto start = core::Clock::now();
+      SolidTracer tracer(*complex, tracer_setup());
+      tracer.resume(cracks_);
+      tracer.nucleate(std::move(candidates), cracks_);
+      decision_.generation_bound_active = false;
+      decision_.energy_guard_active = decision_.energy_guard_active || tracer.is_out_of_energy();
+      if (!(tracer.area() > 0.0)) break;
+      settle(*complex);
+      decision_.cracks += tracer.crack_count();
+      decision_.new_area += tracer.area();
+      decision_.fracture_energy += tracer.energy();
+      decision_.trace_ms += core::milliseconds_since(start);
+      if (tracer.is_out_of_energy() || tracer.area() < kSolidGrowthThatCounts * decision_.new_area) break;
+      decision_.generation_bound_active = generation + 1 == settings_.most_generations;
+    }
+    if (decision_.cracks == 0) {
+      // Every overloaded flaw lay where no cut is possible, or there was no energy for one.
+      decision_.verdict.outcome = Outcome::held;
+      decision_.verdict.reason =
+          decision_.energy_guard_active ? "no energy for a crack" : "no crack could start";
+      return;
+    }
+    decision_.verdict.outcome = Outcome::broke;
+    decision_.complex = std::move(complex);
+  }
+
+  const SolidSubject subject_;
+  const FractureSettings& settings_;
+  SolidForce force_;
+  SolidDecision decision_;
+  std::optional<NodeElements> around_;
+  std::optional<PathNoise> noise_a_, noise_b_;
+  std::vector<stress::SolidStress> stresses_;  // of this generation, per cell
+  std::vector<double> tensions_;               // their first principal values
+  std::vector<int> pieces_;                    // that its cells are in
+  std::vector<OpenCrack> cracks_;              // of this decision
+};
+
+}  // namespace
+
+void prepare_subject(SolidSubject& subject) {
+  if (!subject.complex) return;
+  const material::Material& material = subject.material;
+  if (!subject.stiffness)
+    subject.stiffness = stress::make_solid_stiffness(subject.complex->elements,
+                                                     {material.young, material.poisson, material.density});
+  if (!subject.model)
+    subject.model = make_solid_model(subject.complex, subject.stiffness, subject.clamped_vertices);
+  if (!subject.flaws)
+    subject.flaws = std::make_shared<const SolidFlawField>(
+        draw_solid_flaws(*subject.complex->elements, material, subject.seed));
+}
+
+SolidDecision decide_solid(const SolidSubject& subject, const Impact& impact,
+                           const FractureSettings& settings) {
+  return SolidDecider(subject, impact, settings).decide();
+}
+
+}  // namespace shatterbox::fracture

@@ -1,0 +1,59 @@
+// Decide, for solids: does this impact break this body, and along which cracks? Pure: nothing is changed, the
+// answer is the cut complex. Rankine's criterion on flaws [BHTF07 VII-A]; each crack is one nodal field,
+// grown from its flaw over crossed faces; the body is solved again after each generation of cracks with the
+// force that its new compliance allows.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/fracture/fracture_settings.h"
+#include "engine/fracture/impact.h"
+#include "engine/fracture/solid_flaws.h"
+#include "engine/fracture/solid_model.h"
+#include "engine/geometry/solid_complex.h"
+#include "engine/material/material.h"
+
+namespace shatterbox::fracture {
+
+/// The body: what it is made of, how it is held.
+struct SolidSubject {
+  std::shared_ptr<const geometry::SolidComplex> complex;  // settled
+  /// What is kept between impacts and shared by copies; null: made for this decision and thrown away. The
+  /// stiffness and the flaws are the first parent's, for all its pieces.
+  std::shared_ptr<const stress::SolidStiffness> stiffness;
+  std::shared_ptr<const SolidModel> model;
+  std::shared_ptr<const SolidFlawField> flaws;
+  material::Material material;
+  std::vector<int> clamped_vertices;  // held, of the element mesh, ascending; empty: a free body
+  std::uint64_t seed = 1;
+  int first_cut_id = 0;  // tag of the first new crack's facets: above those of its earlier ones
+};
+
+struct SolidDecision {
+  Verdict verdict;
+  std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null unless it broke
+  std::vector<double> element_stress;  // |T| of the element mesh: greatest principal stress at the peak,
+                                       // first solve, Pa
+  int cracks = 0;
+  double new_area = 0.0;         // m2, of the cracks (one face)
+  double fracture_energy = 0.0;  // J, used
+  double elastic_energy = 0.0;   // J, that was there to be used; 0 unless the body is overloaded
+  int generations = 0;           // solves
+  int iterations = 0;            // of conjugate gradients, of all solves
+  double residual = 0.0;         // worst of the solves
+  bool energy_guard_active = false;
+  bool generation_bound_active = false;   // cracks still grew when the generations were spent
+  double solve_ms = 0.0, trace_ms = 0.0;  // wall time; enters no state
+};
+
+/// Fills in what is kept between impacts where it is null.
+void prepare_subject(SolidSubject& subject);
+
+/// The verdict, and the cut complex where it breaks. Of `settings`, waviness, the patch, the guard and the
+/// generations count.
+SolidDecision decide_solid(const SolidSubject& subject, const Impact& impact,
+                           const FractureSettings& settings = {});
+
+}  // namespace shatterbox::fracture

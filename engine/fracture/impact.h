@@ -1,0 +1,88 @@
+// What presses on a body that may break, and what came of it: the words of every verdict, and the law of the
+// force, which knows nothing of how the body is meshed.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/elementary.h"
+#include "engine/core/vec.h"
+#include "engine/geometry/mass_properties.h"
+
+namespace shatterbox::fracture {
+
+/// A push on the body at one place. Collisions make their force from the closing speed and the compliances;
+/// contact (closing_speed = 0) and impacts of a given duration from `impulse`.
+struct ImpactLoad {
+  Vec3 point_material = Vec3::Zero();  // m
+  Vec3 direction = Vec3::UnitX();      // unit; of the force on this body, material space
+  double impulse = 0.0;         // N s, sum of the event: (1 + restitution) x effective mass x closing speed
+  double closing_speed = 0.0;   // m/s; 0: not a collision, the impulse is averaged over `contact_average`
+  double effective_mass = 0.0;  // kg, of both bodies along the direction
+  double other_inverse_mass = 0.0;  // 1/kg, of the other body there; 0 for a floor
+  double hertz_compliance = 0.0;    // m/N, of the contact itself
+  double hertz_radius = 0.0;        // m, of the contact at its peak
+};
+
+struct Impact {
+  std::vector<ImpactLoad> loads;         // all loads of the event and of resting contact
+  Vec3 spin_material = Vec3::Zero();     // rad/s
+  std::optional<double> given_duration;  // s; replaces the computed one
+  double contact_average = 1.0 / 60.0;   // s
+};
+
+enum class Outcome : std::uint8_t { held, broke, not_evaluated };
+
+struct Verdict {
+  Outcome outcome = Outcome::not_evaluated;
+  std::string reason;         // why not evaluated, or how it was settled ("bound")
+  double duration = 0.0;      // s, of the impact
+  double impulse = 0.0;       // N s, greatest of the loads
+  double force = 0.0;         // N, peak, of the same load
+  double stress = 0.0;        // Pa, greatest ratio's principal stress, at the pulse's peak
+  double strength = 0.0;      // Pa, there
+  double ratio = 0.0;         // stress / strength; below 1 the body holds
+  Vec3 place = Vec3::Zero();  // m, material space
+};
+
+inline bool is_collision(const ImpactLoad& load) {
+  return load.closing_speed > 0.0 && load.effective_mass > 0.0;
+}
+
+/// Peak force of a collision, N: all kinetic energy in a spring of `compliance` (m/N), contact and body in
+/// series.
+inline double collision_force(const ImpactLoad& load, double compliance) {
+  return load.closing_speed * core::sqrt(load.effective_mass / compliance);
+}
+
+/// J; 0 of what is no collision.
+inline double collision_energy(const ImpactLoad& load) {
+  return 0.5 * load.effective_mass * load.closing_speed * load.closing_speed;
+}
+
+/// Share of a load's energy (J) that cracks which took `spent` J have left.
+inline double share_left(double energy, double spent) {
+  return std::max(0.0, 1.0 - spent / std::max(energy, 1e-300));
+}
+
+/// Force on the cracked body, N: as much less than at first as it gives way more, and as there is energy left
+/// (`left`: a share). Compliances in m/N: of the contact, of the body at first and now, and of the other
+/// body's inertia.
+inline double cracked_force(double first_force, double contact, double first, double now, double other,
+                            double left) {
+  const double force = first_force * (contact + first + other) / (contact + now + other) * core::sqrt(left);
+  return std::min(force, first_force);
+}
+
+/// The force that springs of that elastic compliance (m/N) hold with `energy` J in them, N.
+inline double force_of_energy(double energy, double compliance) {
+  return core::sqrt(2.0 * energy / compliance);
+}
+
+/// Inverse mass of a free body at a load along its direction, 1/kg.
+double rigid_mobility(const geometry::MassProperties& mass, const ImpactLoad& load);
+
+}  // namespace shatterbox::fracture

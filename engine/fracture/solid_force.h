@@ -1,0 +1,91 @@
+// How hard and how long an impact presses on a solid: as impact_force.h for shells, by conjugate gradients in
+// place of factors.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/fracture/decide_solid.h"
+#include "engine/fracture/rigid_contact.h"
+
+namespace shatterbox::fracture {
+
+/// A load on the way to its force.
+struct SolidPress {
+  const ImpactLoad* load = nullptr;
+  ContactPress contact;
+  double first_force = 0.0;       // N, peak, on the intact body
+  double first_compliance = 0.0;  // m/N, intact, in the system of the later generations
+  double force = 0.0;             // N, in this generation
+  double duration = 0.0;          // s
+  double energy = 0.0;            // J, kinetic energy behind a collision; else elastic energy
+  // Under a unit force, as the pieces share it, on the mesh last solved.
+  VecX displacement;                // |dof|, m
+  double compliance = 0.0;          // m/N
+  double elastic_compliance = 0.0;  // m/N
+};
+
+/// All loads of one impact on one prepared subject. Both must outlive it.
+class SolidForce {
+ public:
+  SolidForce(const SolidSubject& subject, const Impact& impact, const FractureSettings& settings);
+
+  /// Places the loads. False, and `problem` says why, if there is nothing to press or to be pressed.
+  bool prepare(std::string& problem);
+
+  /// Stress bound over strength, at the worst place, if kinetic energy, resting contact and spin can break
+  /// nothing; none if a solve has to tell.
+  struct Bound {
+    double stress = 0.0, strength = 0.0;  // Pa
+  };
+  std::optional<Bound> harmless_bound() const;
+
+  /// Duration of the hardest collision, by a fixed point over screenings; then the peak forces. False, and
+  /// `problem` says why, if there is no answer.
+  bool settle(SolidDecision& decision, std::string& problem);
+
+  /// Before the body cracks: books the elastic energy.
+  void complete(SolidDecision& decision);
+
+  /// The cut body under the force that its compliance and the energy left allow.
+  bool settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin, SolidDecision& decision,
+                    std::string& problem);
+
+  /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads and the spin together.
+  const VecX& displacement() const { return displacement_; }
+  const std::vector<SolidPress>& presses() const { return presses_; }
+  const SolidPress& hardest() const { return presses_[hardest_]; }
+  double duration() const { return duration_; }  // s
+
+ private:
+  double spin_stress() const;
+  bool is_spinning() const;
+  double felt_compliance(const SolidPress& press) const;
+  double duration_of(const SolidPress& press) const;
+  bool answer(const std::vector<std::size_t>& wanted, SolidDecision& decision, std::string& problem);
+  bool settle_lead(std::size_t lead, SolidDecision& decision, std::string& problem);
+  void find_groups();
+  void settle_force(SolidPress& press);
+  void prepare_cracked();
+  bool sum_up(SolidDecision& decision, std::string& problem);
+  bool note(const stress::SolidSolution& solution, SolidDecision& decision, std::string& problem) const;
+
+  const SolidSubject& subject_;
+  const Impact& impact_;
+  const FractureSettings& settings_;
+  std::vector<SolidPress> presses_;
+  std::vector<PressGroups> groups_;  // of the mesh last solved
+  const geometry::SolidMesh* mesh_ = nullptr;
+  const stress::SolidSkin* skin_ = nullptr;
+  std::shared_ptr<const stress::SolidSystem> system_;
+  VecX displacement_;
+  std::size_t hardest_ = 0;
+  double duration_ = 0.0;   // s, of the lead; contact_average without one
+  double screening_ = 0.0;  // 1/s, of the solves
+  int exponent_ = 0;        // of the screening of the cracked body
+  bool has_lead_ = false;
+  bool is_cracked_ = false;
+};
+
+}  // namespace shatterbox::fracture

@@ -1,0 +1,109 @@
+// Cracks of one generation in a solid: where they start, and how far each runs: from cell to cell while the
+// stress drives it on, until it arrests, reaches the surface, or meets another cut.
+#pragma once
+
+#include <vector>
+
+#include "engine/fracture/crack_set.h"
+#include "engine/fracture/solid_crack.h"
+#include "engine/geometry/solid_complex.h"
+#include "engine/geometry/solid_cutter.h"
+#include "engine/material/material.h"
+#include "engine/stress/solid_stress.h"
+
+namespace shatterbox::fracture {
+
+/// A flaw that the stress is above.
+struct SolidCandidate {
+  int cell = 0;
+  Vec3 place = Vec3::Zero();  // m
+  double overload = 0.0;      // stress / strength, above 1
+  int number = 0;             // breaks ties
+};
+
+struct SolidLoadCentre {
+  Vec3 point = Vec3::Zero();
+  double radius = 0.0;  // m, of its patch
+};
+
+/// A crack that may run on in a later generation.
+struct OpenCrack {
+  int id = 0;                 // tag of its facets
+  double area = 0.0;          // m2
+  CrackField::Values values;  // of its field
+  std::vector<int> rests;     // elements that it did not enter
+};
+
+/// What does not change while the cracks of a generation run. All that is pointed to must outlive the tracer.
+struct SolidTracerSetup {
+  const std::vector<stress::SolidStress>* stresses = nullptr;  // Pa, per cell at the generation's beginning
+  const std::vector<int>* pieces = nullptr;                    // that each of these cells is in
+  const material::Material* material = nullptr;
+  const NodeElements* around = nullptr;
+  const PathNoise* noise_a = nullptr;
+  const PathNoise* noise_b = nullptr;
+  std::vector<SolidLoadCentre> centres;
+  double turn_length = 0.0;    // m, over which a crack turns to the stress
+  double energy_budget = 0.0;  // J, for this generation; below zero: no guard
+  int first_id = 0;            // tag of the first crack's facets
+};
+
+/// Cuts `complex`. One object a generation.
+class SolidTracer {
+ public:
+  SolidTracer(geometry::SolidComplex& complex, SolidTracerSetup setup);
+
+  /// Lets cracks of earlier generations run on where they rested, and keeps account of them.
+  void resume(std::vector<OpenCrack>& cracks);
+  /// Starts cracks at the candidates, most overloaded first, not too near to each other, and lets each run.
+  /// They join `cracks`.
+  void nucleate(std::vector<SolidCandidate> candidates, std::vector<OpenCrack>& cracks);
+
+  int crack_count() const { return crack_count_; }  // new ones
+  double area() const { return area_; }             // m2, of the new cracks
+  double energy() const { return energy_; }         // J, used
+  bool is_out_of_energy() const { return is_out_of_energy_; }
+
+ private:
+  /// A facet over which a crack may go on.
+  struct Front {
+    double drive = 0.0;  // Pa, of the stress across it behind the facet
+    int order = 0, cell = 0;
+    bool operator<(const Front& other) const {
+      return drive != other.drive ? drive < other.drive : order > other.order;
+    }
+  };
+  bool is_shielded(const SolidCandidate& candidate) const;
+  bool start(const SolidCandidate& candidate, std::vector<OpenCrack>& cracks);
+  void begin(int id, double area);
+  void enter(int cell, const CrackCap& cap);
+  void grow();
+  Vec3 wanted_normal(int element, const Vec3& present) const;
+  double tension_across(int cell, const Vec3& gradient) const;
+  bool touches_present(int cell);
+  bool pay(double area);
+  void cut();
+
+  geometry::SolidComplex& complex_;
+  SolidTracerSetup setup_;
+  geometry::SolidCutter cutter_;
+  CrackField field_;
+  CrackSet present_;             // caps of this generation
+  std::vector<double> lengths_;  // m, square root of each crack's area, by id
+  std::vector<int> origin_;      // |cells|: the cell at the generation's beginning that it is part of
+  std::vector<int> entered_;     // |cells|: id of the last crack in it + 1
+  std::vector<int> active_;      // cells of the present crack
+  std::vector<Front> fronts_;    // heap
+  std::vector<int> rests_;       // elements that the present crack did not enter
+  int next_order_ = 0, crack_count_ = 0, present_id_ = 0;
+  double crack_area_ = 0.0;   // m2, of the present crack
+  double crack_force_ = 0.0;  // N, across what of it is new
+  double new_area_ = 0.0;     // m2, of that
+  double area_ = 0.0, energy_ = 0.0, toughness_ = 0.0;
+  bool is_out_of_energy_ = false;
+};
+
+/// Whether a point is in a settled cell, as far as the planes of its facets tell (border included).
+bool cell_holds(const geometry::SolidComplex& complex, int cell, const Vec3& point);
+
+}  // namespace shatterbox::fracture
