@@ -13,7 +13,7 @@ using Size = std::size_t;
 using core::at;
 using Places = std::vector<Vec2>;
 
-double cross2(const Vec2& a, const Vec2& b) {
+double turn_between(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -26,8 +26,8 @@ bool is_convex(const Places& loop) {
     const Vec2 before = loop[i] - loop[(i + n - 1) % n];
     const Vec2 after = loop[(i + 1) % n] - loop[i];
     const double least = kStraight * before.norm() * after.norm();
-    if (!(cross2(before, after) >= -least)) return false;
-    if (before.dot(after) < 0.0 && !(cross2(before, after) > least)) return false;
+    if (!(turn_between(before, after) >= -least)) return false;
+    if (before.dot(after) < 0.0 && !(turn_between(before, after) > least)) return false;
     const auto is_up = [](const Vec2& d) { return d.y() > 0.0 || (d.y() == 0.0 && d.x() > 0.0); };
     if (!is_up(before) && is_up(after)) ++turns;
   }

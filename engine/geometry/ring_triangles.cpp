@@ -12,7 +12,7 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kFlat = 1e-12;  // of the squared lengths: an ear below that has no area
+constexpr double kFlatEar = 1e-12;  // of the squared lengths: an ear below that has no area
 
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -32,7 +32,7 @@ Ear judge_ear(const std::vector<Vec2>& points, const std::vector<int>& ring, Siz
   const double area = turn(a, b, c);
   const double lengths = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
   Ear ear{1, lengths > 0.0 ? area / lengths : 0.0};
-  if (!(ear.shape > kFlat)) {
+  if (!(ear.shape > kFlatEar)) {
     ear.rank = 0;
     return ear;
   }
@@ -72,7 +72,7 @@ void flip_diagonals(const std::vector<Vec2>& points, std::vector<Triangle>& tria
             const int d = triangles[t][(j + 2) % 3];
             const double before = std::min(shape_of(points, a, b, c), shape_of(points, b, a, d));
             const double after = std::min(shape_of(points, a, d, c), shape_of(points, d, b, c));
-            if (!(after > before * (1.0 + 1e-9) + kFlat)) continue;
+            if (!(after > before * (1.0 + 1e-9) + kFlatEar)) continue;
             triangles[s] = {a, d, c};
             triangles[t] = {d, b, c};
             has_changed = true;
@@ -111,7 +111,7 @@ std::vector<Triangle> triangulate_ring(const std::vector<Vec2>& points) {
   std::vector<Ear> ears(ring.size());
   for (Size i = 0; i < ring.size(); ++i) ears[i] = judge_ear(points, ring, i);
   double left = twice_area(points);
-  const double least_left = kFlat * left;
+  const double least_left = kFlatEar * left;
   while (ring.size() >= 3) {
     const Size n = ring.size();
     const auto area = [&](Size i) {

@@ -13,24 +13,24 @@ using core::at;
 
 /// One face or edge of one tetrahedron: its vertices, ascending, and where it was found.
 template <Size kCorners>
-struct Part {
+struct FoundPart {
   std::array<int, kCorners> vertices;
   int tetrahedron, number;
 };
 
 template <Size kCorners, Size kParts>
-std::vector<Part<kCorners>> sorted_parts(const std::vector<Tetrahedron>& tetrahedra,
-                                         const std::array<std::array<int, kCorners>, kParts>& corners) {
-  std::vector<Part<kCorners>> parts;
+std::vector<FoundPart<kCorners>> sorted_parts(const std::vector<Tetrahedron>& tetrahedra,
+                                              const std::array<std::array<int, kCorners>, kParts>& corners) {
+  std::vector<FoundPart<kCorners>> parts;
   parts.reserve(kParts * tetrahedra.size());
   for (Size t = 0; t < tetrahedra.size(); ++t)
     for (Size p = 0; p < kParts; ++p) {
-      Part<kCorners> part{{}, static_cast<int>(t), static_cast<int>(p)};
+      FoundPart<kCorners> part{{}, static_cast<int>(t), static_cast<int>(p)};
       for (Size k = 0; k < kCorners; ++k) part.vertices[k] = tetrahedra[t][at(corners[p][k])];
       std::sort(part.vertices.begin(), part.vertices.end());
       parts.push_back(part);
     }
-  std::sort(parts.begin(), parts.end(), [](const Part<kCorners>& p, const Part<kCorners>& q) {
+  std::sort(parts.begin(), parts.end(), [](const FoundPart<kCorners>& p, const FoundPart<kCorners>& q) {
     for (Size k = 0; k < kCorners; ++k)
       if (p.vertices[k] != q.vertices[k]) return p.vertices[k] < q.vertices[k];
     return p.tetrahedron < q.tetrahedron;
@@ -43,7 +43,7 @@ std::vector<Part<kCorners>> sorted_parts(const std::vector<Tetrahedron>& tetrahe
 TetTopology build_tet_topology(const std::vector<Tetrahedron>& tetrahedra) {
   TetTopology topology;
   topology.tetrahedron_faces.resize(tetrahedra.size());
-  for (const Part<3>& face : sorted_parts(tetrahedra, kTetrahedronFaces)) {
+  for (const FoundPart<3>& face : sorted_parts(tetrahedra, kTetrahedronFaces)) {
     if (topology.faces.empty() || topology.faces.back() != face.vertices) {
       topology.faces.push_back(face.vertices);
       topology.face_tetrahedra.push_back({face.tetrahedron, -1});
@@ -55,7 +55,7 @@ TetTopology build_tet_topology(const std::vector<Tetrahedron>& tetrahedra) {
         static_cast<int>(topology.faces.size()) - 1;
   }
   topology.tetrahedron_edges.resize(tetrahedra.size());
-  for (const Part<2>& edge : sorted_parts(tetrahedra, kTetrahedronEdges)) {
+  for (const FoundPart<2>& edge : sorted_parts(tetrahedra, kTetrahedronEdges)) {
     if (topology.edges.empty() || topology.edges.back() != edge.vertices)
       topology.edges.push_back(edge.vertices);
     topology.tetrahedron_edges[at(edge.tetrahedron)][at(edge.number)] =

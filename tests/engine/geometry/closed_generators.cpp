@@ -13,12 +13,6 @@ using namespace shatterbox::geometry;
 
 namespace {
 
-Meshing fine(double edge_length) {
-  Meshing meshing;
-  meshing.edge_length = edge_length;
-  return meshing;
-}
-
 /// pi times the integral of r^2 dy along a parabola (or, with the control in the middle, a line): a
 /// polynomial of degree 5, by Gauss' rule of three points.
 double swept(const Vec2& a, const Vec2& control, const Vec2& b) {

@@ -1,9 +1,16 @@
 // Closed surfaces for tests of solids.
 #pragma once
 
-#include "engine/geometry/triangle_mesh.h"
+#include "engine/geometry/generators.h"
 
 namespace shatterbox::geometry {
+
+/// A mesh as fine as that, m.
+inline Meshing fine(double edge_length) {
+  Meshing meshing;
+  meshing.edge_length = edge_length;
+  return meshing;
+}
 
 /// Puts another surface beside one.
 inline void append(TriangleMesh& mesh, const TriangleMesh& other) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "engine/core/index.h"
 #include "engine/core/random.h"
 #include "engine/geometry/box_tets.h"
 #include "engine/geometry/generators.h"
@@ -18,9 +19,7 @@ using namespace shatterbox::geometry;
 
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using core::at;
 
 std::shared_ptr<const SolidElements> make_elements(TetMesh mesh) {
   auto elements = std::make_shared<SolidElements>();
@@ -146,12 +145,6 @@ Vec3 inner_place(const SolidElements& elements) {
     if (middle.norm() < best.norm()) best = middle;
   }
   return best;
-}
-
-Meshing fine(double edge_length) {
-  Meshing meshing;
-  meshing.edge_length = edge_length;
-  return meshing;
 }
 
 }  // namespace
