@@ -101,9 +101,11 @@ class SolidDecider {
         double& here = decision_.element_stress[at(part.element)];
         here = std::max(here, tensions_[c]);
       }
+      // Of an element that the surface or a crack goes through, only what lies in the cell counts.
+      const bool is_whole = cells_in[at(part.element)] == 1 && model().is_full(part);
       bool has_flaw = false;
       for (const SolidFlaw& flaw : flaws.of_element(part.element)) {
-        if (cells_in[at(part.element)] > 1 && !cell_holds(complex, static_cast<int>(c), flaw.place)) continue;
+        if (!is_whole && !cell_holds(complex, static_cast<int>(c), flaw.place)) continue;
         has_flaw = true;
         consider(candidates, c, flaw.place, flaw.strength, static_cast<int>(&flaw - flaws.flaws.data()));
       }

@@ -42,6 +42,11 @@ stress::SolidSupport support_of(const geometry::SolidMesh& mesh, const std::vect
   return stress::find_solid_support(mesh, is_clamped);
 }
 
+bool SolidModel::is_full(const geometry::SolidPart& cell) const {
+  constexpr double kFull = 1.0 - 1e-9;
+  return cell.volume > kFull * geometry::tetrahedron_volume(complex->elements->mesh, cell.element);
+}
+
 std::shared_ptr<const SolidModel> make_solid_model(std::shared_ptr<const geometry::SolidComplex> complex,
                                                    std::shared_ptr<const stress::SolidStiffness> stiffness,
                                                    const std::vector<int>& clamped) {

@@ -29,6 +29,9 @@ struct SolidModel {
   double width = 0.0;                    // m: its volume over the two greatest sides of that box
   double mean_edge_length = 0.0;         // m, of the elements with cells
   std::vector<double> stressed_volumes;  // |cells|, m3: see stress/stress_bound.h
+
+  /// Whether a cell fills its element.
+  bool is_full(const geometry::SolidPart& cell) const;
 };
 
 /// The skin of a settled complex: what is left of the outer surface, and crack faces behind which nothing is.

@@ -13,7 +13,9 @@
 #include "engine/fracture/solid_tracer.h"
 #include "engine/fracture/split_solid.h"
 #include "engine/geometry/box_tets.h"
+#include "engine/geometry/generators.h"
 #include "engine/geometry/solid_surface.h"
+#include "engine/geometry/tetrahedralise.h"
 
 using namespace shatterbox;
 using namespace shatterbox::fracture;
@@ -134,6 +136,37 @@ TEST_CASE("decide solid: a piece is judged and breaks again") {
       decide_solid(piece, hit(Vec3(centre.x(), 0.0, 0.02), -Vec3::UnitZ(), 1.0, 25.0));
   REQUIRE(again.verdict.outcome == Outcome::broke);
   CHECK(split_solid(*again.complex).pieces.size() >= 2);
+}
+
+TEST_CASE("decide solid: a ball in tetrahedra that reach beyond it breaks, and only its material counts") {
+  const double radius = 0.05;
+  const auto surface = geometry::make_sphere(radius, {0.012, 0.2, 1});
+  REQUIRE(surface.ok());
+  geometry::TetrahedraOptions options;
+  options.element_size = 0.015;
+  const auto embedded = geometry::tetrahedralise(surface.value(), options);
+  REQUIRE(embedded.ok());
+  SolidSubject subject;
+  auto complex = build_solid_complex(embedded.value().elements, embedded.value().embedded.material);
+  settle(complex);
+  const double whole = total_volume(complex);
+  subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(complex));
+  subject.material = *material::find_preset("porcelain");
+  // Many flaws, so that some lie in the boundary's elements and not in the ball.
+  subject.material.flaw_area = 1e-4;
+  const SolidDecision held = decide_solid(subject, hit(Vec3(0.0, 0.0, radius), -Vec3::UnitZ(), 0.3, 15.0));
+  CHECK(held.verdict.ratio > 0.0);
+  CHECK(held.verdict.place.norm() <= radius);
+  const SolidDecision broken = decide_solid(subject, hit(Vec3(0.0, 0.0, radius), -Vec3::UnitZ(), 0.3, 150.0));
+  REQUIRE(broken.verdict.outcome == Outcome::broke);
+  const auto split = split_solid(*broken.complex);
+  CHECK(split.pieces.size() >= 2);
+  double sum = 0.0;
+  for (const SolidPiece& piece : split.pieces) {
+    CHECK(are_cells_closed(piece.complex));
+    sum += total_volume(piece.complex);
+  }
+  CHECK(sum == Approx(whole).epsilon(1e-12));
 }
 
 TEST_CASE("decide solid: the same bits for any number of threads, another seed another break") {
