@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
+#include <optional>
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
@@ -289,8 +290,8 @@ struct Trace {
   double area = 0.0, energy = 0.0;
   bool is_out_of_energy = false;
 };
-Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress, const Vec3& place, int id,
-            double budget = -1.0) {
+Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
+            const std::optional<Vec3>& place, int id, double budget, std::vector<OpenCrack>& cracks) {
   const material::Material glass;
   const NodeElements around(complex.elements->mesh);
   const PathNoise noise(0.1, 0.0, 1);
@@ -307,12 +308,20 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress, 
   setup.energy_budget = budget;
   setup.first_id = id;
   SolidTracer tracer(complex, setup);
-  int cell = 0;
-  while (!cell_holds(complex, cell, place)) ++cell;
-  std::vector<OpenCrack> cracks;
-  tracer.nucleate({{cell, place, 2.0, 0}}, cracks);
+  tracer.resume(cracks);
+  if (place) {
+    int cell = 0;
+    while (!cell_holds(complex, cell, *place)) ++cell;
+    tracer.nucleate({{cell, *place, 2.0, 0}}, cracks);
+  }
   settle(complex);
   return {tracer.area(), tracer.energy(), tracer.is_out_of_energy()};
+}
+
+Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress, const Vec3& place, int id,
+            double budget = -1.0) {
+  std::vector<OpenCrack> cracks;
+  return trace(complex, stress, place, id, budget, cracks);
 }
 
 stress::SolidStress pull(int axis, double tension) {
@@ -358,6 +367,22 @@ TEST_CASE("a solid's crack arrests below the toughness, and where the energy end
   // No crack across what is pressed.
   geometry::SolidComplex pressed = *subject.complex;
   CHECK(trace(pressed, pull(2, -1e9), place, 0).area < 0.02);
+}
+
+TEST_CASE("a solid's crack that rested runs on when it is pulled harder") {
+  const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), 0.1, "glass");
+  geometry::SolidComplex complex = *subject.complex;
+  std::vector<OpenCrack> cracks;
+  const Trace rested = trace(complex, pull(2, 1e6), Vec3(0.03, 0.02, 0.11), 0, -1.0, cracks);
+  REQUIRE(cracks.size() == 1);
+  CHECK(rested.area < 0.02);
+  CHECK_FALSE(cracks[0].rests.empty());
+  CHECK(trace(complex, pull(2, 1e6), std::nullopt, 1, -1.0, cracks).area == 0.0);
+  const Trace resumed = trace(complex, pull(2, 1e9), std::nullopt, 1, -1.0, cracks);
+  CHECK(rested.area + resumed.area == Approx(1.0).epsilon(0.02));
+  CHECK(cracks[0].area == Approx(rested.area + resumed.area));
+  CHECK(cracks[0].rests.empty());
+  CHECK(split_solid(complex).pieces.size() == 2);
 }
 
 TEST_CASE("a solid's flaws: density and law, and the same on another mesh") {
