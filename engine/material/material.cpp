@@ -12,6 +12,32 @@ namespace {
 // `flaw_area`, `crack_spacing` and the grains were chosen by eye on whole breaks, within what the strengths'
 // known scatter allows.
 std::vector<Preset> make_presets() {
+  Material aluminium;
+  aluminium.name = "aluminium";
+  aluminium.density = 2700.0;
+  aluminium.young = 70e9;
+  aluminium.poisson = 0.33;
+  aluminium.strength = 290e6;
+  aluminium.fracture_energy = 1.1e4;
+  aluminium.weibull_modulus = 40.0;
+  aluminium.flaw_area = 1e-2;
+  aluminium.friction = 0.4;
+  aluminium.restitution = 0.5;
+  aluminium.thickness = 2e-3;
+
+  Material brick;
+  brick.name = "brick";
+  brick.density = 1900.0;
+  brick.young = 12e9;
+  brick.poisson = 0.2;
+  brick.strength = 4e6;
+  brick.fracture_energy = 50.0;
+  brick.weibull_modulus = 8.0;
+  brick.flaw_area = 1e-2;
+  brick.friction = 0.7;
+  brick.restitution = 0.2;
+  brick.thickness = 20e-3;
+
   Material ceramic;
   ceramic.name = "ceramic";
   ceramic.density = 2400.0;
@@ -25,6 +51,19 @@ std::vector<Preset> make_presets() {
   ceramic.friction = 0.5;
   ceramic.restitution = 0.35;
   ceramic.thickness = 4e-3;
+
+  Material concrete;
+  concrete.name = "concrete";
+  concrete.density = 2400.0;
+  concrete.young = 33e9;
+  concrete.poisson = 0.2;
+  concrete.strength = 2.9e6;
+  concrete.fracture_energy = 140.0;
+  concrete.weibull_modulus = 12.0;
+  concrete.flaw_area = 1e-2;
+  concrete.friction = 0.7;
+  concrete.restitution = 0.2;
+  concrete.thickness = 50e-3;
 
   Material eggshell;
   eggshell.name = "eggshell";
@@ -54,11 +93,37 @@ std::vector<Preset> make_presets() {
   glass.restitution = 0.5;
   glass.thickness = 4e-3;
 
+  Material ice;
+  ice.name = "ice";
+  ice.density = 917.0;
+  ice.young = 9.3e9;
+  ice.poisson = 0.33;
+  ice.strength = 1.2e6;
+  ice.fracture_energy = 1.0;
+  ice.weibull_modulus = 5.0;
+  ice.flaw_area = 1e-2;
+  ice.friction = 0.05;
+  ice.restitution = 0.3;
+  ice.thickness = 10e-3;
+
   Material ornament_glass = glass;
   ornament_glass.name = "ornament_glass";
   ornament_glass.flaw_area = 1e-3;
   ornament_glass.crack_spacing = 0.4;
   ornament_glass.thickness = 0.5e-3;
+
+  Material plaster;
+  plaster.name = "plaster";
+  plaster.density = 1150.0;
+  plaster.young = 4.5e9;
+  plaster.poisson = 0.2;
+  plaster.strength = 2.5e6;
+  plaster.fracture_energy = 5.0;
+  plaster.weibull_modulus = 8.0;
+  plaster.flaw_area = 1e-3;
+  plaster.friction = 0.6;
+  plaster.restitution = 0.2;
+  plaster.thickness = 5e-3;
 
   Material porcelain;
   porcelain.name = "porcelain";
@@ -86,13 +151,39 @@ std::vector<Preset> make_presets() {
   steel.restitution = 0.6;
   steel.thickness = 2e-3;
 
+  Material terracotta;
+  terracotta.name = "terracotta";
+  terracotta.density = 1900.0;
+  terracotta.young = 20e9;
+  terracotta.poisson = 0.2;
+  terracotta.strength = 12e6;
+  terracotta.fracture_energy = 17.0;
+  terracotta.weibull_modulus = 10.0;
+  terracotta.flaw_area = 1e-3;
+  terracotta.crack_spacing = 1.5;
+  terracotta.friction = 0.6;
+  terracotta.restitution = 0.25;
+  terracotta.thickness = 6e-3;
+
   return {
+      {aluminium,
+       "Aluminium alloy EN AW-6082 T6: density, E, nu and tensile strength 290 MPa by [EN1999]; K_Ic near 29 "
+       "MPa "
+       "sqrt(m); it breaks as if brittle (no yield here): meant for what hits"},
+      {brick,
+       "Fired clay brick: density 1600 to 2000 kg/m3, bending strength 3 to 6 MPa, E 5 to 20 GPa as commonly "
+       "reported for clay bricks, here mid-range; K_Ic near 0.8 MPa sqrt(m); Weibull modulus and flaw_area "
+       "estimated"},
       {ceramic,
        "Glazed stoneware: density, E, nu and bending strength mid-range of tableware stoneware [ASM4], K_Ic "
        "near "
        "1.25 MPa sqrt(m) as of porcelain-like bodies; Weibull modulus 10 usual for traditional ceramics; "
        "flaw_area, "
        "crack_spacing estimated"},
+      {concrete,
+       "Concrete C30/37: E 33 GPa, mean tensile strength 2.9 MPa, nu 0.2 by [EN1992]; fracture energy 73 "
+       "f_cm^0.18 "
+       "J/m2, f_cm 38 MPa, by [MC2010]; Weibull modulus and flaw_area estimated"},
       {eggshell,
        "Hen's egg: all estimated within what is commonly reported for hens' eggs: density of calcite less "
        "its "
@@ -105,9 +196,19 @@ std::vector<Preset> make_presets() {
        "sqrt(m) [Law93]; strength of the order of the 45 MPa characteristic value of [EN572], for short "
        "loads; "
        "Weibull modulus 5 for weathered glass; flaw_area, crack_spacing fitted by eye"},
+      {ice,
+       "Freshwater ice near -10 C: density, E 9.3 GPa, nu 0.33, tensile strength 0.7 to 3.1 MPa, K_Ic near "
+       "0.1 MPa "
+       "sqrt(m) by [Pet03]; Weibull modulus and flaw_area estimated"},
       {ornament_glass,
-       "As glass, without grains; blown, 0.3 to 0.8 mm thick; flaw_area a tenth of a pane's and crack_spacing "
+       "As glass, without grains; blown, 0.3 to 0.8 mm thick; flaw_area a tenth of a pane's and "
+       "crack_spacing "
        "estimated by eye"},
+      {plaster,
+       "Cast gypsum plaster, dry: density, E of some GPa and tensile strength 2 to 3 MPa as commonly "
+       "reported at a "
+       "water to plaster ratio near 0.7; K_Ic near 0.15 MPa sqrt(m); Weibull modulus and flaw_area "
+       "estimated"},
       {porcelain,
        "Hard glazed porcelain, unpressed: density, E, bending strength by [IEC672] group C 110/120 (at least "
        "2200 to "
@@ -117,6 +218,11 @@ std::vector<Preset> make_presets() {
        "energy an "
        "order of magnitude for tearing of sheet; as a shell it breaks as if brittle (no yield here): meant "
        "for what hits"},
+      {terracotta,
+       "Unglazed earthenware: density, E and bending strength 10 to 15 MPa as commonly reported for "
+       "terracotta, K_Ic "
+       "near 0.6 MPa sqrt(m); Weibull modulus as of other clay ceramics; flaw_area, crack_spacing as of "
+       "ceramic"},
   };
 }
 

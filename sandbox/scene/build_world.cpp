@@ -129,7 +129,7 @@ std::vector<Vec3> offsets_of(const Repeat& repeat) {
     for (int z = 0; z < repeat.count[2]; ++z)
       for (int y = 0; y < repeat.count[1]; ++y)
         for (int x = 0; x < repeat.count[0]; ++x)
-          offsets.push_back(Vec3(x, y, z).cwiseProduct(repeat.spacing));
+          offsets.push_back(Vec3(x + y % 2 * repeat.bond, y, z).cwiseProduct(repeat.spacing));
   } else {
     const std::vector<Vec3> cells = layer_offsets(repeat);
     const int a_layer = static_cast<int>(cells.size());

@@ -69,6 +69,13 @@ int find_material(const std::string& name, const Place& place, SceneDescription&
     scene.materials.push_back({place, name, *preset});
     return static_cast<int>(scene.materials.size()) - 1;
   }
+  if (name == "wood") {
+    book(problems, place,
+         "wood is stiff and strong along its grain and weak across it; every material here is alike in all "
+         "directions",
+         "write look = \"wood\" on the body, with a material of another name for its weight and friction");
+    return -1;
+  }
   book(problems, place, fmt::format("there is no material \"{}\"", name),
        hint_for_name(name, material_names(scene), "materials"));
   return -1;

@@ -71,7 +71,9 @@ Repeat read_repeat(TableReader& reader) {
     repeat.jitter = inner.number_or_vector("jitter", not_negative("m")).value_or(repeat.jitter);
   repeat.rotation_jitter = inner.number("rotation_jitter", between(0.0, 180.0, "degrees")).value_or(0.0);
   repeat.every = inner.number("every", between(0.0, 1e6, "s")).value_or(0.0);
-  inner.later({"bond"}, "available: count, layer, spacing, jitter, rotation_jitter, every");
+  repeat.bond = inner.number("bond", between(0.0, 1.0)).value_or(0.0);
+  if (inner.has("bond") && repeat.layout != Layout::grid)
+    inner.add_problem_at("bond", "only courses of a grid have a bond", "write count = [12, 10, 1]");
   inner.finish();
   return repeat;
 }

@@ -93,8 +93,9 @@ struct Repeat {
   Layout layout = Layout::row;
   std::array<int, 3> count{1, 1, 1};
   std::array<int, 2> layer{1, 1};
-  Vec3 spacing = Vec3::Zero();   // m
-  Vec3 jitter = Vec3::Zero();    // m: greatest random offset along each axis
+  Vec3 spacing = Vec3::Zero();  // m
+  double bond = 0.0;            // of a grid: every other course is shifted along x by this share of a spacing
+  Vec3 jitter = Vec3::Zero();   // m: greatest random offset along each axis
   double rotation_jitter = 0.0;  // degrees: greatest random turn, about a random axis
   double every = 0.0;            // s from copy to copy; 0: all are there from the start
   int total() const { return count[0] * count[1] * count[2]; }
@@ -195,9 +196,9 @@ struct SceneDescription {
 };
 
 // Names that mean something to sandbox/view.
-inline const std::vector<std::string> kLookNames{"ornament", "glass",    "ceramic", "porcelain", "steel",
-                                                 "wood",     "concrete", "brick",   "plaster",   "ice",
-                                                 "eggshell", "matt",     "glossy",  "hidden"};
+inline const std::vector<std::string> kLookNames{
+    "ornament", "glass", "ceramic",  "porcelain", "steel",  "wood",   "concrete",  "brick",
+    "plaster",  "ice",   "eggshell", "matt",      "glossy", "hidden", "aluminium", "terracotta"};
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
 inline const std::vector<std::string> kOverlayNames{"none", "stress", "pieces"};

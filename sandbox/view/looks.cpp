@@ -23,6 +23,8 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
     return look;
   }
   if (name == "steel") return render::metal(paint(0xc9ccd1), 0.22F);
+  if (name == "aluminium") return render::metal(paint(0xd9dbdc), 0.35F);
+  if (name == "terracotta") return render::matt(paint(0xb9613f));
   if (name == "wood") {
     render::Look look = render::matt(paint(0x6f4a2c));
     look.crack = hex(0xd2a877);
@@ -72,8 +74,8 @@ std::vector<render::Look> make_looks(const std::string& name, const std::optiona
 }
 
 std::string usual_look(const std::string& preset) {
-  for (const char* same :
-       {"glass", "ceramic", "porcelain", "steel", "concrete", "brick", "plaster", "ice", "eggshell"}) {
+  for (const char* same : {"aluminium", "brick", "ceramic", "concrete", "eggshell", "glass", "ice", "plaster",
+                           "porcelain", "steel", "terracotta"}) {
     if (preset == same) return same;
   }
   return preset == "ornament_glass" ? "ornament" : "matt";

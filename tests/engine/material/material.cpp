@@ -19,7 +19,9 @@ TEST_CASE("presets are sound, sorted, sourced and found by name") {
     CHECK(find_preset(preset.material.name)->density == preset.material.density);
   }
   CHECK_FALSE(find_preset("unobtainium"));
-  for (const char* name : {"glass", "ceramic", "porcelain", "eggshell", "steel"}) CHECK(find_preset(name));
+  for (const char* name : {"aluminium", "brick", "ceramic", "concrete", "eggshell", "glass", "ice", "plaster",
+                           "porcelain", "steel", "terracotta"})
+    CHECK(find_preset(name));
 }
 
 TEST_CASE("the fracture energy of brittle presets is that of a known toughness") {
@@ -31,6 +33,11 @@ TEST_CASE("the fracture energy of brittle presets is that of a known toughness")
   CHECK(toughness("glass") == Approx(0.75).epsilon(0.05));
   CHECK(toughness("porcelain") == Approx(1.3).epsilon(0.05));
   CHECK(toughness("ceramic") == Approx(1.25).epsilon(0.05));
+  CHECK(toughness("aluminium") == Approx(29.0).epsilon(0.05));
+  CHECK(toughness("brick") == Approx(0.8).epsilon(0.05));
+  CHECK(toughness("ice") == Approx(0.1).epsilon(0.05));
+  CHECK(toughness("plaster") == Approx(0.15).epsilon(0.05));
+  CHECK(toughness("terracotta") == Approx(0.6).epsilon(0.05));
 }
 
 TEST_CASE("every value outside its range is told with the range") {

@@ -34,6 +34,17 @@ TEST_CASE("generated meshes have about 5000 triangles unless told otherwise") {
   }
 }
 
+TEST_CASE("in a bond every other course is shifted") {
+  const Reading reading = read(
+      "[[body]]\nkind = \"box\"\nsize = 0.1\nrepeat = {count = [2, 3, 1], spacing = [1, 2, 3], bond = "
+      "0.5}\n");
+  REQUIRE(reading.scene.has_value());
+  const std::vector<Pose> poses = copy_poses(reading.scene->bodies.front(), 1, 0);
+  const std::vector<Vec3> expected{{0, 0, 0}, {1, 0, 0}, {0.5, 2, 0}, {1.5, 2, 0}, {0, 4, 0}, {1, 4, 0}};
+  REQUIRE(poses.size() == expected.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) CHECK(poses[i].translation == expected[i]);
+}
+
 TEST_CASE("a solid needs a closed mesh") {
   const MeshFileFolder folder;
   const std::string open =

@@ -189,6 +189,10 @@ const Broken kCorpus[] = {
      "\"shell\""},
     {"[[body]]\nkind = \"solid\"\nshape = \"vase\"\n", "t.toml:3:9", "not available in this version",
      "\"sphere\""},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 3, spacing = 1, bond = 0.5}\n", "t.toml:3:41",
+     "only courses of a grid", "count = [12, 10, 1]"},
+    {"[[body]]\nkind = \"sphere\"\nmaterial = \"wood\"\n", "t.toml:3:12", "along its grain",
+     "look = \"wood\""},
     // Solids.
     {"[[body]]\nkind = \"solid\"\n", "t.toml:1:1", "has neither a mesh nor a shape", "\"slab\""},
     {"[[body]]\nkind = \"solid\"\nshape = \"slab\"\n", "t.toml:1:1", "has no size", "[x, y, z]"},
