@@ -38,8 +38,10 @@ struct Axis {
   int number = -1;  // 0-2 faces of a, 3-5 faces of b, 6-14 edge i of a x edge j of b
 };
 
+constexpr double kNoOverlap = 1e-6;  // of the size: boxes that touch may do so by rounding
+
 // The axis of greatest separation. An edge pair must be better by a little, so that faces that lie on each
-// other are not taken for edges.
+// other are not taken for edges; but what one axis tells apart does not overlap.
 Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const Vec3& way) {
   const double size = std::min(a.half_extent.minCoeff(), b.half_extent.minCoeff());
   Axis best{Vec3::UnitY(), -1e300, -1};
@@ -48,7 +50,8 @@ Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, c
     const double gap = std::abs(direction.dot(way)) -
                        (ra.transpose() * direction).cwiseAbs().dot(a.half_extent) -
                        (rb.transpose() * direction).cwiseAbs().dot(b.half_extent);
-    if (gap > best.gap + handicap) best = {side * direction, gap, number};
+    const bool is_overlap = best.gap < -kNoOverlap * size;
+    if (gap > best.gap + (is_overlap ? 0.0 : handicap)) best = {side * direction, gap, number};
   };
   for (int i = 0; i < 3; ++i) try_axis(ra.col(i), i, 0.0);
   for (int i = 0; i < 3; ++i) try_axis(rb.col(i), 3 + i, 1e-3 * size);

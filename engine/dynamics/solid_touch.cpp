@@ -43,7 +43,7 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
   for (int i = 0; i < 200; ++i) {
     const Pose pose_a = blend(a.from, a.to, time), pose_b = blend(b.from, b.to, time);
     Vec3 normal;
-    collision::analytic_gap(*a.body.shape, pose_a, *b.body.shape, pose_b, normal);
+    const double gap = collision::analytic_gap(*a.body.shape, pose_a, *b.body.shape, pose_b, normal);
     const auto separation = [&](double t) {
       return corners_a.lowest(normal, t) + corners_b.lowest(-normal, t) - radii;
     };
@@ -52,8 +52,9 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
     if (room >= 0.0 && separation(1.0) >= least) return result;
     const double closing = corners_a.fastest(-normal) + corners_b.fastest(normal);
     if (room <= close_enough || closing <= 0.0 || i == 199) {
+      // Corners that go straight touch where rigid bodies, which turn, may still be farther apart.
       collision::find_analytic_contacts(*a.body.shape, pose_a, *b.body.shape, pose_b,
-                                        margin + std::max(0.0, least), result.contacts);
+                                        margin + std::max({0.0, least, gap}), result.contacts);
       for (Contact& c : result.contacts) {
         c.on_a = carry(a.body, c.on_a, pose_a, a.body.start);
         c.on_b = carry(b.body, c.on_b, pose_b, b.body.start);
