@@ -257,6 +257,11 @@ void add_pair(const std::vector<Body>& bodies, const ContactSettings& settings, 
   memory.kept_gap = pair.kept_gap = settings.kept_gap * pair.size;
   pair.threshold = impact_threshold(settings, pair.kept_gap);
   pair.is_apart = pair.is_free_certified = false;
+  if (pair.is_analytic) {
+    const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+    Vec3 normal;
+    pair.least_gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
+  }
   if (!is_known) {
     for (WorkPair& other : work.pairs) other.state += other.state >= pair.state ? 1 : 0;
     state.pairs.insert(place, std::move(memory));

@@ -84,6 +84,30 @@ TEST_CASE("boxes that turn fast do not come into each other") {
   CHECK(deepest > -1e-7);
 }
 
+TEST_CASE("a box that is hit does not come into one that nobody thought it would meet") {
+  for (const double speed : {5.0, 15.0, 40.0}) {
+    test::Scene scene;
+    scene.settings.gravity.setZero();
+    auto& ball = scene.add(test::make_sphere(0.14, Vec3(-0.4, 0.02, 0.01), 7800.0));
+    ball.velocity.x() = speed;
+    for (int i = 0; i < 3; ++i) scene.add(test::make_box(Vec3(0.12, 0.036, 0.058), Vec3(0.25 * i, 0, 0)));
+    double deepest = 0.0;
+    for (int step = 0; step < 40; ++step) {
+      scene.step();
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          const auto &a = scene.bodies[i], &b = scene.bodies[j];
+          Vec3 normal;
+          deepest =
+              std::min(deepest, collision::analytic_gap(*a.shape, a.pose, *b.shape, b.pose, normal));
+        }
+    }
+    INFO(speed << " m/s");
+    CHECK(deepest > -1e-7);
+    CHECK(scene.bodies[3].velocity.x() > 0.1 * speed);
+  }
+}
+
 TEST_CASE("a falling ball is seen to touch before it bounces, and its impact is logged as a collision") {
   auto scene = ground_scene();
   auto& ball = scene.add(test::make_sphere(0.1, Vec3(0, 1.0, 0)));
