@@ -50,8 +50,8 @@ Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, c
     const double gap = std::abs(direction.dot(way)) -
                        (ra.transpose() * direction).cwiseAbs().dot(a.half_extent) -
                        (rb.transpose() * direction).cwiseAbs().dot(b.half_extent);
-    const bool is_overlap = best.gap < -kNoOverlap * size;
-    if (gap > best.gap + (is_overlap ? 0.0 : handicap)) best = {side * direction, gap, number};
+    if (gap > best.gap + (best.gap < -kNoOverlap * size ? 0.0 : handicap))
+      best = {side * direction, gap, number};
   };
   for (int i = 0; i < 3; ++i) try_axis(ra.col(i), i, 0.0);
   for (int i = 0; i < 3; ++i) try_axis(rb.col(i), 3 + i, 1e-3 * size);
@@ -59,7 +59,8 @@ Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, c
     for (int j = 0; j < 3; ++j) {
       const Vec3 cross = ra.col(i).cross(rb.col(j));
       const double length = cross.norm();
-      if (length > 1e-3) try_axis(cross / length, 6 + 3 * i + j, 5e-3 * size);
+      const bool is_overlap = best.gap < -kNoOverlap * size;
+      if (length > (is_overlap ? 1e-7 : 1e-3)) try_axis(cross / length, 6 + 3 * i + j, 5e-3 * size);
     }
   }
   return best;

@@ -25,12 +25,37 @@ struct Corners {
     }
     return result;
   }
+  std::size_t foremost(const Vec3& direction, double time) const {
+    std::size_t best = 0;
+    double least = 1e300;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const double height = (1.0 - time) * direction.dot(from[i]) + time * direction.dot(to[i]);
+      if (height < least) best = i;
+      least = std::min(least, height);
+    }
+    return best;
+  }
   double fastest(const Vec3& direction) const {
     double result = -1e300;
     for (std::size_t i = 0; i < from.size(); ++i) result = std::max(result, direction.dot(to[i] - from[i]));
     return result;
   }
 };
+
+/// Where the foremost corner of one meets the other, for touches in which no face is over the other's.
+Contact meet_at_corner(const SolidWay& a, const Corners& corners_a, const SolidWay& b,
+                       const Corners& corners_b, const Vec3& normal, double time) {
+  const std::size_t i = corners_a.foremost(normal, time), j = corners_b.foremost(-normal, time);
+  const Vec3 p = (1.0 - time) * corners_a.from[i] + time * corners_a.to[i];
+  const Vec3 q = (1.0 - time) * corners_b.from[j] + time * corners_b.to[j];
+  const Vec3 middle = 0.5 * (p + q);
+  Contact c;
+  c.key = (std::uint64_t{1} << 32U) + 8 * i + j;
+  c.normal = normal;
+  c.on_a = middle + (p - middle).dot(normal) * normal - a.body.collider->radius * normal;
+  c.on_b = middle + (q - middle).dot(normal) * normal + b.body.collider->radius * normal;
+  return c;
+}
 
 }  // namespace
 
@@ -55,6 +80,8 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
       // Corners that go straight touch where rigid bodies, which turn, may still be farther apart.
       collision::find_analytic_contacts(*a.body.shape, pose_a, *b.body.shape, pose_b,
                                         margin + std::max({0.0, least, gap}), result.contacts);
+      if (result.contacts.empty())
+        result.contacts.push_back(meet_at_corner(a, corners_a, b, corners_b, normal, time));
       for (Contact& c : result.contacts) {
         c.on_a = carry(a.body, c.on_a, pose_a, a.body.start);
         c.on_b = carry(b.body, c.on_b, pose_b, b.body.start);
