@@ -189,7 +189,7 @@ const Broken kCorpus[] = {
      "\"shell\""},
     {"[[body]]\nkind = \"solid\"\nshape = \"vase\"\n", "t.toml:3:9", "not available in this version",
      "\"sphere\""},
-    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 3, spacing = 1, bond = 0.5}\n", "t.toml:3:41",
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 3, spacing = 1, bond = 0.5}\n", "t.toml:3:42",
      "only courses of a grid", "count = [12, 10, 1]"},
     {"[[body]]\nkind = \"sphere\"\nmaterial = \"wood\"\n", "t.toml:3:12", "along its grain",
      "look = \"wood\""},
