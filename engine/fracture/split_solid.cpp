@@ -19,7 +19,7 @@ using geometry::SolidFacet;
 using Size = std::size_t;
 using core::at;
 
-constexpr int kMergePasses = 8;
+constexpr int kMergeRounds = 8;
 
 /// The number of each cell's piece; pieces are numbered by their first cells.
 std::vector<int> label_cells(Size cell_count, const std::vector<SolidContact>& contacts, int& piece_count) {
@@ -90,7 +90,7 @@ SolidSplit split_solid(SolidComplex complex, double least_width) {
   SolidSplit split;
   settle(complex);
   std::vector<SolidContact> contacts = find_solid_contacts(complex);
-  for (int pass = 0; pass < kMergePasses; ++pass) {
+  for (int pass = 0; pass < kMergeRounds; ++pass) {
     if (!merge_once(complex, contacts, least_width, split)) break;
     contacts = find_solid_contacts(complex);
   }
