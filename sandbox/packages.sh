@@ -8,7 +8,7 @@ BUILD_PACKAGES=("${ENGINE_PACKAGES[@]}" pkg-config libosmesa6-dev libglm-dev lib
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev libassimp-dev
   zlib1g-dev)  # libassimp-dev links it without asking for it
 
-TEST_PACKAGES=("${BUILD_PACKAGES[@]}" ffmpeg libgmp-dev)
+TEST_PACKAGES=("${BUILD_PACKAGES[@]}" ffmpeg gnuplot-nox libgmp-dev)
 
 # install_packages WHAT-FOR NAME...: installs those that are missing; says how where it cannot.
 install_packages() {

@@ -8,6 +8,7 @@
 #include "sandbox/run/diff.h"
 #include "sandbox/run/golden.h"
 #include "sandbox/run/run.h"
+#include "sandbox/run/study.h"
 #include "sandbox/scene/nearest_name.h"
 
 namespace shatterbox::sandbox::run {
@@ -97,10 +98,16 @@ void add_golden_options(CLI::App& make, CLI::App& check, GoldenOptions& options)
   add_finding_options(check, options.findings);
 }
 
+void add_study_options(CLI::App& command, StudyOptions& options) {
+  command.add_option("NAME", options.what, "a study");
+  command.add_option("-o", options.folder, "folder for the files; study_NAME without it")->type_name("DIR");
+  command.add_flag("--quick", options.is_quick, "fewer settings, smaller cases, one repeat");
+}
+
 /// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.
 bool is_known_verb(const std::string& verb) {
-  const std::vector<std::string> verbs{"run", "check", "diff", "golden", "bench", "list"};
-  const std::vector<std::string> later{"plan", "study"};
+  const std::vector<std::string> verbs{"run", "check", "diff", "golden", "study", "bench", "list"};
+  const std::vector<std::string> later{"plan"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
   if (std::find(later.begin(), later.end(), verb) != later.end()) {
@@ -137,7 +144,9 @@ int run_command_line(int argc, char** argv) {
   CLI::App* make_command = golden_command->add_subcommand("make", "keep what a scene shows, or keep it anew");
   CLI::App* golden_check = golden_command->add_subcommand("check", "run the scenes again and compare");
   add_golden_options(*make_command, *golden_check, golden);
-  app.add_subcommand("list", "scenes, materials, looks and events");
+  StudyOptions study;
+  add_study_options(*app.add_subcommand("study", "error against run time: tables, plots and words"), study);
+  app.add_subcommand("list", "scenes, materials, looks, events and studies");
   run_command->add_option("SCENE", options.scene, "a .toml file, or the name of a scene that came along");
   check_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
   for (CLI::App* command : {run_command, check_command}) add_scene_options(*command, options);
@@ -150,6 +159,7 @@ int run_command_line(int argc, char** argv) {
   if (app.got_subcommand("run")) return run_scene(options);
   if (app.got_subcommand("bench")) return run_bench(bench);
   if (app.got_subcommand("diff")) return run_diff(diff);
+  if (app.got_subcommand("study")) return run_study(study);
   if (app.got_subcommand("golden"))
     return make_command->parsed() ? make_goldens(golden) : check_goldens(golden);
   return app.got_subcommand("check") ? check_scene(options) : list_all();

@@ -29,19 +29,6 @@ std::string file_fault(const std::string& file) {
   return {};
 }
 
-void make_folder(const char* option, const std::string& folder, scene::Problems& problems) {
-  if (folder.empty()) return;
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code || !fs::is_directory(folder)) {
-    scene::book(problems, scene::Place{option, 0, 0},
-                fmt::format("folder {} cannot be made: {}", folder, code ? code.message() : "it is a file"));
-  } else if (access(folder.c_str(), W_OK) != 0) {
-    scene::book(problems, scene::Place{option, 0, 0},
-                fmt::format("folder {}: {}", folder, std::strerror(errno)), "");
-  }
-}
-
 }  // namespace
 
 std::optional<render::Size> parse_size(const std::string& text, scene::Problems& problems) {
@@ -79,6 +66,19 @@ void check_file(const char* option, const std::string& file, scene::Problems& pr
   if (!fault.empty())
     scene::book(problems, scene::Place{option, 0, 0}, fmt::format("{} cannot be written: {}", file, fault),
                 "");
+}
+
+void make_folder(const char* option, const std::string& folder, scene::Problems& problems) {
+  if (folder.empty()) return;
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code || !fs::is_directory(folder)) {
+    scene::book(problems, scene::Place{option, 0, 0},
+                fmt::format("folder {} cannot be made: {}", folder, code ? code.message() : "it is a file"));
+  } else if (access(folder.c_str(), W_OK) != 0) {
+    scene::book(problems, scene::Place{option, 0, 0},
+                fmt::format("folder {}: {}", folder, std::strerror(errno)), "");
+  }
 }
 
 void prepare_outputs(const Options& options, scene::Problems& problems) {

@@ -49,6 +49,10 @@ int frame_at(double time, int frames_per_second);
 /// file.
 void check_file(const char* option, const std::string& file, scene::Problems& problems);
 
+/// Makes a folder that `option` asked for, and finds out whether it can be written in. An empty name is no
+/// folder.
+void make_folder(const char* option, const std::string& folder, scene::Problems& problems);
+
 /// Makes the output folders and finds out, before any work, what cannot be written.
 void prepare_outputs(const Options& options, scene::Problems& problems);
 

@@ -22,6 +22,7 @@
 #include "sandbox/scene/build_world.h"
 #include "sandbox/scene/find_scene.h"
 #include "sandbox/script/script.h"
+#include "sandbox/study/study.h"
 #include "sandbox/view/view.h"
 
 namespace shatterbox::sandbox::run {
@@ -279,6 +280,8 @@ int list_all() {
   row("backdrops", scene::kBackdropNames);
   row("overlays", scene::kOverlayNames);
   row("events", scene::kEventVerbs);
+  fmt::print("studies\n");
+  for (const study::Study& study : study::studies()) fmt::print("    {:<12} {}\n", study.name, study.what);
   return kDone;
 }
 

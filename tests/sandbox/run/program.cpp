@@ -17,7 +17,10 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   };
   refused("", "");
   refused("runn good.toml", "did you mean \"run\"?");
-  refused("study", "not available in this version");
+  refused("plan", "not available in this version");
+  refused("study", "study needs a NAME");
+  refused("study moton", "did you mean \"motion\"?");
+  refused("study motion -o good.toml", "good.toml");
   refused("diff one.png", "ACTUAL");
   refused("diff none.png none.png", "none.png: there is no such file");
   refused("diff good.toml good.toml", "good.toml");

@@ -1,0 +1,92 @@
+#include "sandbox/run/study.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "engine/core/parallel.h"
+#include "sandbox/report/text_file.h"
+#include "sandbox/run/interrupt.h"
+#include "sandbox/run/options.h"
+#include "sandbox/run/progress.h"
+#include "sandbox/scene/nearest_name.h"
+#include "sandbox/study/plot.h"
+#include "sandbox/study/study.h"
+#include "sandbox/study/telling.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+const study::Study* find_study(const std::string& name) {
+  const auto& list = study::studies();
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const study::Study& study) { return study.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+int refuse_study(const std::string& name) {
+  std::vector<std::string> names;
+  for (const study::Study& study : study::studies()) names.push_back(study.name);
+  if (name.empty()) {
+    fmt::print(stderr, "study needs a NAME\n");
+  } else {
+    fmt::print(stderr, "there is no study \"{}\"\n    {}\n", name,
+               scene::hint_for_name(name, names, "studies"));
+  }
+  for (const study::Study& study : study::studies())
+    fmt::print(stderr, "    {:<12} {}\n", study.name, study.what);
+  return kBadInput;
+}
+
+/// Writes what was found; a sentence if that fails.
+std::string write_results(const study::StudyResult& result, const std::string& name,
+                          const std::filesystem::path& folder) {
+  for (const auto& [ending, text] :
+       {std::pair<const char*, std::string>{".csv", study::to_csv(result.tables)},
+        {".txt", study::describe(result)}}) {
+    std::string fault = report::write_text((folder / (name + ending)).string(), text);
+    if (!fault.empty()) return fault;
+  }
+  return {};
+}
+
+}  // namespace
+
+int run_study(const StudyOptions& options) {
+  const study::Study* const study = find_study(options.what);
+  if (study == nullptr) return refuse_study(options.what);
+  const std::string folder = options.folder.empty() ? "study_" + study->name : options.folder;
+  scene::Problems problems;
+  make_folder("-o", folder, problems);
+  if (!problems.empty()) {
+    fmt::print(stderr, "{}\n", scene::describe(problems));
+    return kBadInput;
+  }
+  catch_interrupts();
+  core::set_thread_count(1);  // processor time of one thread is what a setting costs
+  const study::Plan plan = study->plan(options.is_quick);
+  Progress progress(static_cast<int>(plan.jobs.size()), stderr_is_terminal());
+  study::RunSettings settings;
+  settings.is_quick = options.is_quick;
+  settings.go_on = [&progress](int done, int, const std::string& note) {
+    progress.show(done, note);
+    return !is_interrupted();
+  };
+  const study::StudyResult result = study::run_plan(plan, settings);
+  progress.clear();
+  const std::string fault = write_results(result, study->name, folder);
+  if (!fault.empty()) {
+    fmt::print(stderr, "failed: {}\n", fault);
+    return kFailed;
+  }
+  const std::string plot_fault = study::draw_plot(result.tables, study->what, study->name, folder);
+  fmt::print("{}\n{}/{}.csv .txt{}\n", study::describe(result), folder, study->name,
+             plot_fault.empty() ? " .png .svg" : "");
+  if (!plot_fault.empty()) fmt::print(stderr, "{}\n", plot_fault);
+  return result.is_whole ? kDone : kFailed;
+}
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,52 @@
+#include <algorithm>
+
+#include "sandbox/study/study.h"
+
+namespace shatterbox::sandbox::study {
+
+namespace {
+
+/// Repeats of a row whose first call took `seconds`.
+int repeats_of(double seconds, bool is_quick) {
+  if (is_quick || seconds > 5.0) return 1;
+  return seconds > 1.0 ? 3 : 5;
+}
+
+Row measure_row(const Job& job, bool is_quick) {
+  Row row;
+  row.setting = job.setting;
+  row.value = job.value;
+  row.is_default = job.is_default;
+  Measured measured = job.measure();
+  row.errors = measured.errors;
+  row.note = measured.note;
+  if (measured.seconds != measured.seconds) return row;  // nothing to time
+  std::vector<double> times;
+  const int repeats = repeats_of(measured.seconds, is_quick);
+  for (int i = 0; i < repeats; ++i) times.push_back(job.measure().seconds);
+  std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
+  row.seconds = times[static_cast<std::size_t>(repeats / 2)];
+  return row;
+}
+
+}  // namespace
+
+StudyResult run_plan(const Plan& plan, const RunSettings& settings) {
+  StudyResult result;
+  result.tables = plan.tables;
+  const int total = static_cast<int>(plan.jobs.size());
+  for (int i = 0; i < total; ++i) {
+    const Job& job = plan.jobs[static_cast<std::size_t>(i)];
+    Table& table = result.tables[job.table];
+    if (settings.go_on && !settings.go_on(i, total, table.name + ", " + job.setting)) {
+      result.is_whole = false;
+      return result;
+    }
+    table.rows.push_back(measure_row(job, settings.is_quick));
+  }
+  if (settings.go_on) settings.go_on(total, total, "");
+  if (plan.conclude) result.conclusions = plan.conclude(result.tables);
+  return result;
+}
+
+}  // namespace shatterbox::sandbox::study

@@ -1,0 +1,60 @@
+// A study: what is to be measured, as jobs that are run one after the other, timed, and told in words.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sandbox/study/table.h"
+
+namespace shatterbox::sandbox::study {
+
+/// What one run of a job found. `seconds` is the processor time of its measured part (Stopwatch).
+struct Measured {
+  std::vector<double> errors;
+  double seconds = kNoNumber;
+  std::string note;
+};
+
+/// One row of one table. `measure` is called several times: it must do all of its work each time.
+struct Job {
+  std::size_t table = 0;  // number in Plan::tables
+  std::string setting;
+  double value = kNoNumber;
+  bool is_default = false;
+  std::function<Measured()> measure;
+};
+
+struct Plan {
+  std::vector<Table> tables;  // without rows: the jobs bring them
+  std::vector<Job> jobs;
+  /// More to be said when all is measured: sentences, each of which follows from numbers of the tables.
+  std::function<std::vector<std::string>(const std::vector<Table>&)> conclude;
+};
+
+struct Study {
+  std::string name;
+  std::string what;
+  std::function<Plan(bool is_quick)> plan;  // quick: fewer settings and smaller cases
+};
+
+/// All studies, in the order in which `list` names them.
+const std::vector<Study>& studies();
+
+struct RunSettings {
+  bool is_quick = false;
+  /// Called before each job; false stops the study there.
+  std::function<bool(int done, int total, const std::string& note)> go_on;
+};
+
+struct StudyResult {
+  std::vector<Table> tables;
+  std::vector<std::string> conclusions;
+  bool is_whole = true;  // false: stopped before its end
+};
+
+/// Runs all jobs. The first call of each row is not timed: what is cold is not what a setting costs. Then the
+/// median of repeats: five, fewer for what takes long, one if quick.
+StudyResult run_plan(const Plan& plan, const RunSettings& settings);
+
+}  // namespace shatterbox::sandbox::study

@@ -1,0 +1,59 @@
+// Every study runs, and finds the order that theory gives.
+#include <catch2/catch.hpp>
+
+#include "engine/core/parallel.h"
+#include "sandbox/study/order.h"
+#include "sandbox/study/study.h"
+#include "sandbox/study/telling.h"
+
+using namespace shatterbox::sandbox::study;
+
+namespace {
+
+StudyResult run_quick(const std::string& name) {
+  shatterbox::core::set_thread_count(1);
+  for (const Study& study : studies())
+    if (study.name == name) return run_plan(study.plan(true), {true, {}});
+  FAIL("there is no study " << name);
+  return {};
+}
+
+const Table& table_of(const StudyResult& result, const std::string& name) {
+  for (const Table& table : result.tables)
+    if (table.name == name) return table;
+  FAIL("there is no table " << name);
+  return result.tables[0];
+}
+
+double error_at_default(const Table& table, std::size_t error = 0) {
+  const auto row = default_row(table);
+  REQUIRE(row);
+  return table.rows[*row].errors[error];
+}
+
+}  // namespace
+
+TEST_CASE("study motion: exact flight and orders of spin and of bounces") {
+  const StudyResult result = run_quick("motion");
+  INFO(describe(result));
+  const auto top = fit_order(table_of(result, "top"), 0);
+  REQUIRE(top);
+  CHECK(top->order == Approx(4.0).margin(0.1));
+  CHECK(error_at_default(table_of(result, "top"), 1) < 1e-12);
+  for (const Row& row : table_of(result, "throw").rows) CHECK(row.errors[0] < 1e-12);
+  for (const Row& row : table_of(result, "incline").rows) CHECK(row.errors[0] < 1e-5);
+  const auto bounce = fit_order(table_of(result, "bounce"), 0);
+  REQUIRE(bounce);
+  CHECK(bounce->order == Approx(1.0).margin(0.35));  // worst of 8 starts, over 4 step sizes
+  for (const Row& row : table_of(result, "bounce").rows) CHECK(row.errors[1] < 1e-6);
+  for (const Row& row : table_of(result, "roll").rows) {
+    CHECK(row.errors[0] < 1e-6);
+    CHECK(row.errors[1] < 1e-10);
+  }
+  // It creeps, the less the shorter the step: 0.05 mm a second at the default.
+  const Table& stick = table_of(result, "stick");
+  CHECK(error_at_default(stick, 2) < 1e-4);
+  const auto creep = fit_order(stick, 2);
+  REQUIRE(creep);
+  CHECK(creep->order > 0.6);
+}
