@@ -152,6 +152,8 @@ Json make_json(const RunRecord& record) {
   json["steps"] = w.steps;
   json["steps_per_second"] = record.steps_per_second;
   json["simulated_seconds"] = number(record.simulated_seconds);
+  json["video_seconds"] =
+      number(static_cast<double>(record.frames.size()) / std::max(record.frames_per_second, 1));
   json["wall_seconds"] = number(record.wall_seconds);
   json["interrupted"] = record.is_interrupted;
   json["threads"] = record.threads;

@@ -38,12 +38,12 @@ geometry::TriangleMesh sphere_surface(double radius) {
   return mesh;
 }
 
-std::string make_obj(const world::World& world) {
+std::string make_obj(std::span<const body::Body> bodies, double time) {
   std::string text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "# shatterbox, {:.17g} s; metres, y up\n", world.time());
+  fmt::format_to(out, "# shatterbox, {:.17g} s; metres, y up\n", time);
   std::size_t first = 1;
-  for (const body::Body& body : world.bodies()) {
+  for (const body::Body& body : bodies) {
     geometry::TriangleMesh made;
     const geometry::TriangleMesh* mesh = &made;
     switch (body.shape->kind) {
@@ -78,11 +78,12 @@ std::string make_obj(const world::World& world) {
   return text;
 }
 
-std::string write_obj_frame(const std::string& folder, int number, const world::World& world) {
+std::string write_obj_frame(const std::string& folder, int number, std::span<const body::Body> bodies,
+                            double time) {
   const std::string path = fmt::format("{}/frame_{:06}.obj", folder, number);
   errno = 0;
   std::ofstream stream(path, std::ios::binary);
-  stream << make_obj(world);
+  stream << make_obj(bodies, time);
   stream.close();
   if (!stream) return fmt::format("{} cannot be written: {}", path, std::strerror(errno));
   return {};

@@ -2,20 +2,21 @@
 // render a run.
 #pragma once
 
+#include <span>
 #include <string>
-#include <vector>
 
+#include "engine/body/body.h"
 #include "engine/geometry/triangle_mesh.h"
-#include "engine/world/world.h"
 
 namespace shatterbox::sandbox::report {
 
-/// The text of one frame: an `o` group a body (its name and number), 17 significant digits, metres. Planes
-/// have no end and are left out.
-std::string make_obj(const world::World& world);
+/// The text of one frame, of `bodies` at `time` (s): an `o` group a body (its name and number), 17
+/// significant digits, metres. Planes have no end and are left out.
+std::string make_obj(std::span<const body::Body> bodies, double time);
 
 /// Writes frame `number` as DIR/frame_000000.obj. A sentence if that fails, else empty.
-std::string write_obj_frame(const std::string& folder, int number, const world::World& world);
+std::string write_obj_frame(const std::string& folder, int number, std::span<const body::Body> bodies,
+                            double time);
 
 /// The surface of a box or a sphere (latitudes and longitudes), for export.
 geometry::TriangleMesh sphere_surface(double radius);

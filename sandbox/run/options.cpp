@@ -56,10 +56,6 @@ scene::SceneChanges changes_of(const Options& options) {
   return changes;
 }
 
-int frame_at(double time, int frames_per_second) {
-  return static_cast<int>(time * frames_per_second + 1e-9);
-}
-
 void check_file(const char* option, const std::string& file, scene::Problems& problems) {
   if (file.empty()) return;
   const std::string fault = file_fault(file);

@@ -42,9 +42,6 @@ std::optional<render::Size> parse_size(const std::string& text, scene::Problems&
 /// --set, --seconds, --seed and --script, as changes to a scene.
 scene::SceneChanges changes_of(const Options& options);
 
-/// The frame that is on the screen at a time, s.
-int frame_at(double time, int frames_per_second);
-
 /// Finds out, before any work, that a file cannot be written; `option` asked for it. An empty name is no
 /// file.
 void check_file(const char* option, const std::string& file, scene::Problems& problems);

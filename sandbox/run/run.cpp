@@ -14,16 +14,14 @@
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/obj_frames.h"
 #include "sandbox/report/summary.h"
-#include "sandbox/run/inspector.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/painter.h"
 #include "sandbox/run/progress.h"
+#include "sandbox/run/projector.h"
 #include "sandbox/run/recorder.h"
 #include "sandbox/scene/build_world.h"
 #include "sandbox/scene/find_scene.h"
-#include "sandbox/script/script.h"
 #include "sandbox/study/study.h"
-#include "sandbox/view/view.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -53,11 +51,19 @@ void check_stills(const Options& options, double seconds, scene::Problems& probl
                   "--seconds makes it longer");
 }
 
-bool is_drawn(const Options& options, int frame) {
-  return options.stills.empty() ||
-         std::any_of(options.stills.begin(), options.stills.end(),
-                     [&](double time) { return frame_at(time, options.frames_per_second) == frame; });
-}
+/// Which frames are drawn: all, or those that show the moments asked for.
+class Choice {
+ public:
+  explicit Choice(std::vector<double> stills) : stills_(std::move(stills)), has_all_(stills_.empty()) {}
+  /// `ahead`: the time of the next frame, s.
+  bool takes(double ahead) {
+    return std::erase_if(stills_, [ahead](double time) { return time < ahead - 1e-9; }) > 0 || has_all_;
+  }
+
+ private:
+  std::vector<double> stills_;  // s, not drawn yet
+  bool has_all_;
+};
 
 /// Reads everything; what is wrong goes to `problems`.
 Job make_job(const Options& options, Recorder& recorder, scene::Problems& problems) {
@@ -134,44 +140,35 @@ void describe_job(const Job& job, report::RunRecord& record) {
 /// The loop. A sentence if it failed, else empty.
 std::string play(Job& job, Recorder& recorder, Painter* painter) {
   const scene::SceneDescription& scene = *job.scene;
-  world::World& world = job.built->world;
-  script::Script script(scene);
+  const world::World& world = job.built->world;
+  const int fps = job.options.frames_per_second;
+  Projector projector(scene, *job.built, recorder, job.options.has_audit, fps);
   view::View view(scene, *job.built);
-  Inspector inspector(job.options.has_audit, recorder.record);
-  if (job.options.has_audit) world.keep_ways();
-  const auto advance = [&] {
-    for (std::string& fault : script.play(*job.built)) recorder.record.warnings.push_back(std::move(fault));
-    inspector.begin_step(world);
-    world.step();
-    inspector.end_step(world);
-  };
-  const int rate = scene.world.steps_per_second, fps = job.options.frames_per_second;
-  const auto frame_count = std::max(1, static_cast<int>(scene.seconds * fps + 0.5));
-  Progress progress(frame_count, stderr_is_terminal());
-  for (int frame = 0; frame < frame_count && !is_interrupted(); ++frame) {
+  Choice choice(job.options.stills);
+  Progress progress(std::max(1, static_cast<int>(scene.seconds * fps + 0.5)), stderr_is_terminal());
+  std::vector<int> shown;  // how far the film is with each frame, in frames' lengths of the world's time
+  for (int frame = 0;; ++frame) {
     const auto start = Clock::now();
     const double audited = recorder.record.audit_time;
-    const long due = static_cast<long>(frame) * rate / fps;
-    while (world.steps() < due && !is_interrupted()) {
-      advance();
-      recorder.note_step(world);
-    }
+    const std::optional<view::Moment> moment = projector.next();
+    if (!moment) break;
     std::optional<render::Frame> picture;
-    if (painter != nullptr && is_drawn(job.options, frame)) picture = view.make_frame();
+    if (painter != nullptr && choice.takes(projector.time_ahead())) picture = view.make_frame(*moment);
     const double audit_time = recorder.record.audit_time - audited;
     recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
     if (!job.options.meshes_folder.empty()) {
-      std::string fault = report::write_obj_frame(job.options.meshes_folder, frame, world);
+      std::string fault =
+          report::write_obj_frame(job.options.meshes_folder, frame, moment->bodies, moment->time);
       if (!fault.empty()) return fault;
     }
     if (picture && !painter->add(std::move(*picture), frame)) return painter->error();
+    shown.push_back(static_cast<int>(projector.time_ahead() * fps + 1e-6));
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
-    progress.show(is_whole_film ? painter->finished_frames() : frame + 1,
+    const int finished = is_whole_film ? painter->finished_frames() : frame + 1;
+    progress.show(finished > 0 ? shown[static_cast<std::size_t>(finished) - 1] : 0,
                   fmt::format("{:.2f} s, {} bodies", world.time(), world.bodies().size()));
   }
-  // The picture of the last frame shows its begin; the world is asked for `seconds` in full.
-  const auto last_step = static_cast<long>(scene.seconds * rate + 0.5);
-  while (world.steps() < last_step && !is_interrupted()) advance();
+  projector.finish();
   return {};
 }
 

@@ -1,3 +1,7 @@
+#include "sandbox/scene/read_event.h"
+
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sandbox/scene/nearest_name.h"
@@ -8,128 +12,53 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kLaterVerbs{"explosion", "grab",   "release", "gravity",
-                                           "speed",     "camera", "overlay", "caption"};
+const std::vector<std::string> kLaterVerbs{"explosion", "grab",    "release", "gravity",
+                                           "camera",    "overlay", "caption"};
 
-std::vector<std::string> body_names(const SceneDescription& scene) {
-  std::vector<std::string> names;
-  for (const BodyEntry& body : scene.bodies) names.push_back(body.name);
-  return names;
-}
+struct VerbKeys {
+  std::string verb;
+  std::vector<std::string> keys;  // beside those of all events
+};
 
-/// The number of the body that an event brings in: a named one (held back from now on), an inline table, or,
-/// for projectiles, a steel ball of 30 mm radius.
-int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
-                     SceneDescription& scene) {
-  const TomlValue* value = reader.value("body");
-  if (value == nullptr && has_default) {
-    BodyEntry ball;
-    ball.place = reader.table().place;
-    ball.name = event_name + " ball";
-    ball.form = SphereForm{0.03};
-    ball.material = find_material("steel", ball.place, scene, reader.problems());
-    ball.is_held_back = true;
-    scene.bodies.push_back(ball);
-    return static_cast<int>(scene.bodies.size()) - 1;
-  }
-  if (value == nullptr) {
-    reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
-                       "add body = \"name\" or body = {kind = \"sphere\", radius = 0.05}");
-    return -1;
-  }
-  if (value->is_table()) {
-    read_body(*value, event_name + " body", true, scene, reader.problems());
-    return static_cast<int>(scene.bodies.size()) - 1;
-  }
-  if (!value->is_text()) {
-    reader.add_problem(value->place,
-                       fmt::format("body must be a name or a table, but is {}", kind_in_words(*value)));
-    return -1;
-  }
-  const int found = find_body(scene, value->text);
-  if (found < 0) {
-    reader.add_problem(value->place, fmt::format("there is no body \"{}\"", value->text),
-                       hint_for_name(value->text, body_names(scene), "bodies"));
-    return -1;
-  }
-  BodyEntry& body = scene.bodies[static_cast<std::size_t>(found)];
-  if (body.motion != body::Motion::dynamic) {
-    reader.add_problem(value->place,
-                       fmt::format("body \"{}\" is {} and cannot be thrown", value->text,
-                                   body.motion == body::Motion::fixed ? "static" : "scripted"),
-                       "give it motion = \"dynamic\"");
-  }
-  body.is_held_back = true;
-  return found;
-}
+const std::vector<VerbKeys> kVerbKeys{
+    {"projectile", {"body", "from", "at_point", "at_body", "speed", "spin"}},
+    {"drop", {"body", "position"}},
+    {"push", {"body", "impulse", "point"}},
+    {"remove", {"body"}},
+    {"speed", {"factor", "ramp"}},
+};
 
-/// The number of the body that an event acts on, -1 with a problem if it names none.
-int read_acted_body(TableReader& reader, const SceneDescription& scene) {
-  const auto name = reader.text("body");
-  if (!name) {
-    if (!reader.has("body"))
-      reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
-                         "add body = \"name\"");
-    return -1;
-  }
-  const int found = find_body(scene, *name);
-  if (found < 0)
-    reader.add_problem_at("body", fmt::format("there is no body \"{}\"", *name),
-                          hint_for_name(*name, body_names(scene), "bodies"));
-  return found;
-}
-
-Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
-  Push push;
-  if (const auto impulse = reader.vector("impulse", between(-1e6, 1e6, "N s"))) {
-    push.impulse = *impulse;
-    if (impulse->squaredNorm() == 0.0)
-      reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
-  } else if (!reader.has("impulse")) {
-    reader.add_problem(reader.table().place, fmt::format("{} has no \"impulse\"", reader.what()),
-                       "add impulse = [x, y, z] (N s)");
-  }
-  push.point = reader.vector("point", between(-1e6, 1e6, "m"));
-  if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
-    reader.add_problem_at("body", "what is static or scripted cannot be pushed",
-                          "give it motion = \"dynamic\"");
-  return push;
-}
-
-Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
-  Projectile projectile;
-  if (const auto from = reader.vector("from", between(-1e6, 1e6, "m"))) {
-    projectile.from = *from;
-  } else if (!reader.has("from")) {
-    reader.add_problem(reader.table().place, fmt::format("{} has no \"from\"", reader.what()),
-                       "add from = [x, y, z]: where it starts");
-  }
-  if (const auto speed = reader.number("speed", between(1e-3, 1e4, "m/s"))) {
-    projectile.speed = *speed;
-  } else if (!reader.has("speed")) {
-    reader.add_problem(reader.table().place, fmt::format("{} has no \"speed\"", reader.what()),
-                       "add speed = 10 (m/s)");
-  }
-  projectile.spin = reader.vector("spin", between(-1e5, 1e5, "rad/s")).value_or(projectile.spin);
-  const auto point = reader.vector("at_point", between(-1e6, 1e6, "m"));
-  const auto body = reader.text("at_body");
-  if (reader.has("at_point") == reader.has("at_body")) {
-    reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
-                       "give either at_point = [x, y, z] or at_body = \"name\"");
-  } else if (body) {
-    const int found = find_body(scene, *body);
-    if (found < 0) {
-      reader.add_problem_at("at_body", fmt::format("there is no body \"{}\"", *body),
-                            hint_for_name(*body, body_names(scene), "bodies"));
-    }
-    projectile.target = found;
-  } else if (point) {
-    projectile.target = *point;
-    if ((*point - projectile.from).norm() < 1e-9) {
-      reader.add_problem_at("at_point", "the target is where the projectile starts", "move from or at_point");
+/// Keys of other verbs, called for after those of its own: the verbs that they are for are named.
+void refuse_other_keys(TableReader& reader) {
+  for (const VerbKeys& row : kVerbKeys) {
+    for (const std::string& key : row.keys) {
+      std::vector<std::string> verbs;
+      for (const VerbKeys& other : kVerbKeys)
+        if (std::find(other.keys.begin(), other.keys.end(), key) != other.keys.end())
+          verbs.push_back(other.verb);
+      reader.foreign({key}, fmt::format("it is for do = {}", quoted_list(verbs)));
     }
   }
-  return projectile;
+}
+
+void read_when(TableReader& reader, EventEntry& event) {
+  const auto at = reader.number("at", between(0.0, 1e6, "s"));
+  const auto when = reader.choice("when", kWhenNames);
+  const auto after = reader.number("after", between(0.0, 1e6, "s"));
+  if (reader.has("at") && reader.has("when")) {
+    reader.add_problem_at("when", fmt::format("{} has both a time and a condition", reader.what()),
+                          "keep at = 0.5 (s), or when = \"rest\" with after = 0.5 (s)");
+    return;
+  }
+  if (!reader.has("at") && !reader.has("when")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no time", reader.what()),
+                       "add at = 0.5 (s), or when = \"first break\" or \"rest\"");
+  }
+  if (reader.has("after") && !reader.has("when"))
+    reader.add_problem_at("after", "a delay needs something to wait for",
+                          "write at = 0.5 (s), or add when = \"first break\"");
+  event.at = at.value_or(after.value_or(0.0));
+  if (when) event.when = *when == "rest" ? When::rest : When::first_break;
 }
 
 }  // namespace
@@ -140,33 +69,30 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   event.place = table.place;
   TableReader reader(table, fmt::format("event \"{}\"", event.name), problems);
   reader.text("name");
-  reader.later({"when"}, "give the time instead: at = 0.5 (s)");
-  if (const auto at = reader.number("at", between(0.0, 1e6, "s"))) {
-    event.at = *at;
-  } else if (!reader.has("at") && !reader.has("when")) {
-    reader.add_problem(table.place, fmt::format("{} has no time", reader.what()), "add at = 0.5 (s)");
-  }
+  read_when(reader, event);
   const auto verb = reader.choice("do", kEventVerbs, kLaterVerbs);
   if (!reader.has("do")) {
     reader.add_problem(table.place, fmt::format("{} does nothing", reader.what()),
                        fmt::format("add do = one of {}", quoted_list(kEventVerbs)));
   }
   if (!verb) return;
-  const bool is_projectile = *verb == "projectile", is_push = *verb == "push";
-  const bool comes_in = is_projectile || *verb == "drop";
-  event.body =
-      comes_in ? read_thrown_body(reader, event.name, is_projectile, scene) : read_acted_body(reader, scene);
-  if (is_projectile) {
+  if (*verb == "projectile") {
+    event.body = read_thrown_body(reader, event.name, true, scene);
     event.action = read_projectile(reader, scene);
     reader.foreign({"position"}, "a projectile starts at \"from\"");
-  } else {
-    reader.foreign({"from", "at_point", "at_body", "speed", "spin"}, "it is for do = \"projectile\"");
+  } else if (*verb == "drop") {
+    event.body = read_thrown_body(reader, event.name, false, scene);
+    event.action = Drop{reader.vector("position", between(-1e6, 1e6, "m"))};
+  } else if (*verb == "push") {
+    event.body = read_acted_body(reader, scene);
+    event.action = read_push(reader, event.body, scene);
+  } else if (*verb == "remove") {
+    event.body = read_acted_body(reader, scene);
+    event.action = Remove{};
+  } else if (*verb == "speed") {
+    event.action = read_speed(reader);
   }
-  if (*verb == "drop") event.action = Drop{reader.vector("position", between(-1e6, 1e6, "m"))};
-  if (!comes_in) reader.foreign({"position"}, "it is for do = \"drop\"");
-  if (is_push) event.action = read_push(reader, event.body, scene);
-  if (!is_push) reader.foreign({"impulse", "point"}, "it is for do = \"push\"");
-  if (*verb == "remove") event.action = Remove{};
+  refuse_other_keys(reader);
   reader.finish();
   scene.events.push_back(std::move(event));
 }

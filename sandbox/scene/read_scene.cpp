@@ -175,10 +175,11 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
   if (scene.bodies.empty() && problems.empty()) {
     book(problems, Place{file, 0, 0}, "the scene has no body", "add a [[body]] with kind = \"shell\"");
   }
-  std::stable_sort(scene.events.begin(), scene.events.end(),
-                   [](const EventEntry& a, const EventEntry& b) { return a.at < b.at; });
+  std::stable_sort(scene.events.begin(), scene.events.end(), [](const EventEntry& a, const EventEntry& b) {
+    return a.when == When::time && (b.when != When::time || a.at < b.at);
+  });
   for (const EventEntry& event : scene.events) {
-    if (event.at < scene.seconds) continue;
+    if (event.when != When::time || event.at < scene.seconds) continue;
     scene.warnings.push_back(
         fmt::format("{}: event \"{}\" at {:g} s comes after the end of the scene at {:g} s",
                     describe(event.place), event.name, event.at, scene.seconds));

@@ -14,6 +14,7 @@
 #include "engine/geometry/generators.h"
 #include "engine/material/material.h"
 #include "engine/world/settings.h"
+#include "sandbox/scene/event_description.h"
 #include "sandbox/scene/problem.h"
 
 namespace shatterbox::sandbox::scene {
@@ -126,29 +127,6 @@ struct BodyEntry {
   bool is_held_back = false;  // an event brings it in; until then it is not in the world
 };
 
-struct Projectile {
-  Vec3 from = Vec3::Zero();
-  std::variant<Vec3, int> target = Vec3(Vec3::Zero());  // a point, or the number of a body
-  double speed = 0.0;
-  Vec3 spin = Vec3::Zero();
-};
-struct Drop {
-  std::optional<Vec3> position;  // nothing: the body's own
-};
-struct Push {
-  Vec3 impulse = Vec3::Zero();  // N s, world
-  std::optional<Vec3> point;    // m, world; nothing: through the centre of mass
-};
-struct Remove {};
-
-struct EventEntry {
-  Place place;
-  std::string name;
-  double at = 0.0;  // s
-  int body = -1;    // number in SceneDescription::bodies: what comes in, is pushed or goes
-  std::variant<Projectile, Drop, Push, Remove> action;
-};
-
 struct CameraKey {
   double at = 0.0;  // s
   Vec3 position = Vec3::Zero(), target = Vec3::Zero();
@@ -188,7 +166,7 @@ struct SceneDescription {
   std::vector<MaterialEntry> materials;
   std::vector<PairEntry> pairs;
   std::vector<BodyEntry> bodies;
-  std::vector<EventEntry> events;  // by time, then in the order of the text
+  std::vector<EventEntry> events;  // by time, then in the order of the text; last, who wait for something
   CameraEntry camera;
   LightEntry light;
   RenderEntry render;
@@ -202,6 +180,5 @@ inline const std::vector<std::string> kLookNames{
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
 inline const std::vector<std::string> kOverlayNames{"none", "stress", "pieces"};
-inline const std::vector<std::string> kEventVerbs{"projectile", "drop", "push", "remove"};
 
 }  // namespace shatterbox::sandbox::scene

@@ -2,40 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
 #include "engine/core/elementary.h"
+#include "sandbox/scene/parts.h"
 #include "sandbox/script/room.h"
 
 namespace shatterbox::sandbox::script {
 
 namespace {
-
-/// What there is now of a body of the scene: itself, its copies, and all their pieces.
-std::vector<const body::Body*> parts_of(const scene::BuiltScene& built, int entry) {
-  std::vector<const body::Body*> parts;
-  for (const body::Body& body : built.world.bodies()) {
-    const auto original = built.origins.find(built.world.ancestry(body.id).original);
-    if (original != built.origins.end() && original->second.entry == entry) parts.push_back(&body);
-  }
-  return parts;
-}
-
-/// Where a body of the scene is now: its centre of mass, or that of all its pieces. Nothing if it is not
-/// there.
-std::optional<Vec3> centre_of(const scene::BuiltScene& built, int entry) {
-  double mass = 0.0;
-  Vec3 moment = Vec3::Zero();
-  std::optional<Vec3> massless;
-  for (const body::Body* body : parts_of(built, entry)) {
-    mass += body->shape->mass;
-    moment += body->shape->mass * body->pose.translation;
-    if (!massless) massless = body->pose.translation;
-  }
-  if (mass <= 0.0) return massless;
-  return Vec3(moment / mass);
-}
 
 /// An impulse at a point goes to the part whose bounding ball is nearest to it; one without a point is shared
 /// by mass. A sentence if there is nothing to push.
@@ -46,7 +23,7 @@ std::string push_bodies(const scene::Push& push, int entry, scene::BuiltScene& b
   };
   std::vector<Share> shares;
   double total = 0.0, least = 1e300;
-  const std::vector<const body::Body*> parts = parts_of(built, entry);
+  const std::vector<const body::Body*> parts = scene::parts_of(built, built.world.bodies(), entry);
   for (const body::Body* part : parts) total += part->shape->mass;
   for (const body::Body* part : parts) {
     const Vec3& centre = part->pose.translation;
@@ -66,9 +43,14 @@ std::string push_bodies(const scene::Push& push, int entry, scene::BuiltScene& b
 /// A sentence if there is nothing to remove.
 std::string remove_bodies(int entry, scene::BuiltScene& built) {
   std::vector<body::BodyId> ids;
-  for (const body::Body* part : parts_of(built, entry)) ids.push_back(part->id);
+  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), entry)) ids.push_back(part->id);
   for (const body::BodyId id : ids) built.world.remove_body(id);
   return ids.empty() ? "its body is not there" : "";
+}
+
+/// When an event that is played now was due, s: as the scene says it, if it says a time.
+double time_of(const scene::EventEntry& event, const scene::BuiltScene& built) {
+  return event.when == scene::When::time ? event.at : built.world.time();
 }
 
 /// The motion of what an event brings in, or a sentence why it cannot be.
@@ -84,7 +66,7 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
   if (const auto* point = std::get_if<Vec3>(&projectile.target)) {
     target = *point;
   } else {
-    const auto centre = centre_of(built, std::get<int>(projectile.target));
+    const auto centre = scene::centre_of(built, built.world.bodies(), std::get<int>(projectile.target));
     if (!centre) return core::Error{"its target is not there"};
     target = *centre;
   }
@@ -97,7 +79,7 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
   if (!velocity) {
     faults.push_back(fmt::format(
         "event \"{}\" at {:g} s: at {:g} m/s it cannot reach its target {:.3g} m away; thrown straight at it",
-        event.name, event.at, projectile.speed, distance));
+        event.name, time_of(event, built), projectile.speed, distance));
   }
   description.angular_velocity = projectile.spin;
   return description;
@@ -111,7 +93,9 @@ long step_of(double seconds, double rate) {
 
 }  // namespace
 
-Script::Script(const scene::SceneDescription& scene) : scene_(scene), throws_(scene.bodies.size(), 0) {
+Script::Script(const scene::SceneDescription& scene)
+    : scene_(scene), coming_(scene.events.size()), throws_(scene.bodies.size(), 0) {
+  std::iota(coming_.begin(), coming_.end(), std::size_t{0});
   for (std::size_t entry = 0; entry < scene.bodies.size(); ++entry) {
     const scene::BodyEntry& body = scene.bodies[entry];
     if (body.repeat.every <= 0.0 || body.is_held_back) continue;
@@ -139,21 +123,47 @@ std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& 
   return {};
 }
 
-void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& faults) {
-  const double rate = built.world.settings().steps_per_second;
-  for (; next_ < scene_.events.size(); ++next_) {
-    const scene::EventEntry& event = scene_.events[next_];
-    if (step_of(event.at, rate) > built.world.steps()) break;
-    std::string fault;
-    if (const auto* push = std::get_if<scene::Push>(&event.action))
-      fault = push_bodies(*push, event.body, built);
-    else if (std::holds_alternative<scene::Remove>(event.action))
-      fault = remove_bodies(event.body, built);
-    else
-      fault = bring_in(event, built, faults);
-    if (!fault.empty())
-      faults.push_back(fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, event.at, fault));
+std::vector<std::size_t> Script::take_due(const world::World& world) {
+  conditions_.look(world);
+  std::vector<std::pair<long, std::size_t>> due;
+  std::erase_if(coming_, [&](std::size_t number) {
+    const scene::EventEntry& event = scene_.events[number];
+    const auto since = conditions_.since(event.when);
+    if (!since) return false;
+    const long step = *since + step_of(event.at, world.settings().steps_per_second);
+    if (step <= world.steps()) due.emplace_back(step, number);
+    return step <= world.steps();
+  });
+  std::sort(due.begin(), due.end());
+  std::vector<std::size_t> numbers;
+  for (const auto& [step, number] : due) numbers.push_back(number);
+  return numbers;
+}
+
+std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene& built,
+                               std::vector<std::string>& faults) {
+  if (const auto* push = std::get_if<scene::Push>(&event.action))
+    return push_bodies(*push, event.body, built);
+  if (std::holds_alternative<scene::Remove>(event.action)) return remove_bodies(event.body, built);
+  if (const auto* speed = std::get_if<scene::Speed>(&event.action)) {
+    clock_.change(clock_.film_at(built.world.time()), speed->factor, speed->ramp);
+    return {};
   }
+  return bring_in(event, built, faults);
+}
+
+void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& faults) {
+  for (const std::size_t number : take_due(built.world)) {
+    const scene::EventEntry& event = scene_.events[number];
+    const std::string fault = play_event(event, built, faults);
+    if (!fault.empty())
+      faults.push_back(
+          fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, time_of(event, built), fault));
+  }
+}
+
+bool Script::is_over() const {
+  return coming_.empty() && next_copy_ == copies_.size() && waiting_.empty();
 }
 
 void Script::bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults) {

@@ -9,6 +9,8 @@
 
 #include "sandbox/scene/build_world.h"
 #include "sandbox/scene/scene_description.h"
+#include "sandbox/script/conditions.h"
+#include "sandbox/script/film_clock.h"
 
 namespace shatterbox::sandbox::script {
 
@@ -22,9 +24,11 @@ class Script {
   /// refused. Returns what could not be done, in sentences.
   std::vector<std::string> play(scene::BuiltScene& built);
 
-  bool is_over() const {
-    return next_ == scene_.events.size() && next_copy_ == copies_.size() && waiting_.empty();
-  }
+  /// Whether nothing is left to come.
+  bool is_over() const;
+
+  /// What the film shows when.
+  const FilmClock& clock() const { return clock_; }
 
  private:
   /// A copy of a body that comes in later than the first.
@@ -37,6 +41,11 @@ class Script {
 
   void bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults);
   void play_events(scene::BuiltScene& built, std::vector<std::string>& faults);
+  /// The events that are due, in the order of their times, then of the scene.
+  std::vector<std::size_t> take_due(const world::World& world);
+  /// A sentence why it could not be done, or nothing.
+  std::string play_event(const scene::EventEntry& event, scene::BuiltScene& built,
+                         std::vector<std::string>& faults);
   /// A sentence why it could not be done, or nothing.
   std::string bring_in(const scene::EventEntry& event, scene::BuiltScene& built,
                        std::vector<std::string>& faults);
@@ -44,7 +53,10 @@ class Script {
   const scene::SceneDescription& scene_;
   std::vector<LateCopy> copies_;   // ascending in time
   std::vector<LateCopy> waiting_;  // due, but something is in the way
-  std::size_t next_ = 0, next_copy_ = 0;
+  std::size_t next_copy_ = 0;
+  std::vector<std::size_t> coming_;  // events that have not been played
+  Conditions conditions_;
+  FilmClock clock_;
   std::vector<int> throws_;  // per [[body]]: how often it was brought in
 };
 

@@ -1,6 +1,7 @@
 #include "sandbox/view/view.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -203,23 +204,29 @@ void View::add_body(const body::Body& body, render::Frame& frame) {
   frame.draws.push_back(std::move(draw));
 }
 
-render::Frame View::make_frame() {
+std::string View::standard_caption(const Moment& moment) const {
+  const auto pieces =
+      std::count_if(moment.bodies.begin(), moment.bodies.end(),
+                    [this](const body::Body& body) { return built_.world.ancestry(body.id).parent != 0; });
+  std::string text = fmt::format("{:.2f} s   {} bodies", moment.time, moment.bodies.size());
+  if (pieces > 0) text += fmt::format("   {} pieces", pieces);
+  if (std::abs(moment.factor - 1.0) > 5e-4) text += fmt::format("   speed {:.3g}", moment.factor);
+  return text;
+}
+
+render::Frame View::make_frame(const Moment& moment) {
   ++frame_;
   render::Frame frame = stage_;
-  const world::World& world = built_.world;
-  frame.camera = camera_at(scene_.camera, subject_, world.time());
-  int pieces = 0;
-  for (const body::Body& body : world.bodies()) {
-    add_body(body, frame);
-    if (world.ancestry(body.id).parent != 0) ++pieces;
-  }
+  frame.camera = camera_at(scene_.camera, subject_, moment.time);
+  for (const body::Body& body : moment.bodies) add_body(body, frame);
   std::erase_if(shapes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
-  if (scene_.render.has_caption) {
-    frame.caption = fmt::format("{:.2f} s   {} {}", world.time(),
-                                pieces > 0 ? pieces : static_cast<int>(world.bodies().size()),
-                                pieces > 0 ? "pieces" : "bodies");
-  }
+  if (scene_.render.has_caption) frame.caption = standard_caption(moment);
   return frame;
+}
+
+render::Frame View::make_frame() {
+  const double time = built_.world.time();
+  return make_frame({time, time, 1.0, built_.world.bodies()});
 }
 
 }  // namespace shatterbox::sandbox::view

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "engine/body/shape.h"
@@ -15,11 +17,21 @@
 
 namespace shatterbox::sandbox::view {
 
+/// What a frame of the film shows.
+struct Moment {
+  double film = 0.0;    // s of the film
+  double time = 0.0;    // s of the world
+  double factor = 1.0;  // seconds of the world in a second of the film
+  std::span<const body::Body> bodies;
+};
+
 class View {
  public:
   /// `scene` and `built` must outlive the view.
   View(const scene::SceneDescription& scene, const scene::BuiltScene& built);
 
+  /// The picture of a moment, which is now or at most a step ago.
+  render::Frame make_frame(const Moment& moment);
   /// The picture of the world as it is now.
   render::Frame make_frame();
 
@@ -33,6 +45,8 @@ class View {
   std::shared_ptr<const render::Mesh> mesh_of(const std::shared_ptr<const body::Shape>& shape);
   const std::vector<render::Look>& looks_of(body::BodyId original);
   bool is_hidden(body::BodyId original) const;
+  /// Time, bodies, pieces, and how fast the film goes where it is not as the world does.
+  std::string standard_caption(const Moment& moment) const;
   void add_body(const body::Body& body, render::Frame& frame);
 
   const scene::SceneDescription& scene_;

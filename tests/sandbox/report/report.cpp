@@ -5,6 +5,7 @@
 
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
+#include "engine/world/world.h"
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/obj_frames.h"
 #include "sandbox/report/statistics.h"
@@ -52,11 +53,11 @@ RunRecord some_record() {
 TEST_CASE("the report has the fields of its description, by name") {
   const auto json = make_json(some_record());
   for (const char* name :
-       {"report_version", "version",   "scene",      "seed",         "steps",   "simulated_seconds",
-        "wall_seconds",   "threads",   "state_hash", "frame_hashes", "bodies",  "pieces",
-        "merged",         "triangles", "impacts",    "breaks",       "contact", "conservation",
-        "solver",         "used",      "left_out",   "time_ms",      "load_ms", "peak_memory_mb",
-        "warnings"}) {
+       {"report_version", "version",      "scene",     "seed",       "steps",        "simulated_seconds",
+        "video_seconds",  "wall_seconds", "threads",   "state_hash", "frame_hashes", "bodies",
+        "pieces",         "merged",       "triangles", "impacts",    "breaks",       "contact",
+        "conservation",   "solver",       "used",      "left_out",   "time_ms",      "load_ms",
+        "peak_memory_mb", "warnings"}) {
     INFO(name);
     CHECK(json.contains(name));
   }
@@ -172,7 +173,7 @@ TEST_CASE("an OBJ frame has a group a body, in world space, to the bit") {
   box.material = material.value();
   box.pose.translation = Vec3(1.0 / 3.0, 2.0, 3.0);
   REQUIRE(world.add_body(box).ok());
-  const std::string text = make_obj(world);
+  const std::string text = make_obj(world.bodies(), world.time());
   CHECK(text.find("o a_box#1\n") != std::string::npos);
   std::istringstream stream(text);
   std::string line;

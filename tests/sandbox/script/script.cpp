@@ -3,24 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "sandbox/scene/build_world.h"
-#include "tests/sandbox/scene/reading.h"
+#include "tests/sandbox/script/building.h"
 
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
-
-namespace {
-
-std::optional<scene::BuiltScene> build(const scene::Reading& reading) {
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
-  return built;
-}
-
-}  // namespace
 
 TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
   for (const Vec3& gravity : {Vec3(0, -9.81, 0), Vec3(0, 0, 0), Vec3(3, -1, 2)}) {

@@ -1,0 +1,70 @@
+#include "sandbox/run/projector.h"
+
+#include <cmath>
+
+#include "sandbox/run/interrupt.h"
+#include "sandbox/script/between.h"
+
+namespace shatterbox::sandbox::run {
+
+Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& built, Recorder& recorder,
+                     bool has_audit, int frames_per_second)
+    : scene_(scene),
+      built_(built),
+      recorder_(recorder),
+      script_(scene),
+      inspector_(has_audit, recorder.record),
+      frames_per_second_(frames_per_second) {
+  if (has_audit) built_.world.keep_ways();
+}
+
+double Projector::steps_at(double film) const {
+  const double steps = script_.clock().simulated_at(film) * scene_.world.steps_per_second;
+  const double whole = std::floor(steps + 0.5);
+  return std::abs(steps - whole) < 1e-6 ? whole : steps;
+}
+
+void Projector::step(double film) {
+  world::World& world = built_.world;
+  for (std::string& fault : script_.play(built_)) recorder_.record.warnings.push_back(std::move(fault));
+  if (steps_at(film) < static_cast<double>(world.steps() + 1)) {
+    before_.assign(world.bodies().begin(), world.bodies().end());
+    steps_before_ = world.steps();
+  }
+  inspector_.begin_step(world);
+  world.step();
+  inspector_.end_step(world);
+}
+
+double Projector::time_ahead() const {
+  return script_.clock().simulated_at(static_cast<double>(frame_ + 1) / frames_per_second_);
+}
+
+std::optional<view::Moment> Projector::next() {
+  const double length = 1.0 / frames_per_second_;
+  const double film = static_cast<double>(++frame_) / frames_per_second_;
+  world::World& world = built_.world;
+  // A frame whose first half is beyond the end is none.
+  const auto is_over = [&] {
+    return frame_ > 0 && script_.clock().simulated_at(film + 0.5 * length) > scene_.seconds * (1.0 + 1e-12);
+  };
+  while (!is_over() && static_cast<double>(world.steps()) < steps_at(film) && !is_interrupted()) {
+    step(film);
+    recorder_.note_step(world);
+  }
+  if (is_over() || is_interrupted()) return std::nullopt;
+  const script::FilmClock& clock = script_.clock();
+  view::Moment moment{film, clock.simulated_at(film), clock.factor_at(film), world.bodies()};
+  if (const double steps = steps_at(film); steps < static_cast<double>(world.steps())) {
+    between_ = script::bodies_between(before_, world, steps - static_cast<double>(steps_before_));
+    moment.bodies = between_;
+  }
+  return moment;
+}
+
+void Projector::finish() {
+  const auto last_step = static_cast<long>(scene_.seconds * scene_.world.steps_per_second + 0.5);
+  while (built_.world.steps() < last_step && !is_interrupted()) step(1e300);
+}
+
+}  // namespace shatterbox::sandbox::run

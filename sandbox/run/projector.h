@@ -1,0 +1,48 @@
+// Steps a world from frame to frame of its film: the script plays, the world steps, and a frame shows the
+// moment that is due, between two steps too.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sandbox/run/inspector.h"
+#include "sandbox/run/recorder.h"
+#include "sandbox/scene/build_world.h"
+#include "sandbox/script/script.h"
+#include "sandbox/view/view.h"
+
+namespace shatterbox::sandbox::run {
+
+class Projector {
+ public:
+  /// All must outlive it.
+  Projector(const scene::SceneDescription& scene, scene::BuiltScene& built, Recorder& recorder,
+            bool has_audit, int frames_per_second);
+
+  /// Steps to the next frame's moment, which is good until the next call; nothing when the film is over.
+  std::optional<view::Moment> next();
+
+  /// The world's time that the frame after the last one will show, s, unless the script changes that.
+  double time_ahead() const;
+
+  /// Steps on to the end of the scene: the last frame's picture shows its begin.
+  void finish();
+
+ private:
+  void step(double film);
+  /// The step border, in steps, of a moment of the film; whole where it is one.
+  double steps_at(double film) const;
+
+  const scene::SceneDescription& scene_;
+  scene::BuiltScene& built_;
+  Recorder& recorder_;
+  script::Script script_;
+  Inspector inspector_;
+  int frames_per_second_;
+  int frame_ = -1;
+  std::vector<body::Body> before_;  // before the last step, if a frame shows a moment within it
+  long steps_before_ = -1;
+  std::vector<body::Body> between_;
+};
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,57 @@
+// The events of a scene as plain data: when, and what. Lengths in metres, SI units, y up. Times of what
+// happens in the world are simulated seconds; how long a picture's doings last is in seconds of the film.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "sandbox/scene/problem.h"
+
+namespace shatterbox::sandbox::scene {
+
+struct Projectile {
+  Vec3 from = Vec3::Zero();
+  std::variant<Vec3, int> target = Vec3(Vec3::Zero());  // a point, or the number of a body
+  double speed = 0.0;
+  Vec3 spin = Vec3::Zero();
+};
+struct Drop {
+  std::optional<Vec3> position;  // nothing: the body's own
+};
+struct Push {
+  Vec3 impulse = Vec3::Zero();  // N s, world
+  std::optional<Vec3> point;    // m, world; nothing: through the centre of mass
+};
+struct Remove {};
+
+/// Slow motion: the film's seconds show `factor` times as many of the world's.
+struct Speed {
+  double factor = 1.0;
+  double ramp = 0.0;  // s of the film, from the old factor to this one
+};
+
+enum class When : std::uint8_t {
+  time,         // at `at`
+  first_break,  // `at` after the step in which something first breaks
+  rest,         // `at` after everything that can move has been quiet for kRestTime
+};
+
+inline constexpr double kRestTime = 0.5;  // s
+
+struct EventEntry {
+  Place place;
+  std::string name;
+  When when = When::time;
+  double at = 0.0;  // s
+  int body = -1;    // number in SceneDescription::bodies: what comes in, is pushed or goes
+  std::variant<Projectile, Drop, Push, Remove, Speed> action;
+};
+
+inline const std::vector<std::string> kWhenNames{"first break", "rest"};
+inline const std::vector<std::string> kEventVerbs{"projectile", "drop", "push", "remove", "speed"};
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,28 @@
+#include "sandbox/scene/parts.h"
+
+namespace shatterbox::sandbox::scene {
+
+std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const body::Body> bodies,
+                                        int entry) {
+  std::vector<const body::Body*> parts;
+  for (const body::Body& body : bodies) {
+    const auto original = built.origins.find(built.world.ancestry(body.id).original);
+    if (original != built.origins.end() && original->second.entry == entry) parts.push_back(&body);
+  }
+  return parts;
+}
+
+std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry) {
+  double mass = 0.0;
+  Vec3 moment = Vec3::Zero();
+  std::optional<Vec3> massless;
+  for (const body::Body* body : parts_of(built, bodies, entry)) {
+    mass += body->shape->mass;
+    moment += body->shape->mass * body->pose.translation;
+    if (!massless) massless = body->pose.translation;
+  }
+  if (mass <= 0.0) return massless;
+  return Vec3(moment / mass);
+}
+
+}  // namespace shatterbox::sandbox::scene

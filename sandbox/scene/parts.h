@@ -1,0 +1,19 @@
+// What there is now of a body of the scene: itself, its copies, and all their pieces.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sandbox/scene/build_world.h"
+
+namespace shatterbox::sandbox::scene {
+
+/// Those of `bodies` (of the world of `built`, at some time) that are body number `entry` or came from it.
+std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const body::Body> bodies,
+                                        int entry);
+
+/// Where the body is: its centre of mass, or that of all its pieces, m. Nothing if it is not there.
+std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry);
+
+}  // namespace shatterbox::sandbox::scene

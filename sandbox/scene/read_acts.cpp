@@ -1,0 +1,132 @@
+#include "sandbox/scene/read_event.h"
+
+#include <fmt/format.h>
+
+#include "sandbox/scene/nearest_name.h"
+#include "sandbox/scene/read_body.h"
+
+namespace shatterbox::sandbox::scene {
+
+namespace {
+
+std::vector<std::string> body_names(const SceneDescription& scene) {
+  std::vector<std::string> names;
+  for (const BodyEntry& body : scene.bodies) names.push_back(body.name);
+  return names;
+}
+
+}  // namespace
+
+int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
+                     SceneDescription& scene) {
+  const TomlValue* value = reader.value("body");
+  if (value == nullptr && has_default) {
+    BodyEntry ball;
+    ball.place = reader.table().place;
+    ball.name = event_name + " ball";
+    ball.form = SphereForm{0.03};
+    ball.material = find_material("steel", ball.place, scene, reader.problems());
+    ball.is_held_back = true;
+    scene.bodies.push_back(ball);
+    return static_cast<int>(scene.bodies.size()) - 1;
+  }
+  if (value == nullptr) {
+    reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
+                       "add body = \"name\" or body = {kind = \"sphere\", radius = 0.05}");
+    return -1;
+  }
+  if (value->is_table()) {
+    read_body(*value, event_name + " body", true, scene, reader.problems());
+    return static_cast<int>(scene.bodies.size()) - 1;
+  }
+  if (!value->is_text()) {
+    reader.add_problem(value->place,
+                       fmt::format("body must be a name or a table, but is {}", kind_in_words(*value)));
+    return -1;
+  }
+  const int found = find_body(scene, value->text);
+  if (found < 0) {
+    reader.add_problem(value->place, fmt::format("there is no body \"{}\"", value->text),
+                       hint_for_name(value->text, body_names(scene), "bodies"));
+    return -1;
+  }
+  BodyEntry& body = scene.bodies[static_cast<std::size_t>(found)];
+  if (body.motion != body::Motion::dynamic) {
+    reader.add_problem(value->place,
+                       fmt::format("body \"{}\" is {} and cannot be thrown", value->text,
+                                   body.motion == body::Motion::fixed ? "static" : "scripted"),
+                       "give it motion = \"dynamic\"");
+  }
+  body.is_held_back = true;
+  return found;
+}
+
+int read_acted_body(TableReader& reader, const SceneDescription& scene) {
+  const auto name = reader.text("body");
+  if (!name) {
+    if (!reader.has("body"))
+      reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
+                         "add body = \"name\"");
+    return -1;
+  }
+  const int found = find_body(scene, *name);
+  if (found < 0)
+    reader.add_problem_at("body", fmt::format("there is no body \"{}\"", *name),
+                          hint_for_name(*name, body_names(scene), "bodies"));
+  return found;
+}
+
+Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
+  Push push;
+  if (const auto impulse = reader.vector("impulse", between(-1e6, 1e6, "N s"))) {
+    push.impulse = *impulse;
+    if (impulse->squaredNorm() == 0.0)
+      reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
+  } else if (!reader.has("impulse")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"impulse\"", reader.what()),
+                       "add impulse = [x, y, z] (N s)");
+  }
+  push.point = reader.vector("point", between(-1e6, 1e6, "m"));
+  if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
+    reader.add_problem_at("body", "what is static or scripted cannot be pushed",
+                          "give it motion = \"dynamic\"");
+  return push;
+}
+
+Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
+  Projectile projectile;
+  if (const auto from = reader.vector("from", between(-1e6, 1e6, "m"))) {
+    projectile.from = *from;
+  } else if (!reader.has("from")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"from\"", reader.what()),
+                       "add from = [x, y, z]: where it starts");
+  }
+  if (const auto speed = reader.number("speed", between(1e-3, 1e4, "m/s"))) {
+    projectile.speed = *speed;
+  } else if (!reader.has("speed")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"speed\"", reader.what()),
+                       "add speed = 10 (m/s)");
+  }
+  projectile.spin = reader.vector("spin", between(-1e5, 1e5, "rad/s")).value_or(projectile.spin);
+  const auto point = reader.vector("at_point", between(-1e6, 1e6, "m"));
+  const auto body = reader.text("at_body");
+  if (reader.has("at_point") == reader.has("at_body")) {
+    reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
+                       "give either at_point = [x, y, z] or at_body = \"name\"");
+  } else if (body) {
+    const int found = find_body(scene, *body);
+    if (found < 0) {
+      reader.add_problem_at("at_body", fmt::format("there is no body \"{}\"", *body),
+                            hint_for_name(*body, body_names(scene), "bodies"));
+    }
+    projectile.target = found;
+  } else if (point) {
+    projectile.target = *point;
+    if ((*point - projectile.from).norm() < 1e-9) {
+      reader.add_problem_at("at_point", "the target is where the projectile starts", "move from or at_point");
+    }
+  }
+  return projectile;
+}
+
+}  // namespace shatterbox::sandbox::scene

@@ -1,0 +1,24 @@
+// What single verbs of [[event]] say beside when they happen. Each declares its keys as known to the reader.
+#pragma once
+
+#include <string>
+
+#include "sandbox/scene/scene_description.h"
+#include "sandbox/scene/table_reader.h"
+
+namespace shatterbox::sandbox::scene {
+
+/// The number of the body that an event brings in: a named one (held back from now on), an inline table, or,
+/// if there `has_default`, a steel ball of 30 mm radius. -1 with a problem if there is none.
+int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
+                     SceneDescription& scene);
+
+/// The number of the body that an event acts on, -1 with a problem if it names none.
+int read_acted_body(TableReader& reader, const SceneDescription& scene);
+
+Projectile read_projectile(TableReader& reader, SceneDescription& scene);
+Push read_push(TableReader& reader, int body, const SceneDescription& scene);
+
+Speed read_speed(TableReader& reader);
+
+}  // namespace shatterbox::sandbox::scene
