@@ -82,7 +82,9 @@ int run_study(const StudyOptions& options) {
     fmt::print(stderr, "failed: {}\n", fault);
     return kFailed;
   }
-  const std::string plot_fault = study::draw_plot(result.tables, study->what, study->name, folder);
+  std::string plot_fault = study::draw_plot(result.tables, study->what, study->name, folder);
+  for (const study::Figure& figure : result.figures)
+    if (plot_fault.empty()) plot_fault = study::draw_figure(figure, study->name, folder);
   fmt::print("{}\n{}/{}.csv .txt{}\n", study::describe(result), folder, study->name,
              plot_fault.empty() ? " .png .svg" : "");
   if (!plot_fault.empty()) fmt::print(stderr, "{}\n", plot_fault);

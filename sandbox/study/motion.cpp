@@ -183,7 +183,7 @@ Plan make_plan(bool is_quick) {
   Plan plan;
   Table top = table_of("top", "a free asymmetric box spins for 10 s, against Jacobi's elliptic functions",
                        {"spin", "angular momentum"});
-  top.theory = 4.0;  // of the composition [free_motion.h]
+  top.theory = {4.0};  // of the composition [free_motion.h]
   add_table(plan, top, rates, spin_freely);
   add_table(plan,
             table_of("throw", "a spinning box thrown, after 2 s, against the parabola", {"place", "speed"}),
@@ -201,13 +201,13 @@ Plan make_plan(bool is_quick) {
       "bounce",
       "a ball of restitution 0.8 dropped from 1 to 1.1 m (worst of 8), 1.9 s later, against its parabolas",
       {"height", "energy"});
-  ball.theory = 1.0;
+  ball.theory = {1.0};
   add_table(plan, ball, rates,
             [](int rate) { return worst_of_starts([rate](double h) { return bounce(rate, h); }, 1.0); });
   Table rolling =
       table_of("roll", "a ball sent sliding at 2 to 2.2 m/s (worst of 8) rolls at 5/7 of it, after a second",
                {"place", "speed", "slip"});
-  rolling.theory = 2.0;  // a constant force, but for one piece of a step
+  rolling.theory = {2.0};  // a constant force, but for one piece of a step
   add_table(plan, rolling, rates,
             [](int rate) { return worst_of_starts([rate](double v) { return roll(rate, v); }, 2.0); });
   return plan;

@@ -18,8 +18,9 @@ struct Order {
 };
 
 /// Fits the order of error number `error` by least squares of logarithms. The asymptotic part is the longest
-/// run of neighbouring rows (by value; at least three, of equals the straightest) over which the order from each
-/// row to the next stays near that of the fit. Nothing without such a run, or where it gains next to nothing.
+/// run of neighbouring rows (by value; at least three, of equals the straightest) over which the order from
+/// each row to the next stays near that of the fit. Nothing without such a run, or where it gains next to
+/// nothing.
 std::optional<Order> fit_order(const Table& table, std::size_t error);
 
 /// Number of the row of least run time among those from which on (finer, by value; without values: that) the

@@ -35,6 +35,30 @@ std::string data_block(const std::string& name, const Table& table, bool is_defa
   return text + "EOD\n";
 }
 
+/// A sentence if gnuplot cannot draw it, else empty.
+std::string run_gnuplot(const std::string& commands, const std::filesystem::path& folder) {
+  // The shell goes to the folder by its own variable, so that no name needs to be quoted.
+  setenv("SHATTERBOX_PLOTS", folder.c_str(), 1);
+  std::FILE* gnuplot = popen("cd \"$SHATTERBOX_PLOTS\" && exec gnuplot 2>/dev/null", "w");
+  if (gnuplot == nullptr) return "no plot: gnuplot could not be started";
+  std::fwrite(commands.data(), 1, commands.size(), gnuplot);
+  const int status = pclose(gnuplot);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    return "no plot: gnuplot is not installed (Debian: apt install gnuplot-nox)";
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "no plot: gnuplot could not draw it";
+  return {};
+}
+
+/// The same curves as PNG and as SVG.
+std::string to_both(const std::string& curves, const std::string& name) {
+  const auto output = [&](const char* terminal, const char* ending) {
+    return fmt::format("set terminal {}\nset output {}\n{}\nunset output\n", terminal, quoted(name + ending),
+                       curves);
+  };
+  return output("pngcairo size 900,520 font \"sans,10\"", ".png") +
+         output("svg size 900,520 font \"sans,12\"", ".svg");
+}
+
 }  // namespace
 
 std::string plot_commands(const std::vector<Table>& tables, const std::string& title,
@@ -64,29 +88,34 @@ std::string plot_commands(const std::vector<Table>& tables, const std::string& t
                      "set xlabel \"processor time, s\"\nset ylabel \"error\"\nset grid lc rgb \"#dddddd\"\n"
                      "set key outside right noenhanced\nset title noenhanced " +
                      quoted(title + " (ringed: the default)") + "\n";
-  const auto output = [&](const char* terminal, const char* ending) {
-    return fmt::format("set terminal {}\nset output {}\n{}\nunset output\n", terminal, quoted(name + ending),
-                       curves);
-  };
-  text += output("pngcairo size 900,520 font \"sans,10\"", ".png");
-  text += output("svg size 900,520 font \"sans,12\"", ".svg");
-  return text;
+  return text + to_both(curves, name);
 }
 
 std::string draw_plot(const std::vector<Table>& tables, const std::string& title, const std::string& name,
                       const std::filesystem::path& folder) {
   const std::string commands = plot_commands(tables, title, name);
   if (commands.empty()) return "nothing to plot: no row has both an error and a time";
-  // The shell goes to the folder by its own variable, so that no name needs to be quoted.
-  setenv("SHATTERBOX_PLOTS", folder.c_str(), 1);
-  std::FILE* gnuplot = popen("cd \"$SHATTERBOX_PLOTS\" && exec gnuplot 2>/dev/null", "w");
-  if (gnuplot == nullptr) return "no plot: gnuplot could not be started";
-  std::fwrite(commands.data(), 1, commands.size(), gnuplot);
-  const int status = pclose(gnuplot);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return "no plot: gnuplot is not installed (Debian: apt install gnuplot-nox)";
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "no plot: gnuplot could not draw it";
-  return {};
+  return run_gnuplot(commands, folder);
+}
+
+std::string draw_figure(const Figure& figure, const std::string& name, const std::filesystem::path& folder) {
+  std::string commands, curves;
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    const Figure::Curve& curve = figure.curves[i];
+    commands += fmt::format("$c{} << EOD\n", i);
+    for (std::size_t k = 0; k < curve.x.size(); ++k)
+      if (std::isfinite(curve.y[k])) commands += fmt::format("{:.6g} {:.6g}\n", curve.x[k], curve.y[k]);
+    commands += "EOD\n";
+    curves += fmt::format("{}$c{} using 1:2 with linespoints lt {} pt 7 ps 0.4 lw 1.5 title {}",
+                          i == 0 ? "plot " : ", ", i, i + 1, quoted(curve.name));
+  }
+  if (curves.empty()) return {};
+  commands += fmt::format(
+      "{}set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid lc rgb \"#dddddd\"\n"
+      "set key outside right noenhanced\nset title {} noenhanced\n",
+      figure.is_logarithmic ? "set logscale xy\n" : "", quoted(figure.x_label), quoted(figure.y_label),
+      quoted(figure.title));
+  return run_gnuplot(commands + to_both(curves, name + "_" + figure.name), folder);
 }
 
 }  // namespace shatterbox::sandbox::study

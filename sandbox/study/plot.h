@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sandbox/study/table.h"
+#include "sandbox/study/study.h"
 
 namespace shatterbox::sandbox::study {
 
@@ -13,6 +13,9 @@ namespace shatterbox::sandbox::study {
 /// in `folder`; the default's rows are ringed. A sentence if it cannot (no gnuplot), else empty.
 std::string draw_plot(const std::vector<Table>& tables, const std::string& title, const std::string& name,
                       const std::filesystem::path& folder);
+
+/// The same for a figure: NAME_FIGURE.png and .svg.
+std::string draw_figure(const Figure& figure, const std::string& name, const std::filesystem::path& folder);
 
 /// The commands for gnuplot; empty where there is nothing to draw.
 std::string plot_commands(const std::vector<Table>& tables, const std::string& title,

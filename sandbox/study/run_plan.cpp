@@ -46,6 +46,7 @@ StudyResult run_plan(const Plan& plan, const RunSettings& settings) {
   }
   if (settings.go_on) settings.go_on(total, total, "");
   if (plan.conclude) result.conclusions = plan.conclude(result.tables);
+  if (plan.draw) result.figures = plan.draw();
   return result;
 }
 

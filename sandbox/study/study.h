@@ -25,11 +25,24 @@ struct Job {
   std::function<Measured()> measure;
 };
 
+/// A picture of its own, beside error against run time.
+struct Figure {
+  struct Curve {
+    std::string name;
+    std::vector<double> x, y;
+  };
+  std::string name;  // of the file, behind the study's
+  std::string title, x_label, y_label;
+  bool is_logarithmic = false;  // both axes
+  std::vector<Curve> curves;
+};
+
 struct Plan {
   std::vector<Table> tables;  // without rows: the jobs bring them
   std::vector<Job> jobs;
   /// More to be said when all is measured: sentences, each of which follows from numbers of the tables.
   std::function<std::vector<std::string>(const std::vector<Table>&)> conclude;
+  std::function<std::vector<Figure>()> draw;  // after all jobs
 };
 
 struct Study {
@@ -50,6 +63,7 @@ struct RunSettings {
 struct StudyResult {
   std::vector<Table> tables;
   std::vector<std::string> conclusions;
+  std::vector<Figure> figures;
   bool is_whole = true;  // false: stopped before its end
 };
 

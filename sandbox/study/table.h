@@ -2,7 +2,6 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +26,8 @@ struct Table {
   std::string setting_name;              // "steps a second"
   std::string value_name;                // what `value` is, "step, s"; empty: the rows have none
   std::vector<std::string> error_names;  // the first one decides which setting is good enough
-  std::optional<double> theory;          // the order in `value` that theory gives the first error
-  bool is_relative = true;               // the first error is a share: 1 % means something
+  std::vector<double> theory;  // the order in `value` that theory gives each error; NaN, or too short: none
+  bool is_relative = true;     // the first error is a share: 1 % means something
   bool is_plotted = true;
   std::vector<Row> rows;
 };

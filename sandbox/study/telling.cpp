@@ -17,6 +17,13 @@ std::string error_text(const Table& table, double error) {
   return table.is_relative ? percent(error) : fmt::format("{:.3g}", error);
 }
 
+/// Of an error behind the first, or a count.
+std::string number_text(double number) {
+  if (std::isnan(number)) return "-";
+  const bool is_count = std::abs(number) < 1e7 && number == std::floor(number);
+  return is_count ? fmt::format("{:.0f}", number) : fmt::format("{:.3g}", number);
+}
+
 double first_error(const Row& row) {
   return row.errors.empty() ? kNoNumber : std::abs(row.errors[0]);
 }
@@ -33,29 +40,44 @@ bool is_exact(const Table& table) {
                                             [](const Row& row) { return first_error(row) < 1e-12; });
 }
 
+std::string theory_text(const Table& table, std::size_t error) {
+  if (error >= table.theory.size() || std::isnan(table.theory[error])) return "";
+  return fmt::format("; theory: {:g}", table.theory[error]);
+}
+
+/// Orders of the errors behind the first, where theory has one.
+std::string other_orders(const Table& table) {
+  std::string text;
+  for (std::size_t e = 1; e < table.theory.size(); ++e) {
+    const auto order = fit_order(table, e);
+    if (!order || theory_text(table, e).empty()) continue;
+    text += fmt::format(" {}: order {:.2f} over {} settings{}.", table.error_names[e], order->order,
+                        order->rows.size(), theory_text(table, e));
+  }
+  return text;
+}
+
 std::string order_sentence(const Table& table) {
-  if (table.rows.size() < 2 || table.value_name.empty()) return "";
+  if (table.rows.size() < 3 || table.value_name.empty()) return "";
   if (is_exact(table)) return "Right to rounding at every setting: there is no order to fit.";
   const auto order = fit_order(table, 0);
   if (!order) {
-    if (table.rows.size() < 3) return "";
     double least = 1e300, most = 0.0;
     for (const Row& row : table.rows) {
       if (std::isnan(first_error(row))) continue;
       least = std::min(least, first_error(row));
       most = std::max(most, first_error(row));
     }
-    return fmt::format("No order of convergence is seen: the error lies between {} and {}.",
-                       error_text(table, least), error_text(table, most));
+    return fmt::format("No order of convergence is seen: the error lies between {} and {}.{}",
+                       error_text(table, least), error_text(table, most), other_orders(table));
   }
   std::string text =
-      fmt::format("Observed order {:.2f} over {} settings ({} to {} {})", order->order, order->rows.size(),
+      fmt::format("Observed order {:.2f} over {} settings ({} to {} {}){}.", order->order, order->rows.size(),
                   table.rows[static_cast<std::size_t>(order->rows.front())].setting,
-                  table.rows[static_cast<std::size_t>(order->rows.back())].setting, table.setting_name);
-  if (table.theory) text += fmt::format("; theory: {:g}", *table.theory);
-  text += ".";
+                  table.rows[static_cast<std::size_t>(order->rows.back())].setting, table.setting_name,
+                  theory_text(table, 0));
   if (order->is_at_end) text += " Finer settings than these gain nothing.";
-  return text;
+  return text + other_orders(table);
 }
 
 std::string default_sentence(const Table& table) {
@@ -64,7 +86,8 @@ std::string default_sentence(const Table& table) {
   const Row& row = table.rows[*place];
   std::string text = fmt::format("Default: {}", row_text(table, row));
   for (std::size_t e = 1; e < row.errors.size(); ++e)
-    if (!std::isnan(row.errors[e])) text += fmt::format(", {} {:.3g}", table.error_names[e], row.errors[e]);
+    if (!std::isnan(row.errors[e]))
+      text += fmt::format(", {} {}", table.error_names[e], number_text(row.errors[e]));
   return text + ".";
 }
 
@@ -91,7 +114,7 @@ std::string notes_sentence(const Table& table) {
 std::string percent(double share) {
   const double p = 100.0 * share;
   if (p == 0.0) return "0 %";
-  if (std::abs(p) >= 1000.0) return fmt::format("{:.2g} %", p);
+  if (std::abs(p) >= 1000.0) return fmt::format("{:.3g} times", share);
   return std::abs(p) >= 0.01 ? fmt::format("{:.3g} %", p) : fmt::format("{:.1e} %", p);
 }
 
@@ -146,9 +169,7 @@ std::string markdown_rows(const Table& table) {
   for (const Row& row : table.rows) {
     text += fmt::format("| {}{} |", row.setting, row.is_default ? " (default)" : "");
     for (std::size_t e = 0; e < row.errors.size(); ++e)
-      text += fmt::format(" {} |", e == 0                      ? error_text(table, row.errors[e])
-                                   : std::isnan(row.errors[e]) ? "-"
-                                                               : fmt::format("{:.3g}", row.errors[e]));
+      text += fmt::format(" {} |", e == 0 ? error_text(table, row.errors[e]) : number_text(row.errors[e]));
     text += fmt::format(" {} |\n", time_text(row.seconds));
   }
   return text;

@@ -30,7 +30,7 @@ std::string summary_rows(const StudyResult& result);
 /// All rows of a table in Markdown.
 std::string markdown_rows(const Table& table);
 
-/// "0.12 %" of a share; scientific below a hundredth of a percent.
+/// "0.12 %" of a share; scientific below a hundredth of a percent, "12 times" from ten on.
 std::string percent(double share);
 /// "12 ms" of seconds.
 std::string time_text(double seconds);

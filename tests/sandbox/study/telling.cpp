@@ -18,7 +18,7 @@ std::vector<Table> two_tables() {
   first.setting_name = "steps a second";
   first.value_name = "step, s";
   first.error_names = {"way", "lift, m"};
-  first.theory = 1.0;
+  first.theory = {1.0};
   for (int i = 0; i < 4; ++i) {
     Row row;
     row.setting = std::to_string(30 << i);
@@ -74,7 +74,7 @@ TEST_CASE("a paragraph says order, default and what is cheapest") {
   CHECK(has(text, "Default: 60 steps a second (0.5 %, 2 ms), lift, m 0.0333."));
   CHECK(has(text, "Cheapest for 1 %: 30 steps a second (1 %, 1 ms); for 0.1 %: none of these."));
   CHECK(has(text, "240: said \"so\""));
-  const std::string summary = summary_rows({two_tables(), {}, true});
+  const std::string summary = summary_rows({two_tables(), {}, {}, true});
   CHECK(summary == "| slide | a box slides | 0.5 % (way) | 2 ms | 30 steps a second (1 ms) |\n");
 }
 
