@@ -23,6 +23,7 @@
 #include "render/pass/surface.h"
 #include "render/pass/tile_reset.h"
 #include "render/pass/tiles.h"
+#include "render/pass/wires.h"
 
 namespace shatterbox::render {
 namespace {
@@ -98,6 +99,7 @@ struct Renderer::Rooms {
   pass::OcclusionPass occlusion;
   pass::LightPass light;
   pass::GlassPass glass;
+  pass::WiresPass wires;
   std::vector<std::uint8_t> rgba;  // as read back; kept, since new pages cost more than the reading
   Image kept;                      // the last picture, without what is written on it
   bool is_kept = false;            // that, and all that the passes keep, is whole
@@ -117,7 +119,8 @@ struct Renderer::Rooms {
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale,
                   reset),
         light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale, reset),
-        glass(level.samples_across) {
+        glass(level.samples_across),
+        wires(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);
     glEnable(GL_FRAMEBUFFER_SRGB);
@@ -148,7 +151,7 @@ struct Renderer::Rooms {
     floor.run(values, drawn, changes.lit().is_all, tiles.rectangles(tiles.changed_light()));
   }
 
-  void draw(PassClock& clock) {
+  void draw(PassClock& clock, bool has_wires) {
     if (values.sun_radiance.w > 0.0F) shadow.run(meshes, values);
     clock.mark("shadow");
     if (!changes.bodies().is_none()) surface.run(meshes, tiles, changes);
@@ -169,6 +172,8 @@ struct Renderer::Rooms {
     clock.mark("light");
     if (has_glass) glass.run(surface, drawn, tiles, meshes.pattern_kinds());
     clock.mark("glass");
+    if (has_wires) wires.run(meshes, surface.opaque(), drawn);
+    clock.mark("wires");
   }
 
   void read_back() {
@@ -203,7 +208,7 @@ Image Renderer::render(const Frame& frame) {
   if (!r.changes.is_nothing()) r.lay_floor();
   clock.mark("upload");
   if (!r.changes.is_nothing()) {
-    r.draw(clock);
+    r.draw(clock, frame.overlay.has_wires);
     r.read_back();
   }
   Image image = r.kept;
@@ -213,7 +218,7 @@ Image Renderer::render(const Frame& frame) {
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     throw std::runtime_error("OpenGL error " + std::to_string(error) + " while drawing a frame");
   }
-  r.is_kept = true;
+  r.is_kept = !frame.overlay.has_wires;  // lines over a picture that is kept in part would be drawn twice
   return image;
 }
 

@@ -21,7 +21,7 @@ struct Draw {
   glm::mat4 world_from_body{1.0F};   // rotation and translation (a uniform scale is allowed)
   std::vector<Look> looks{Look{}};   // by Mesh::parts; a part beyond the end takes the last
   std::shared_ptr<const std::vector<float>>
-      scalars;                     // |V| or null; shown by OverlayKind::stress, in Overlay::unit
+      scalars;                     // |V| or null; shown by OverlayKind::heat, in Overlay::unit, and by groups
   std::uint32_t colour_index = 0;  // Overlay::pieces: equal index, equal colour
   bool casts_shadow = true;
 };
@@ -66,13 +66,25 @@ struct Backdrop {
   float sweep = 0.0F;      // 0..1: how much of the gradient is the ground's own colour instead
 };
 
-enum class OverlayKind : std::uint8_t { none, stress, pieces };
+enum class OverlayKind : std::uint8_t {
+  none,
+  heat,    // scalars as colours, with a scale
+  pieces,  // each draw by its colour_index
+  groups,  // scalars from 0 to 1, a number a group: equal number, equal colour; no scale
+};
 
 struct Overlay {
   OverlayKind kind = OverlayKind::none;
   float least = 0.0F, most = 1.0F;  // range of the colour scale, in the unit below
   std::string title = "stress";     // drawn above the scale
   std::string unit = "MPa";         // the numbers' unit; scalars are given in it
+  bool has_wires = false;           // edges of all triangles as given, seen through glass
+};
+
+// Written large in the middle above the picture's lower edge, in lines as wide as the picture allows.
+struct Title {
+  std::string text;      // as Frame::caption
+  float opacity = 0.0F;  // 0..1
 };
 
 // Everything in one picture.
@@ -84,6 +96,7 @@ struct Frame {
   Backdrop backdrop;
   Overlay overlay;
   float exposure = 1.0F;
+  Title title;
   std::string caption;  // ASCII 32 to 126, '\n' starts a line; anything else is drawn as a box
 };
 

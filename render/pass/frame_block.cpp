@@ -118,8 +118,10 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   block.view_forward = glm::vec4(forward, 0.0F);
   block.view_right = glm::vec4(right * slope * w / h, 0.0F);
   block.view_up = glm::vec4(glm::cross(right, forward) * slope, 0.0F);
-  const float range = frame.overlay.most - frame.overlay.least;
-  block.scalar_range = glm::vec4(frame.overlay.least, range != 0.0F ? 1.0F / range : 0.0F, 0.0F, 0.0F);
+  const bool is_groups = frame.overlay.kind == OverlayKind::groups;  // their numbers are 0..1
+  const float least = is_groups ? 0.0F : frame.overlay.least;
+  const float range = is_groups ? 1.0F : frame.overlay.most - least;
+  block.scalar_range = glm::vec4(least, range != 0.0F ? 1.0F / range : 0.0F, 0.0F, 0.0F);
   return block;
 }
 

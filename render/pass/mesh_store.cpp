@@ -139,8 +139,11 @@ Item MeshStore::make_item(const Draw& draw, const Frame& frame, float pixel_slop
   levels.last_frame = frame_;
   const glm::vec3 eye = frame.camera.position;
   Item item;
-  if (frame.overlay.kind == OverlayKind::stress) item.scalars = draw.scalars;
-  const int level = item.scalars ? kAsGiven : level_of(draw, levels.centre, levels.radius, eye, pixel_slope);
+  const bool has_scalars =
+      frame.overlay.kind == OverlayKind::heat || frame.overlay.kind == OverlayKind::groups;
+  if (has_scalars) item.scalars = draw.scalars;
+  const bool is_as_given = item.scalars != nullptr || frame.overlay.has_wires;
+  const int level = is_as_given ? kAsGiven : level_of(draw, levels.centre, levels.radius, eye, pixel_slope);
   item.stored = &find_or_upload(*draw.mesh, level, levels);
   item.mesh_id = draw.mesh->id;
   item.stored_id = item.stored->id;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string_view>
+#include <vector>
 
 #include "render/pass/stroke_font.h"
 
@@ -35,6 +36,36 @@ void draw_caption(Image& image, std::string_view caption) {
     const std::size_t end = std::min(caption.find('\n'), caption.size());
     draw_text(image, margin, y, unit, kWhite, caption.substr(0, end));
     caption.remove_prefix(std::min(end + 1, caption.size()));
+    y += line;
+  }
+}
+
+// The text in lines no wider than `width` (pixels), broken at blanks.
+std::vector<std::string> wrap(std::string_view text, float unit, float width) {
+  std::vector<std::string> lines{""};
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(" \n"), text.size());
+    const std::string word(text.substr(0, end));
+    const bool has_break = end < text.size() && text[end] == '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (text_width(longer, unit) <= width || lines.back().empty())
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+    if (has_break) lines.emplace_back();
+  }
+  return lines;
+}
+
+void draw_title(Image& image, const Title& title, bool has_caption) {
+  const float unit = 1.7F * unit_for(image), line = 10.5F * unit;
+  const std::vector<std::string> lines = wrap(title.text, unit, 0.9F * static_cast<float>(image.width));
+  const float below = (has_caption ? 15.0F : 8.0F) * unit;
+  float y = static_cast<float>(image.height) - below - static_cast<float>(lines.size() - 1) * line;
+  for (const std::string& text : lines) {
+    const float x = 0.5F * (static_cast<float>(image.width) - text_width(text, unit));
+    draw_text(image, x, y, unit, kWhite, text, std::clamp(title.opacity, 0.0F, 1.0F));
     y += line;
   }
 }
@@ -81,8 +112,10 @@ glm::vec3 heat_colour(float t) {
 }
 
 void draw_overlay(Image& image, const Frame& frame) {
-  if (frame.overlay.kind == OverlayKind::stress) draw_scale(image, frame.overlay);
+  if (frame.overlay.kind == OverlayKind::heat) draw_scale(image, frame.overlay);
   if (!frame.caption.empty()) draw_caption(image, frame.caption);
+  if (frame.title.opacity > 0.0F && !frame.title.text.empty())
+    draw_title(image, frame.title, !frame.caption.empty());
 }
 
 }  // namespace shatterbox::render::pass

@@ -15,7 +15,7 @@ namespace {
 struct PaintRow {
   glm::vec4 paint, finish, pattern, place;
 };
-constexpr float kHeatMap = 8.0F;  // a pattern kind of its own
+constexpr float kHeatMap = 8.0F, kGroups = 9.0F;  // pattern kinds of their own
 constexpr int kRowsAbreast = 256;
 constexpr std::size_t kFloats = sizeof(PaintRow) / sizeof(float);
 constexpr std::array<Face, 3> kFaces = {Face::outside, Face::inside, Face::crack};
@@ -66,10 +66,12 @@ void lay_over(PaintRow& row, const Draw& draw, const Overlay& overlay, Face face
     row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.0F};
     row.pattern.w = 0.0F;
   }
-  if (overlay.kind == OverlayKind::stress && draw.scalars != nullptr && face != Face::crack) {
+  const bool is_groups = overlay.kind == OverlayKind::groups;
+  const bool has_scalars = overlay.kind == OverlayKind::heat || is_groups;
+  if (has_scalars && draw.scalars != nullptr && face != Face::crack) {
     row.paint.w = 0.5F;
     row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.5F * row.finish.w};
-    row.pattern.w = kHeatMap;
+    row.pattern.w = is_groups ? kGroups : kHeatMap;
   }
 }
 

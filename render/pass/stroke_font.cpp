@@ -163,7 +163,7 @@ const Field& field_of(char c, float unit) {
 
 // First the dark edges of the whole line, then the ink, so that no edge falls on a neighbour's ink.
 void draw_glyph(Image& image, const Field& field, glm::ivec2 pen, float unit,
-                const std::array<std::uint8_t, 3>& colour, bool is_edge) {
+                const std::array<std::uint8_t, 3>& colour, bool is_edge, float opacity) {
   const int left = std::max(pen.x + field.left, 0),
             right = std::min(pen.x + field.left + field.width, image.width);
   const int top = std::max(pen.y + field.top, 0),
@@ -172,8 +172,8 @@ void draw_glyph(Image& image, const Field& field, glm::ivec2 pen, float unit,
     const auto row = static_cast<std::size_t>((y - pen.y - field.top) * field.width);
     for (int x = left; x < right; ++x) {
       const float d = field.distance[row + static_cast<std::size_t>(x - pen.x - field.left)];
-      const float share = is_edge ? 0.42F * std::clamp(1.0F - d / edge_reach(unit), 0.0F, 1.0F)
-                                  : std::clamp(0.5F - d, 0.0F, 1.0F);
+      const float share = opacity * (is_edge ? 0.42F * std::clamp(1.0F - d / edge_reach(unit), 0.0F, 1.0F)
+                                             : std::clamp(0.5F - d, 0.0F, 1.0F));
       if (share > 0.0F) blend(image.at(x, y), is_edge ? std::array<std::uint8_t, 3>{} : colour, share);
     }
   }
@@ -182,7 +182,7 @@ void draw_glyph(Image& image, const Field& field, glm::ivec2 pen, float unit,
 }  // namespace
 
 void draw_text(Image& image, float x, float y, float unit, std::array<std::uint8_t, 3> colour,
-               std::string_view text) {
+               std::string_view text, float opacity) {
   const bool is_light = colour[0] + colour[1] + colour[2] > 384;
   for (const bool is_edge : {true, false}) {
     if (is_edge && !is_light) continue;
@@ -190,7 +190,7 @@ void draw_text(Image& image, float x, float y, float unit, std::array<std::uint8
     for (const char c : text) {
       const Glyph& glyph = glyph_of(c);
       const glm::ivec2 at(static_cast<int>(std::lround(pen)), static_cast<int>(std::lround(y)));
-      draw_glyph(image, field_of(c, unit), at, unit, colour, is_edge);
+      draw_glyph(image, field_of(c, unit), at, unit, colour, is_edge, opacity);
       pen += (glyph.width + kGap) * unit;
     }
   }

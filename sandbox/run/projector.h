@@ -22,6 +22,9 @@ class Projector {
   /// Steps to the next frame's moment, which is good until the next call; nothing when the film is over.
   std::optional<view::Moment> next();
 
+  /// What the script asked of the picture up to that moment.
+  std::vector<scene::Cue> take_cues() { return script_.take_cues(); }
+
   /// The world's time that the frame after the last one will show, s, unless the script changes that.
   double time_ahead() const;
 

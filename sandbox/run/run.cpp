@@ -152,6 +152,7 @@ std::string play(Job& job, Recorder& recorder, Painter* painter) {
     const double audited = recorder.record.audit_time;
     const std::optional<view::Moment> moment = projector.next();
     if (!moment) break;
+    for (const scene::Cue& cue : projector.take_cues()) view.begin(cue, *moment);
     std::optional<render::Frame> picture;
     if (painter != nullptr && choice.takes(projector.time_ahead())) picture = view.make_frame(*moment);
     const double audit_time = recorder.record.audit_time - audited;

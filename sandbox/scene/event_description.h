@@ -34,6 +34,34 @@ struct Speed {
   double ramp = 0.0;  // s of the film, from the old factor to this one
 };
 
+enum class CameraMove : std::uint8_t {
+  cut,     // there at once
+  dolly,   // goes there
+  orbit,   // round what it looks at
+  follow,  // keeps a body in the middle of the picture
+};
+
+struct CameraChange {
+  CameraMove move = CameraMove::cut;
+  std::optional<Vec3> position, target;  // m; of cuts and dollies; nothing: as before
+  std::optional<double> fov;             // degrees
+  double angle = 0.0;                    // rad, of an orbit; positive: against the clock, seen from above
+  std::optional<Vec3> offset;            // m, of a follower from the body; nothing: it stays and turns
+  double duration = 0.0;                 // s of the film
+  bool is_smooth = true;                 // begins and ends at rest
+};
+
+/// From now on.
+struct OverlayChange {
+  std::string name;            // of kOverlayNames
+  std::optional<double> most;  // top of its scale, in its unit
+};
+
+struct Caption {
+  std::string text;
+  double duration = 3.0, fade = 0.4;  // s of the film
+};
+
 enum class When : std::uint8_t {
   time,         // at `at`
   first_break,  // `at` after the step in which something first breaks
@@ -48,10 +76,22 @@ struct EventEntry {
   When when = When::time;
   double at = 0.0;  // s
   int body = -1;    // number in SceneDescription::bodies: what comes in, is pushed or goes
-  std::variant<Projectile, Drop, Push, Remove, Speed> action;
+  std::variant<Projectile, Drop, Push, Remove, Speed, CameraChange, OverlayChange, Caption> action;
 };
 
+/// An event for the picture whose time has come.
+struct Cue {
+  double film = 0.0;                  // s of the film
+  const EventEntry* event = nullptr;  // never null; of the scene
+};
+
+inline bool is_for_picture(const EventEntry& event) {
+  return std::holds_alternative<CameraChange>(event.action) ||
+         std::holds_alternative<OverlayChange>(event.action) || std::holds_alternative<Caption>(event.action);
+}
+
 inline const std::vector<std::string> kWhenNames{"first break", "rest"};
-inline const std::vector<std::string> kEventVerbs{"projectile", "drop", "push", "remove", "speed"};
+inline const std::vector<std::string> kEventVerbs{"projectile", "drop",   "push",    "remove",
+                                                  "speed",      "camera", "overlay", "caption"};
 
 }  // namespace shatterbox::sandbox::scene

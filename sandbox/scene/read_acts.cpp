@@ -61,19 +61,21 @@ int read_thrown_body(TableReader& reader, const std::string& event_name, bool ha
   return found;
 }
 
-int read_acted_body(TableReader& reader, const SceneDescription& scene) {
-  const auto name = reader.text("body");
-  if (!name) {
-    if (!reader.has("body"))
-      reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
-                         "add body = \"name\"");
-    return -1;
-  }
+int read_named_body(TableReader& reader, const std::string& key, const SceneDescription& scene) {
+  const auto name = reader.text(key);
+  if (!name) return -1;
   const int found = find_body(scene, *name);
   if (found < 0)
-    reader.add_problem_at("body", fmt::format("there is no body \"{}\"", *name),
+    reader.add_problem_at(key, fmt::format("there is no body \"{}\"", *name),
                           hint_for_name(*name, body_names(scene), "bodies"));
   return found;
+}
+
+int read_acted_body(TableReader& reader, const SceneDescription& scene) {
+  if (!reader.has("body"))
+    reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
+                       "add body = \"name\"");
+  return read_named_body(reader, "body", scene);
 }
 
 Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
@@ -114,12 +116,7 @@ Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
     reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
                        "give either at_point = [x, y, z] or at_body = \"name\"");
   } else if (body) {
-    const int found = find_body(scene, *body);
-    if (found < 0) {
-      reader.add_problem_at("at_body", fmt::format("there is no body \"{}\"", *body),
-                            hint_for_name(*body, body_names(scene), "bodies"));
-    }
-    projectile.target = found;
+    projectile.target = read_named_body(reader, "at_body", scene);
   } else if (point) {
     projectile.target = *point;
     if ((*point - projectile.from).norm() < 1e-9) {

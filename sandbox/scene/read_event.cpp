@@ -12,8 +12,7 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kLaterVerbs{"explosion", "grab",    "release", "gravity",
-                                           "camera",    "overlay", "caption"};
+const std::vector<std::string> kLaterVerbs{"explosion", "grab", "release", "gravity"};
 
 struct VerbKeys {
   std::string verb;
@@ -26,6 +25,9 @@ const std::vector<VerbKeys> kVerbKeys{
     {"push", {"body", "impulse", "point"}},
     {"remove", {"body"}},
     {"speed", {"factor", "ramp"}},
+    {"camera", {"move", "position", "target", "fov", "angle", "body", "offset", "duration", "easing"}},
+    {"overlay", {"show", "most"}},
+    {"caption", {"text", "duration", "fade"}},
 };
 
 /// Keys of other verbs, called for after those of its own: the verbs that they are for are named.
@@ -91,6 +93,12 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
     event.action = Remove{};
   } else if (*verb == "speed") {
     event.action = read_speed(reader);
+  } else if (*verb == "camera") {
+    event.action = read_camera_change(reader, scene, event.body);
+  } else if (*verb == "overlay") {
+    event.action = read_overlay_change(reader);
+  } else if (*verb == "caption") {
+    event.action = read_caption(reader);
   }
   refuse_other_keys(reader);
   reader.finish();

@@ -13,6 +13,9 @@ namespace shatterbox::sandbox::scene {
 int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
                      SceneDescription& scene);
 
+/// The number of the body that `key` names; -1 if it is absent, or, with a problem, names none.
+int read_named_body(TableReader& reader, const std::string& key, const SceneDescription& scene);
+
 /// The number of the body that an event acts on, -1 with a problem if it names none.
 int read_acted_body(TableReader& reader, const SceneDescription& scene);
 
@@ -20,5 +23,9 @@ Projectile read_projectile(TableReader& reader, SceneDescription& scene);
 Push read_push(TableReader& reader, int body, const SceneDescription& scene);
 
 Speed read_speed(TableReader& reader);
+/// `body`: takes the number of the one to follow.
+CameraChange read_camera_change(TableReader& reader, const SceneDescription& scene, int& body);
+OverlayChange read_overlay_change(TableReader& reader);
+Caption read_caption(TableReader& reader);
 
 }  // namespace shatterbox::sandbox::scene

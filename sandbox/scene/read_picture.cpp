@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sandbox/scene/read_body.h"
+#include "sandbox/scene/read_event.h"
 #include "sandbox/scene/table_reader.h"
 
 namespace shatterbox::sandbox::scene {
@@ -50,14 +51,24 @@ void read_path(TableReader& reader, CameraEntry& camera, Problems& problems) {
 
 }  // namespace
 
-void read_camera(const TomlValue& table, CameraEntry& camera, Problems& problems) {
+void read_camera(const TomlValue& table, SceneDescription& scene, Problems& problems) {
+  CameraEntry& camera = scene.camera;
   TableReader reader(table, "[camera]", problems);
   camera.position = reader.vector("position", kPlace);
   camera.target = reader.vector("target", kPlace);
   camera.up = reader.vector("up", between(-1e6, 1e6)).value_or(camera.up);
   camera.fov = reader.number("fov", kFov).value_or(camera.fov);
   read_path(reader, camera, problems);
-  reader.later({"follow"}, "give a target, or a path of keyframes");
+  if (reader.has("follow")) {
+    camera.follow = read_named_body(reader, "follow", scene);
+    reader.foreign({"target"}, "the camera looks at the body that it follows");
+    camera.offset = reader.vector("offset", kPlace);
+    if (camera.offset && camera.offset->norm() < 1e-9)
+      reader.add_problem_at("offset", "the camera cannot be where it looks at", "for example [0, 0.3, 1]");
+    if (camera.offset) reader.foreign({"position", "path"}, "the offset from the body says where it is");
+  } else {
+    reader.foreign({"offset"}, "it is from the body that the camera follows: add follow = \"name\"");
+  }
   reader.finish();
   if (camera.up.norm() < 1e-9)
     reader.add_problem_at("up", "up is zero and points nowhere", "up is usually [0, 1, 0]");
@@ -99,9 +110,8 @@ void read_render(const TomlValue& table, RenderEntry& render, Problems& problems
   render.ground_colour = read_colour(reader, "ground_colour");
   render.checker = reader.number("checker", positive("m")).value_or(0.0);
   render.backdrop = reader.choice("backdrop", kBackdropNames).value_or(render.backdrop);
-  render.overlay =
-      reader.choice("overlay", kOverlayNames, {"grains", "impacts", "wireframe"}).value_or(render.overlay);
-  render.overlay_most = reader.number("overlay_most", positive("MPa"));
+  render.overlay = reader.choice("overlay", kOverlayNames).value_or(render.overlay);
+  render.overlay_most = reader.number("overlay_most", positive());
   render.exposure = reader.number("exposure", between(1e-3, 1e3)).value_or(1.0);
   render.has_caption = reader.truth("caption").value_or(false);
   reader.finish();

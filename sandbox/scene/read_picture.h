@@ -6,7 +6,8 @@
 
 namespace shatterbox::sandbox::scene {
 
-void read_camera(const TomlValue& table, CameraEntry& camera, Problems& problems);
+/// After the bodies, one of which the camera may follow.
+void read_camera(const TomlValue& table, SceneDescription& scene, Problems& problems);
 void read_light(const TomlValue& table, LightEntry& light, Problems& problems);
 void read_render(const TomlValue& table, RenderEntry& render, Problems& problems);
 

@@ -167,7 +167,7 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
   }
   const auto& events = tables_of(root, "event");
   for (std::size_t i = 0; i < events.size(); ++i) read_event(events[i], i, scene, problems);
-  read_camera(table_of(root, "camera"), scene.camera, problems);
+  read_camera(table_of(root, "camera"), scene, problems);
   read_light(table_of(root, "light"), scene.light, problems);
   read_render(table_of(root, "render"), scene.render, problems);
   root.later({"joint"}, "bodies cannot be joined yet");

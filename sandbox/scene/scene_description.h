@@ -137,6 +137,8 @@ struct CameraEntry {
   Vec3 up = Vec3::UnitY();
   double fov = 35.0;            // degrees, vertical
   std::vector<CameraKey> path;  // ascending in time; overrides the above
+  int follow = -1;              // number of the body that is kept in the middle; -1: none
+  std::optional<Vec3> offset;   // m, from that body; nothing: the camera stays where it is and turns
 };
 
 struct LightEntry {
@@ -153,7 +155,7 @@ struct RenderEntry {
   double checker = 0.0;  // m a square; 0: plain
   std::string backdrop = "studio";
   std::string overlay = "none";
-  std::optional<double> overlay_most;  // MPa, top of the stress scale
+  std::optional<double> overlay_most;  // top of its scale, in its unit
   double exposure = 1.0;
   bool has_caption = false;
 };
@@ -179,6 +181,7 @@ inline const std::vector<std::string> kLookNames{
     "plaster",  "ice",   "eggshell", "matt",      "glossy", "hidden", "aluminium", "terracotta"};
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
-inline const std::vector<std::string> kOverlayNames{"none", "stress", "pieces"};
+inline const std::vector<std::string> kOverlayNames{"none",    "stress",   "pieces",   "grains",
+                                                    "impacts", "velocity", "wireframe"};
 
 }  // namespace shatterbox::sandbox::scene

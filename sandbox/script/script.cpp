@@ -149,6 +149,10 @@ std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene
     clock_.change(clock_.film_at(built.world.time()), speed->factor, speed->ramp);
     return {};
   }
+  if (scene::is_for_picture(event)) {
+    cues_.push_back({clock_.film_at(built.world.time()), &event});
+    return {};
+  }
   return bring_in(event, built, faults);
 }
 

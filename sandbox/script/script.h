@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sandbox/scene/build_world.h"
@@ -26,6 +27,9 @@ class Script {
 
   /// Whether nothing is left to come.
   bool is_over() const;
+
+  /// Events for the picture that were played since the last call.
+  std::vector<scene::Cue> take_cues() { return std::exchange(cues_, {}); }
 
   /// What the film shows when.
   const FilmClock& clock() const { return clock_; }
@@ -57,6 +61,7 @@ class Script {
   std::vector<std::size_t> coming_;  // events that have not been played
   Conditions conditions_;
   FilmClock clock_;
+  std::vector<scene::Cue> cues_;
   std::vector<int> throws_;  // per [[body]]: how often it was brought in
 };
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sandbox/view/to_glm.h"
-
 namespace shatterbox::sandbox::view {
 
 namespace {
@@ -82,23 +80,15 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
   return {0.5 * (least + most), 0.5 * (most - least).norm()};
 }
 
-render::Camera camera_at(const scene::CameraEntry& camera, const Subject& subject, double time) {
-  render::Camera result;
-  result.up = to_glm(camera.up);
+Viewpoint viewpoint_at(const scene::CameraEntry& camera, const Subject& subject, double time) {
   if (!camera.path.empty()) {
     const scene::CameraKey key = on_path(camera.path, time);
-    result.position = to_glm(key.position);
-    result.target = to_glm(key.target);
-    result.vertical_fov = static_cast<float>(key.fov);
-    return result;
+    return {key.position, key.target, key.fov};
   }
   const Vec3 target = camera.target.value_or(subject.centre);
   const double half_view = camera.fov * 3.14159265358979 / 360.0;
   const Vec3 away = Vec3(0.45, 0.35, 1.0).normalized() * (1.15 * subject.radius / std::sin(half_view));
-  result.position = to_glm(camera.position.value_or(target + away));
-  result.target = to_glm(target);
-  result.vertical_fov = static_cast<float>(camera.fov);
-  return result;
+  return {camera.position.value_or(target + away), target, camera.fov};
 }
 
 }  // namespace shatterbox::sandbox::view

@@ -17,8 +17,13 @@ struct Subject {
 /// they will land; about everything if nothing has.
 Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan);
 
-/// The camera at `time` (s). Keyframes are passed with continuous velocity (cubic Hermite, tangents from
-/// neighbours).
-render::Camera camera_at(const scene::CameraEntry& camera, const Subject& subject, double time);
+struct Viewpoint {
+  Vec3 position = Vec3::Zero(), target = Vec3::Zero();  // m
+  double fov = 35.0;                                    // degrees, vertical
+};
+
+/// The scene's own camera at `time` (s of the world), without what it follows. Keyframes are passed with
+/// continuous velocity (cubic Hermite, tangents from neighbours).
+Viewpoint viewpoint_at(const scene::CameraEntry& camera, const Subject& subject, double time);
 
 }  // namespace shatterbox::sandbox::view

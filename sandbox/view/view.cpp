@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/elementary.h"
 #include "engine/core/hash.h"
+#include "sandbox/scene/parts.h"
 #include "sandbox/view/looks.h"
 #include "sandbox/view/to_glm.h"
 
@@ -53,24 +55,6 @@ std::shared_ptr<const render::Mesh> make_surface_mesh(const body::Shape& shape, 
   return mesh;
 }
 
-/// Stress in MPa at the vertices of a shell: the mean of the triangles about each.
-std::shared_ptr<const std::vector<float>> vertex_stress(const body::Shape& shape,
-                                                        const std::vector<double>& triangle_stress) {
-  if (triangle_stress.size() != shape.surface.triangles.size() || triangle_stress.empty()) return nullptr;
-  std::vector<double> sum(shape.surface.positions.size(), 0.0), count(sum.size(), 0.0);
-  for (std::size_t t = 0; t < triangle_stress.size(); ++t) {
-    for (const int corner : shape.surface.triangles[t]) {
-      sum[static_cast<std::size_t>(corner)] += triangle_stress[t] * 1e-6;
-      count[static_cast<std::size_t>(corner)] += 1.0;
-    }
-  }
-  auto values = std::make_shared<std::vector<float>>();
-  for (std::size_t v = 0; v < sum.size(); ++v) {
-    values->push_back(count[v] > 0.0 ? static_cast<float>(sum[v] / count[v]) : 0.0F);
-  }
-  return values;
-}
-
 /// The colour of one copy: drawn from the list by the numbers of the body and the copy.
 std::optional<Vec3> colour_of(const scene::LookEntry& look, std::size_t entry, int copy) {
   if (look.colours.empty()) return std::nullopt;
@@ -105,23 +89,6 @@ std::optional<render::Ground> make_ground_of(const scene::SceneDescription& scen
   return ground;
 }
 
-/// The stress scale ends at the greatest strength of what can break, so that red means near breaking.
-render::Overlay make_overlay(const scene::SceneDescription& scene) {
-  render::Overlay overlay;
-  if (scene.render.overlay == "pieces") overlay.kind = render::OverlayKind::pieces;
-  if (scene.render.overlay != "stress") return overlay;
-  overlay.kind = render::OverlayKind::stress;
-  double most = 0.0;
-  for (const scene::BodyEntry& body : scene.bodies) {
-    const auto* shell = std::get_if<scene::ShellForm>(&body.form);
-    if (shell == nullptr || !shell->is_breakable) continue;
-    most = std::max(most, scene.materials[static_cast<std::size_t>(body.material)].material.strength * 1e-6);
-  }
-  overlay.most = static_cast<float>(scene.render.overlay_most.value_or(most > 0.0 ? most : 1.0));
-  overlay.title = "tension";
-  return overlay;
-}
-
 }  // namespace
 
 std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uint64_t id) {
@@ -140,22 +107,21 @@ std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uin
 }
 
 View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built)
-    : scene_(scene), built_(built), subject_(find_subject(scene, built.plan)) {
+    : scene_(scene), built_(built), camera_(scene.camera, find_subject(scene, built.plan)), overlays_(scene) {
   stage_.lights = make_lights(scene.light);
   stage_.ground = make_ground_of(scene, built);
   stage_.backdrop = make_backdrop(scene.render.backdrop);
-  stage_.overlay = make_overlay(scene);
   stage_.exposure = static_cast<float>(scene.render.exposure);
 }
 
-std::shared_ptr<const render::Mesh> View::mesh_of(const std::shared_ptr<const body::Shape>& shape) {
+View::DrawnShape& View::drawn_of(const std::shared_ptr<const body::Shape>& shape) {
   DrawnShape& drawn = shapes_[shape.get()];
   if (!drawn.mesh) {
     drawn.shape = shape;
     drawn.mesh = make_mesh(*shape, next_mesh_++);
   }
   drawn.last_frame = frame_;
-  return drawn.mesh;
+  return drawn;
 }
 
 const std::vector<render::Look>& View::looks_of(body::BodyId original) {
@@ -189,7 +155,8 @@ void View::add_body(const body::Body& body, render::Frame& frame) {
   const world::Ancestry ancestry = built_.world.ancestry(body.id);
   if (is_hidden(ancestry.original != 0 ? ancestry.original : body.id)) return;
   render::Draw draw;
-  draw.mesh = mesh_of(body.shape);
+  DrawnShape& drawn = drawn_of(body.shape);
+  draw.mesh = drawn.mesh;
   Pose pose = body.pose;
   if (body.shape->kind == body::ShapeKind::plane) {
     pose.translation = pose.apply(Vec3(0.0, -0.5 * kSlabDepth, 0.0));
@@ -198,10 +165,72 @@ void View::add_body(const body::Body& body, render::Frame& frame) {
   draw.looks = looks_of(ancestry.original != 0 ? ancestry.original : body.id);
   const bool is_piece = ancestry.parent != 0;
   draw.colour_index = is_piece ? body.id : render::Draw::kNoColour;
-  if (frame.overlay.kind == render::OverlayKind::stress && body::is_mesh(body.shape->kind)) {
-    draw.scalars = vertex_stress(*body.shape, built_.world.stress_picture(body.id).triangle_stress);
-  }
+  lay_over(body, drawn, draw);
   frame.draws.push_back(std::move(draw));
+}
+
+void View::lay_over(const body::Body& body, DrawnShape& drawn, render::Draw& draw) {
+  const std::string& name = overlays_.name();
+  const bool is_mesh = body::is_mesh(body.shape->kind);
+  if (name == "stress" && is_mesh)
+    draw.scalars = vertex_stress(*body.shape, built_.world.stress_picture(body.id).triangle_stress);
+  if (name == "velocity" && body.shape->kind != body::ShapeKind::plane)
+    draw.scalars = vertex_speed(body, *drawn.mesh);
+  if (name != "grains" || !is_mesh) return;
+  if (!drawn.grains) drawn.grains = make_grain_mesh(*body.shape, *drawn.mesh, next_mesh_++);
+  if (!drawn.grains) return;
+  draw.mesh = drawn.grains->mesh;
+  draw.scalars = drawn.grains->groups;
+}
+
+void View::mark_impacts(const Moment& moment, render::Frame& frame) {
+  constexpr double kShown = 0.3;      // s of the world
+  constexpr double kRadius = 0.012;   // of the picture's height at the impact
+  constexpr std::size_t kMost = 300;  // a film of marks shows nothing
+  if (!marker_) marker_ = render::make_sphere(next_mesh_++, 1.0F, 16);
+  const Vec3 eye(frame.camera.position.x, frame.camera.position.y, frame.camera.position.z);
+  const double slope = 2.0 * std::tan(frame.camera.vertical_fov * core::kPi / 360.0);
+  const auto& impacts = built_.world.report().impacts;
+  std::size_t count = 0;
+  for (std::size_t i = impacts.size(); i > 0 && count < kMost; --i) {
+    const world::ImpactRow& row = impacts[i - 1];
+    const double age = moment.time - row.time;
+    if (age > kShown) break;
+    if (age < 0.0) continue;
+    const auto radius = static_cast<float>(kRadius * slope * (row.place - eye).norm() * (1.0 - age / kShown));
+    render::Draw draw;
+    draw.mesh = marker_;
+    draw.world_from_body = glm::mat4(radius);
+    draw.world_from_body[3] = glm::vec4(to_glm(row.place), 1.0F);
+    draw.scalars =
+        std::make_shared<const std::vector<float>>(marker_->positions.size(), static_cast<float>(row.ratio));
+    draw.casts_shadow = false;
+    frame.draws.push_back(std::move(draw));
+    ++count;
+  }
+}
+
+Whereabouts View::whereabouts(const Moment& moment) const {
+  return [this, &moment](int entry) { return scene::centre_of(built_, moment.bodies, entry); };
+}
+
+void View::begin(const scene::Cue& cue, const Moment& moment) {
+  const scene::EventEntry& event = *cue.event;
+  if (const auto* change = std::get_if<scene::CameraChange>(&event.action))
+    camera_.begin(*change, event.body, cue.film, moment, whereabouts(moment));
+  if (const auto* change = std::get_if<scene::OverlayChange>(&event.action))
+    overlays_.show(change->name, change->most);
+  if (std::holds_alternative<scene::Caption>(event.action)) caption_ = cue;
+}
+
+render::Title View::title_at(double film) const {
+  if (caption_.event == nullptr) return {};
+  const auto& caption = std::get<scene::Caption>(caption_.event->action);
+  const double since = film - caption_.film, left = caption.duration - since;
+  if (since < 0.0 || left < 0.0) return {};
+  double opacity = 1.0;
+  if (caption.fade > 0.0) opacity = std::min({1.0, since / caption.fade, left / caption.fade});
+  return {caption.text, static_cast<float>(opacity)};
 }
 
 std::string View::standard_caption(const Moment& moment) const {
@@ -217,8 +246,11 @@ std::string View::standard_caption(const Moment& moment) const {
 render::Frame View::make_frame(const Moment& moment) {
   ++frame_;
   render::Frame frame = stage_;
-  frame.camera = camera_at(scene_.camera, subject_, moment.time);
+  frame.camera = camera_.at(moment, whereabouts(moment));
+  frame.overlay = overlays_.overlay();
+  frame.title = title_at(moment.film);
   for (const body::Body& body : moment.bodies) add_body(body, frame);
+  if (overlays_.name() == "impacts") mark_impacts(moment, frame);
   std::erase_if(shapes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
   if (scene_.render.has_caption) frame.caption = standard_caption(moment);
   return frame;

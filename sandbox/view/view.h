@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,22 +13,19 @@
 #include "render/frame/frame.h"
 #include "sandbox/scene/build_world.h"
 #include "sandbox/scene/scene_description.h"
-#include "sandbox/view/camera.h"
+#include "sandbox/view/camera_rig.h"
+#include "sandbox/view/moment.h"
+#include "sandbox/view/overlays.h"
 
 namespace shatterbox::sandbox::view {
-
-/// What a frame of the film shows.
-struct Moment {
-  double film = 0.0;    // s of the film
-  double time = 0.0;    // s of the world
-  double factor = 1.0;  // seconds of the world in a second of the film
-  std::span<const body::Body> bodies;
-};
 
 class View {
  public:
   /// `scene` and `built` must outlive the view.
   View(const scene::SceneDescription& scene, const scene::BuiltScene& built);
+
+  /// What the script asks of the picture, not later than `moment`.
+  void begin(const scene::Cue& cue, const Moment& moment);
 
   /// The picture of a moment, which is now or at most a step ago.
   render::Frame make_frame(const Moment& moment);
@@ -39,22 +36,33 @@ class View {
   struct DrawnShape {
     std::shared_ptr<const body::Shape> shape;  // kept, so that its address is not used again
     std::shared_ptr<const render::Mesh> mesh;
+    std::optional<GrainMesh> grains;
     std::uint64_t last_frame = 0;
   };
 
-  std::shared_ptr<const render::Mesh> mesh_of(const std::shared_ptr<const body::Shape>& shape);
+  DrawnShape& drawn_of(const std::shared_ptr<const body::Shape>& shape);
+  /// Where body number `entry` is at a moment.
+  Whereabouts whereabouts(const Moment& moment) const;
   const std::vector<render::Look>& looks_of(body::BodyId original);
   bool is_hidden(body::BodyId original) const;
   /// Time, bodies, pieces, and how fast the film goes where it is not as the world does.
   std::string standard_caption(const Moment& moment) const;
   void add_body(const body::Body& body, render::Frame& frame);
+  /// What the overlay makes of a draw.
+  void lay_over(const body::Body& body, DrawnShape& drawn, render::Draw& draw);
+  /// Balls where impacts were evaluated a moment ago.
+  void mark_impacts(const Moment& moment, render::Frame& frame);
+  render::Title title_at(double film) const;
 
   const scene::SceneDescription& scene_;
   const scene::BuiltScene& built_;
-  Subject subject_;
+  CameraRig camera_;
+  Overlays overlays_;
   render::Frame stage_;  // everything but the bodies
+  scene::Cue caption_;   // the last one; its event is null before the first
   std::map<const body::Shape*, DrawnShape> shapes_;
   std::map<body::BodyId, std::vector<render::Look>> looks_;
+  std::shared_ptr<const render::Mesh> marker_;
   std::uint64_t next_mesh_ = 1;
   std::uint64_t frame_ = 0;
 };

@@ -71,6 +71,12 @@ vec3 heat_colour(float t) {
   return mix(mid, vec3(0.75, 0.04, 0.02), smoothstep(0.68, 1.0, t));
 }
 
+// A hue of its own for each group.
+vec3 group_colour(float t) {
+  vec3 hue = clamp(abs(fract(t + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+  return mix(vec3(0.26), hue * hue, 0.62) * (0.55 + 0.35 * fract(t * 61.0));
+}
+
 // The surface of a sample (in samples) whose place in the picture is `pixel`.
 Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
   Surface s;
@@ -87,7 +93,7 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
   s.coat_roughness = finish.z;
   s.transmission = finish.w;
 #if PATTERNS  // bits by kind. llvmpipe runs both sides of a branch: a program has only the kinds that the frame shows
-  vec4 pattern = texelFetch(paint_table, row + ivec2(2, 0), 0);    // colour, kind + metalness / 2; 8: heat map
+  vec4 pattern = texelFetch(paint_table, row + ivec2(2, 0), 0);    // colour, kind + metalness / 2; 8: heat map, 9: groups
   if (pattern.a >= 1.0) {
     vec4 place = texelFetch(paint_table, row + ivec2(3, 0), 0);    // centre, size
     vec2 xy = unpackHalf2x16(seen.z), z_scalar = unpackHalf2x16(seen.w);
@@ -97,11 +103,14 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
 #if PATTERNS == 256
     s.colour = heat_colour(z_scalar.y);
 #else
-    float share = kind == 8 ? 0.0 : pattern_share(kind, (vec3(xy, z_scalar.x) - place.xyz) / place.w, width);
+    float share = kind >= 8 ? 0.0 : pattern_share(kind, (vec3(xy, z_scalar.x) - place.xyz) / place.w, width);
     s.colour = mix(s.colour, pattern.rgb, share);
     s.metalness = mix(s.metalness, fract(pattern.a) * 2.0, share);
 #if PATTERNS & 256
     s.colour = kind == 8 ? heat_colour(z_scalar.y) : s.colour;
+#endif
+#if PATTERNS & 512
+    s.colour = kind == 9 ? group_colour(z_scalar.y) : s.colour;
 #endif
 #endif
   }

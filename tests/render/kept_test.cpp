@@ -191,7 +191,7 @@ TEST_CASE("kept pictures while camera, light, overlay and patterns change") {
       if (i % 11 == 6) frame.exposure *= 1.1F;
       if (i % 13 == 5) frame.lights.casts_shadow = !frame.lights.casts_shadow;
       if (i % 7 == 3) {
-        frame.overlay.kind = static_cast<OverlayKind>(change.below(3));
+        frame.overlay.kind = static_cast<OverlayKind>(change.below(4));
         for (Draw& draw : frame.draws) {
           draw.colour_index = change.below(5);
           draw.scalars =

@@ -109,7 +109,7 @@ TEST_CASE("the stress overlay paints the scale's colours and the pieces overlay 
     frame.draws.back().colour_index = static_cast<std::uint32_t>(i);
   }
   Renderer renderer(kSize, Quality::preview);
-  frame.overlay.kind = OverlayKind::stress;
+  frame.overlay.kind = OverlayKind::heat;
   frame.overlay.most = 30.0F;
   const Image stress = renderer.render(frame);
   const std::uint8_t* low = stress.at(pixel_of(frame, {-1, 1, 0.5F}).x, 90);
@@ -121,6 +121,68 @@ TEST_CASE("the stress overlay paints the scale's colours and the pieces overlay 
   const std::uint8_t* one = pieces.at(pixel_of(frame, {-1, 1, 0.5F}).x, 90);
   const std::uint8_t* two = pieces.at(pixel_of(frame, {1, 1, 0.5F}).x, 90);
   CHECK(std::abs(one[0] - two[0]) + std::abs(one[1] - two[1]) + std::abs(one[2] - two[2]) > 60);
+}
+
+TEST_CASE("groups have a colour each and no scale, wires are drawn where no body hides them") {
+  Frame frame = plain_frame();
+  frame.camera = {glm::vec3(0, 1, 6), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 30.0F};
+  const auto box = make_box(1, glm::vec3(1.0F));
+  for (int i = 0; i < 2; ++i) {
+    frame.draws.push_back(at(box, {2.0F * static_cast<float>(i) - 1.0F, 1, 0}));
+    frame.draws.back().scalars = std::make_shared<std::vector<float>>(8, i == 0 ? 0.1F : 0.6F);
+  }
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image plain = renderer.render(frame);
+    Frame groups = frame;
+    groups.overlay.kind = OverlayKind::groups;
+    const Image grouped = renderer.render(groups);
+    const std::uint8_t* one = grouped.at(pixel_of(frame, {-1, 1, 0.5F}).x, 90);
+    const std::uint8_t* two = grouped.at(pixel_of(frame, {1, 1, 0.5F}).x, 90);
+    CHECK(std::abs(one[0] - two[0]) + std::abs(one[1] - two[1]) + std::abs(one[2] - two[2]) > 60);
+    // The faces' diagonals are seen, the edges behind them are not; then the picture is as it was.
+    Frame wires = frame;
+    wires.overlay.has_wires = true;
+    const Image wired = renderer.render(wires);
+    CHECK_FALSE(wired == plain);
+    CHECK(renderer.render(wires) == wired);
+    CHECK(Renderer(kSize, quality).render(wires) == wired);
+    CHECK(renderer.render(frame) == plain);
+    int changed = 0, in_box = 0;
+    const auto low = pixel_of(frame, {-1.35F, 0.65F, 0.5F}), high = pixel_of(frame, {-0.65F, 1.35F, 0.5F});
+    for (int y = std::min(low.y, high.y); y < std::max(low.y, high.y); ++y)
+      for (int x = low.x; x < high.x; ++x, ++in_box)
+        changed += plain.at(x, y)[0] != wired.at(x, y)[0] ? 1 : 0;
+    // Within a face one diagonal alone: about a pixel in each row.
+    CHECK(changed >= (high.x - low.x) / 2);
+    CHECK(changed <= 4 * (high.x - low.x));
+    CHECK(changed < in_box / 4);
+  }
+}
+
+TEST_CASE("a title is written in the middle above the lower edge, as dense as it is told") {
+  Frame frame = plain_frame();
+  Renderer renderer(kSize, Quality::preview);
+  const Image plain = renderer.render(frame);
+  const auto ink = [&](float opacity) {
+    frame.title = {"broken", opacity};
+    const Image titled = renderer.render(frame);
+    long sum = 0, moment = 0;
+    for (int y = 0; y < titled.height; ++y)
+      for (int x = 0; x < titled.width; ++x) {
+        const int change = std::abs(titled.at(x, y)[0] - plain.at(x, y)[0]);
+        if (change != 0) CHECK(y > titled.height / 2);
+        sum += change;
+        moment += static_cast<long>(change) * x;
+      }
+    if (sum > 0)
+      CHECK(static_cast<double>(moment) / static_cast<double>(sum) == Approx(0.5 * titled.width).margin(6));
+    return sum;
+  };
+  const long full = ink(1.0F), half = ink(0.5F);
+  CHECK(ink(0.0F) == 0);
+  CHECK(full > 1000);
+  CHECK(static_cast<double>(half) == Approx(0.5 * static_cast<double>(full)).epsilon(0.15));
 }
 
 TEST_CASE("meshes stay on the GPU while frames name them and leave it after") {

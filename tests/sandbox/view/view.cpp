@@ -80,15 +80,15 @@ TEST_CASE("the camera passes its keyframes and stands still before and after") {
       "{at = 2, position = [1,0,5]}, {at = 4, position = [2,0,5], fov = 50}]\n");
   INFO(reading.text);
   REQUIRE(reading.scene.has_value());
-  const auto at = [&reading](double time) { return view::camera_at(reading.scene->camera, {}, time); };
-  CHECK(at(0.0).position.x == Approx(0.0F));
-  CHECK(at(1.0).vertical_fov == Approx(30.0F));
-  CHECK(at(2.0).position.x == Approx(1.0F));
-  CHECK(at(4.0).position.x == Approx(2.0F));
-  CHECK(at(9.0).vertical_fov == Approx(50.0F));
+  const auto at = [&reading](double time) { return view::viewpoint_at(reading.scene->camera, {}, time); };
+  CHECK(at(0.0).position.x() == Approx(0.0));
+  CHECK(at(1.0).fov == Approx(30.0));
+  CHECK(at(2.0).position.x() == Approx(1.0));
+  CHECK(at(4.0).position.x() == Approx(2.0));
+  CHECK(at(9.0).fov == Approx(50.0));
   // Continuous, velocity included.
-  const float before = (at(2.0).position.x - at(1.999).position.x) / 0.001F;
-  const float after = (at(2.001).position.x - at(2.0).position.x) / 0.001F;
+  const double before = (at(2.0).position.x() - at(1.999).position.x()) / 0.001;
+  const double after = (at(2.001).position.x() - at(2.0).position.x()) / 0.001;
   CHECK(before == Approx(after).margin(0.01));
 }
 

@@ -1,0 +1,23 @@
+// What a frame of the film shows.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "engine/body/body.h"
+
+namespace shatterbox::sandbox::view {
+
+struct Moment {
+  double film = 0.0;    // s of the film
+  double time = 0.0;    // s of the world
+  double factor = 1.0;  // seconds of the world in a second of the film
+  std::span<const body::Body> bodies;
+};
+
+/// Where a body of the scene is, by its number: its centre, or that of its pieces, m; nothing if it is not
+/// there.
+using Whereabouts = std::function<std::optional<Vec3>(int entry)>;
+
+}  // namespace shatterbox::sandbox::view
