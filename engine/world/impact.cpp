@@ -1,6 +1,7 @@
 #include "engine/world/impact.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace shatterbox::world {
 namespace {
@@ -118,6 +119,10 @@ void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, doub
     else
       event.push_back(load);
   }
+}
+
+double contact_average(double step) {
+  return step * std::max(1.0, std::floor(kContactAverage / step + 0.5));
 }
 
 double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body) {

@@ -29,9 +29,10 @@ struct ImpactMemory {
   double event_duration = 0.0;  // s, of the event's impact as last evaluated
   std::vector<Load> contact;    // contact impulses of the last 1/60 s, one entry a step and place
   double tested_contact = 0.0;  // N: total contact force at which the body was last found to hold
+  double tested_growth = 1.1;   // times that force, at which it is tested again
   int generation = 0;           // breaks since the event began from which this piece comes
 
-  /// s, when a break made this piece: what presses on it is known on average only kContactAverage later.
+  /// s, when a break made this piece: what presses on it is known on average only contact_average later.
   double born = -1e9;
 
   // The impact that made this piece was charged with its whole impulse when it was judged. Until it is over,
@@ -42,8 +43,9 @@ struct ImpactMemory {
   body::BodyId charged_event = 0;  // the body that broke
 };
 
-/// The time over which contact impulses are averaged, s.
+/// The time over which contact impulses are averaged, s; in whole steps of `step` s, at least one.
 inline constexpr double kContactAverage = 1.0 / 60.0;
+double contact_average(double step);
 
 /// True if an impulse at `time` (s) by `other` (whose memory may be null) belongs to the impact that made the
 /// piece.

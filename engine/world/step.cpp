@@ -130,7 +130,10 @@ std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t pr
     if (body.script.path) hash.add(body.script.time).add(body.script.pace).add(body.script.wait);
   }
   for (const auto& [id, memory] : moving.memories) {
-    hash.add(std::uint64_t{id}).add(memory.event_duration).add(memory.tested_contact);
+    hash.add(std::uint64_t{id})
+        .add(memory.event_duration)
+        .add(memory.tested_contact)
+        .add(memory.tested_growth);
     hash.add(static_cast<std::uint64_t>(memory.generation));
     for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
     for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);

@@ -11,7 +11,8 @@ namespace {
 
 /// Loads nearer than this share of the body's bounding radius are one load.
 constexpr double kGatherRadius = 0.25;
-/// Resting contact is evaluated again when its force has grown by this factor since the body last held.
+/// Resting contact is evaluated again when its force has grown by this factor since the body last held, or so
+/// far that its stress, which is in proportion, would reach the strength.
 constexpr double kContactGrowth = 1.1;
 /// A body that bore an impact in an earlier pass bears one of that many times its loads, as long as its ratio
 /// of stress to strength times the factor stays below this.
@@ -87,14 +88,15 @@ struct Judge {
   }
 };
 
-void forget_old_contact(ImpactMemory& memory, double time) {
-  std::erase_if(memory.contact, [&](const Load& load) { return load.time <= time - kContactAverage; });
+/// Drops what is older than `average` (s). Half a step more or less decides nothing, so rounding must not.
+void forget_old_contact(ImpactMemory& memory, double time, double average, double step) {
+  std::erase_if(memory.contact, [&](const Load& load) { return load.time < time - average + 0.5 * step; });
 }
 
-double total_force(const std::vector<Load>& loads) {
+double total_force(const std::vector<Load>& loads, double average) {
   double sum = 0.0;
   for (const Load& load : loads) sum += load.impulse_body.norm();
-  return sum / kContactAverage;
+  return sum / average;
 }
 
 /// A shell no wider than `width` at its narrowest, bent by `force` over its whole size, has at most this
@@ -152,7 +154,8 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   else
     hits = gather_collisions(judge, log, body, radius, time, memory);
 
-  forget_old_contact(memory, time);
+  const double step = 1.0 / judge.settings.steps_per_second, average = contact_average(step);
+  forget_old_contact(memory, time, average, step);
   if (!is_paper)
     for (const Load& load : gather_loads(log, body::ImpulseKind::contact, body, radius, time))
       memory.contact.push_back(load);
@@ -165,10 +168,10 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   }
   add_to_event(memory.event, hits, radius);
 
-  const double contact_force = total_force(memory.contact);
-  bool is_pressed = contact_force > kContactGrowth * memory.tested_contact;
+  const double contact_force = total_force(memory.contact, average);
+  bool is_pressed = contact_force > memory.tested_growth * memory.tested_contact;
   // Contact is an average over a time that a newborn piece has not lived yet.
-  if (!is_paper && time < memory.born + kContactAverage) is_pressed = false;
+  if (!is_paper && time < memory.born + average) is_pressed = false;
   if (is_pressed && bending_bound(body, contact_force) < candidate.fragile->subject.material.strength) {
     is_pressed = false;
     if (hits.empty()) ++figures.skipped;
@@ -189,7 +192,7 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   candidate.is_piece = memory.charged_event != 0;
   candidate.first_time = time;
   for (const Load& load : memory.event) candidate.first_time = std::min(candidate.first_time, load.time);
-  candidate.impact.contact_average = kContactAverage;
+  candidate.impact.contact_average = average;
   candidate.impact.spin_material = body.pose.rotation.conjugate() * body.angular_velocity;
   if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;
   if (candidate.fragile->contact_duration)
@@ -281,6 +284,9 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     if (impact.decision.verdict.outcome == fracture::Outcome::held)
       borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(impact.decision.verdict)};
     ImpactMemory& memory = memories[impact.id];
+    const double ratio = impact.decision.verdict.ratio;
+    memory.tested_growth =
+        ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
     memory.event_duration = std::max(memory.event_duration, impact.decision.verdict.duration);
     figures.solves += impact.decision.generations;
     figures.factorisations += impact.decision.factorisations;

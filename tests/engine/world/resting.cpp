@@ -1,0 +1,71 @@
+// What rests on a breakable thing breaks it, or not, whatever the step: contact is an average over a time.
+#include <catch2/catch.hpp>
+
+#include "engine/geometry/generators.h"
+#include "engine/world/world.h"
+
+using namespace shatterbox;
+
+namespace {
+
+/// A ball of steel at rest on the middle of a pane whose border is held; gravity bears down on it. After half
+/// a second: the greatest ratio of stress to strength that the pane was found to bear, and whether it broke.
+struct Rest {
+  double ratio = 0.0;
+  bool has_broken = false;
+};
+
+Rest rest_on_pane(int steps_per_second, double density) {
+  world::WorldSettings settings;
+  settings.steps_per_second = steps_per_second;
+  settings.has_sleep = false;
+  world::World w(settings);
+  const int glass = w.add_material(*material::find_preset("glass")).value();
+  const int steel = w.add_material(*material::find_preset("steel")).value();
+  geometry::Meshing meshing;
+  meshing.edge_length = 0.03;
+  world::ShellDescription shell;
+  shell.mesh = geometry::make_pane(0.5, 0.5, meshing).value();
+  shell.thickness = 3e-3;
+  for (std::size_t v = 0; v < shell.mesh.positions.size(); ++v)
+    if (shell.mesh.positions[v].head<2>().cwiseAbs().maxCoeff() > 0.2499)
+      shell.clamped.push_back(static_cast<int>(v));
+  world::BodyDescription pane;
+  pane.name = "pane";
+  pane.form = shell;
+  pane.material = glass;
+  pane.pose.rotation = Quat(Eigen::AngleAxisd(-1.5707963267948966, Vec3::UnitX()));
+  REQUIRE(w.add_body(pane).ok());
+  world::BodyDescription ball;
+  ball.form = world::SphereDescription{0.05};
+  ball.material = steel;
+  ball.density = density;
+  ball.pose.translation = Vec3(0.0, 0.05 * (1.0 + 1e-3), 0.0);  // at the gap that is kept
+  REQUIRE(w.add_body(ball).ok());
+  Rest rest;
+  while (w.time() < 0.5 && !rest.has_broken) {
+    w.step();
+    rest.has_broken = !w.report().breaks.empty();
+    for (const world::ImpactRow& row : w.report().impacts) rest.ratio = std::max(rest.ratio, row.ratio);
+  }
+  return rest;
+}
+
+}  // namespace
+
+TEST_CASE("what rests on a pane breaks it or not whatever the step") {
+  const double density = 30000.0, ratio = rest_on_pane(60, density).ratio;
+  CAPTURE(ratio);
+  REQUIRE(ratio > 0.1);
+  REQUIRE(ratio < 1.0);
+  for (const int rate : {30, 60, 100, 240, 960, 3840}) {
+    CAPTURE(rate);
+    // The stress is in proportion to the weight: 2 % below the strength, and 2 % above it.
+    const Rest held = rest_on_pane(rate, 0.98 * density / ratio);
+    CHECK_FALSE(held.has_broken);
+    CHECK(held.ratio > 0.88);
+    CHECK(held.ratio < 0.99);
+    const Rest broken = rest_on_pane(rate, 1.02 * density / ratio);
+    CHECK(broken.has_broken);
+  }
+}
