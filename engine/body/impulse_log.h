@@ -29,6 +29,8 @@ struct LoggedImpulse {
   Vec3 impulse_a = Vec3::Zero(), impulse_b = Vec3::Zero();  // N s, on a and on b
   double time = 0.0;            // s since the step's start: when the collision arrived; 0 for contact
   double closing_speed = 0.0;   // m/s along the normal before the collision; 0 for contact
+  double duration = 0.0;        // s, if it is known by itself: of a blast; 0: that of the impact
+  double spread = 0.0;          // m, radius of the disc over which a blast gave it; 0: that of the contact
   double effective_mass = 0.0;  // kg along the normal, from both full inverse masses
 };
 

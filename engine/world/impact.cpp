@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/elementary.h"
+
 namespace shatterbox::world {
 namespace {
 
@@ -35,6 +37,8 @@ void merge(Load& into, const Load& load) {
   into.impulse_body += load.impulse_body;
   into.closing_speed = std::max(into.closing_speed, load.closing_speed);
   into.time = std::max(into.time, load.time);
+  into.duration = std::max(into.duration, load.duration);
+  into.spread = core::sqrt(into.spread * into.spread + load.spread * load.spread);  // areas add up
 }
 
 }  // namespace
@@ -95,6 +99,8 @@ std::vector<Load> gather_loads(const OwnImpulses& impulses, body::ImpulseKind ki
     load.point_world = entry.point_world;
     load.closing_speed = entry.closing_speed;
     load.time = step_start + entry.time;
+    load.duration = entry.duration;
+    load.spread = entry.spread;
     if (pass_over && pass_over(load)) continue;
     if (load.impulse_body.squaredNorm() > 0.0) loads.push_back(load);
   }

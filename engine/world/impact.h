@@ -21,6 +21,8 @@ struct Load {
   Vec3 point_world = Vec3::Zero();    // m, when it happened
   double closing_speed = 0.0;         // m/s, greatest of the gathered collisions
   double time = 0.0;                  // s, of the last impulse
+  double duration = 0.0;              // s, of a blast; 0: that of the impact
+  double spread = 0.0;                // m, radius of the disc over which a blast came
 };
 
 /// What a fragile body remembers of its impacts between steps. Part of the state.

@@ -10,6 +10,7 @@
 #include "engine/body/impulse_log.h"
 #include "engine/dynamics/paper_motion.h"
 #include "engine/dynamics/step_motion.h"
+#include "engine/world/acts.h"
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
 #include "engine/world/verdict.h"
@@ -41,8 +42,11 @@ struct World::State {
   std::vector<SharedForm> forms;
 
   MovingState moving;
-  body::ImpulseLog log;         // of the last step
-  BorneImpacts borne;           // of the last step
+  body::ImpulseLog log;                 // of the last step
+  BorneImpacts borne;                   // of the last step
+  std::vector<dynamics::Blast> blasts;  // of the coming step
+  std::vector<dynamics::Hand> hands;    // by their numbers
+  int next_hand = 1;
   std::vector<body::Way> ways;  // of the last step
   std::map<body::BodyId, Ancestry> ancestry;
   std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;

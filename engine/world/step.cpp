@@ -174,11 +174,13 @@ void World::step() {
   for (int pass = 0; part.number < part.count;) {
     MovingState snapshot;
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
+    body::ImpulseLog given = act(part);
     const std::vector<body::Body> before = s.moving.bodies;
     body::ImpulseLog log;
     dynamics::ContactReport moved = move_bodies(part, log);
+    given.insert(given.end(), log.begin(), log.end());
     if (may_break) {
-      const auto impacts = judge_impacts(log);
+      const auto impacts = judge_impacts(given);
       const std::size_t known_breaks = s.report.breaks.size();
       if (timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); })) {
         ++pass;
@@ -188,7 +190,7 @@ void World::step() {
       }
     }
     book_conservation(before, log, s.contact_settings.time_step / part.count);
-    s.log.insert(s.log.end(), log.begin(), log.end());
+    s.log.insert(s.log.end(), given.begin(), given.end());
     dynamics::add_part(std::move(moved), contact);
     ++part.number;
     pass = 0;
@@ -198,6 +200,8 @@ void World::step() {
     timer.time("sleep",
                [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   }
+  s.blasts.clear();
+  for (dynamics::Hand& hand : s.hands) hand.velocity.setZero();
   s.ways = std::move(contact.ways);
   book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
   book_scripted(s.moving.bodies, s.report.scripted);
@@ -256,7 +260,9 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
   }
   for (const EvaluatedImpact* impact : broken) {
     if (goes_back) pay_for_cracks(s.moving, *impact, impact->decision.fracture_energy, s.log);
+    const body::Body parent = *body::find_body(s.moving.bodies, impact->id);
     BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
+    regrip(s.hands, parent, row.born, s.moving.bodies);
     row.time = end_time;
     inherit_stress(row);
     s.report.breaks.push_back(std::move(row));

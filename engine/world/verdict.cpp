@@ -70,6 +70,10 @@ struct Judge {
       out.other_inverse_mass = mobility(*partner, load.other_point, load.other_impulse.normalized());
     inverse += out.other_inverse_mass;
     out.effective_mass = inverse > 0.0 ? 1.0 / inverse : 0.0;
+    if (load.spread > 0.0) {
+      out.hertz_radius = load.spread;
+      return out;
+    }
     if (!is_collision || !(out.effective_mass > 0.0)) return out;
     // What stands behind a body that is squeezed, or shares its impact with other places, shows in the
     // impulse: the mass that was stopped at the speed of the impact. A single contact has the pair's own
@@ -143,6 +147,15 @@ std::vector<Load> gather_collisions(const Judge& judge, const OwnImpulses& log, 
   return hits;
 }
 
+/// s, of the hardest load if that is a blast's.
+std::optional<double> blast_duration_of(const std::vector<Load>& loads) {
+  const Load* hardest = nullptr;
+  for (const Load& load : loads)
+    if (!hardest || load.impulse_body.squaredNorm() > hardest->impulse_body.squaredNorm()) hardest = &load;
+  if (!hardest || !(hardest->duration > 0.0)) return std::nullopt;
+  return hardest->duration;
+}
+
 /// The impact of this step on one body, if there is anything to evaluate.
 bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body& body, double time,
                    ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
@@ -180,8 +193,11 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
 
   for (const Load& load : memory.event)
     candidate.impact.loads.push_back(judge.shell_load(body, load, !is_paper));
-  for (const Load& load : gather_by_place(memory.contact, radius))
-    candidate.impact.loads.push_back(judge.shell_load(body, load, false));
+  const std::optional<double> blast = blast_duration_of(memory.event);
+  // What presses at rest is nothing beside a blast, whose duration is that of all loads.
+  if (!blast)
+    for (const Load& load : gather_by_place(memory.contact, radius))
+      candidate.impact.loads.push_back(judge.shell_load(body, load, false));
   candidate.is_struck = !memory.event.empty();
   const std::vector<Load>& told = candidate.is_struck ? memory.event : memory.contact;
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
@@ -197,6 +213,7 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;
   if (candidate.fragile->contact_duration)
     candidate.impact.given_duration = candidate.fragile->contact_duration;
+  if (blast) candidate.impact.given_duration = blast;
   if (is_paper) candidate.impact.given_duration = judge.settings.paper_duration;
   memory.tested_contact = std::max(memory.tested_contact, contact_force);
   return true;

@@ -1,5 +1,7 @@
 #include "engine/world/world.h"
 
+#include <algorithm>
+
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
@@ -56,6 +58,62 @@ bool World::push_body(body::BodyId id, const Vec3& impulse, const Vec3& point) {
   body->quiet_time = 0.0;
   state_->is_disturbed = true;
   return true;
+}
+
+void World::set_gravity(const Vec3& gravity) {
+  state_->settings.gravity = state_->contact_settings.gravity = gravity;
+  for (body::Body& body : state_->moving.bodies) {
+    if (!body.is_dynamic()) continue;
+    body.is_awake = true;
+    body.quiet_time = 0.0;
+  }
+  state_->is_disturbed = true;
+}
+
+void World::explode(const dynamics::Blast& blast) {
+  state_->blasts.push_back(blast);
+}
+
+int World::grab(body::BodyId id, const Vec3& point, double most_force) {
+  const body::Body* body = body::find_body(state_->moving.bodies, id);
+  if (!body || !body->is_dynamic()) return 0;
+  dynamics::Hand hand;
+  hand.number = state_->next_hand++;
+  hand.body = id;
+  hand.grip = body->pose.apply_inverse(point);
+  hand.attitude = body->pose.rotation;
+  hand.place = point;
+  hand.most_force = most_force;
+  state_->hands.push_back(hand);
+  return hand.number;
+}
+
+bool World::move_hand(int number, const Vec3& place) {
+  const auto hand = std::find_if(state_->hands.begin(), state_->hands.end(),
+                                 [number](const dynamics::Hand& h) { return h.number == number; });
+  if (hand == state_->hands.end() || !body::find_body(state_->moving.bodies, hand->body)) return false;
+  hand->velocity = (place - hand->place) * state_->settings.steps_per_second;
+  hand->place = place;
+  return true;
+}
+
+void World::release(int number) {
+  std::erase_if(state_->hands, [number](const dynamics::Hand& h) { return h.number == number; });
+}
+
+body::ImpulseLog World::act(const dynamics::StepPart& part) {
+  State& s = *state_;
+  body::ImpulseLog log;
+  if (s.blasts.empty() && s.hands.empty()) return log;
+  s.report.stages.time("acts", [&] {
+    if (part.number == 0)
+      for (const dynamics::Blast& blast : s.blasts) apply_blast(s.moving.bodies, blast, log);
+    const double time_step = s.contact_settings.time_step / part.count;
+    apply_hands(s.moving.bodies, s.hands, s.settings.gravity, time_step,
+                (part.count - 1 - part.number) * time_step, log);
+  });
+  s.is_disturbed = true;
+  return log;
 }
 
 std::span<const body::Body> World::bodies() const {

@@ -11,6 +11,7 @@
 #include "engine/body/impulse_log.h"
 #include "engine/body/way.h"
 #include "engine/core/result.h"
+#include "engine/dynamics/blast.h"
 #include "engine/material/material.h"
 #include "engine/world/description.h"
 #include "engine/world/report.h"
@@ -62,6 +63,20 @@ class World {
   /// dynamic.
   bool push_body(body::BodyId id, const Vec3& impulse, const Vec3& point);
 
+  /// From the coming step on, m/s2. Wakes everything.
+  void set_gravity(const Vec3& gravity);
+
+  /// An explosion in the coming step (dynamics/blast.h).
+  void explode(const dynamics::Blast& blast);
+
+  /// A hand takes hold of a body at a point (m, world), with at most that force (N), and keeps it there and
+  /// as it is turned (dynamics/hand.h). Returns its number; 0 if the body is not there or not dynamic.
+  int grab(body::BodyId id, const Vec3& point, double most_force);
+  /// Where a hand is at the end of the coming step, m; from then on it rests there. False if there is no such
+  /// hand, or what it held is gone.
+  bool move_hand(int hand, const Vec3& place);
+  void release(int hand);
+
   /// Factors and flaws of all breakable shapes, which would otherwise be made at the first hit. Optional.
   void prepare();
 
@@ -93,6 +108,8 @@ class World {
   struct State;
 
   int count_parts() const;
+  /// Stage "acts", of one part of the step: explosions and hands.
+  body::ImpulseLog act(const dynamics::StepPart& part);
   /// Stage "motion", of one part of the step.
   dynamics::ContactReport move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log);
   /// Stage "stress", of the impulses of one part.

@@ -28,6 +28,28 @@ struct Push {
 };
 struct Remove {};
 
+struct Gravity {
+  Vec3 gravity = Vec3::Zero();  // m/s2
+  double ramp = 0.0;            // s, from what it was to this one
+};
+
+struct Explosion {
+  Vec3 centre = Vec3::Zero();  // m
+  double energy = 0.0;         // J
+  double duration = 0.0;       // s; 0: by the law of the blast
+};
+
+struct Grab {
+  std::optional<Vec3> point;    // m; nothing: the body's centre
+  std::optional<double> force;  // N, greatest; nothing: ten times what the body weighs on earth
+};
+/// The hand that holds the body goes there.
+struct Carry {
+  Vec3 to = Vec3::Zero();  // m
+  double duration = 1.0;   // s
+};
+struct Release {};
+
 /// Slow motion: the film's seconds show `factor` times as many of the world's.
 struct Speed {
   double factor = 1.0;
@@ -76,7 +98,9 @@ struct EventEntry {
   When when = When::time;
   double at = 0.0;  // s
   int body = -1;    // number in SceneDescription::bodies: what comes in, is pushed or goes
-  std::variant<Projectile, Drop, Push, Remove, Speed, CameraChange, OverlayChange, Caption> action;
+  std::variant<Projectile, Drop, Push, Remove, Gravity, Explosion, Grab, Carry, Release, Speed, CameraChange,
+               OverlayChange, Caption>
+      action;
 };
 
 /// An event for the picture whose time has come.
@@ -91,7 +115,8 @@ inline bool is_for_picture(const EventEntry& event) {
 }
 
 inline const std::vector<std::string> kWhenNames{"first break", "rest"};
-inline const std::vector<std::string> kEventVerbs{"projectile", "drop",   "push",    "remove",
-                                                  "speed",      "camera", "overlay", "caption"};
+inline const std::vector<std::string> kEventVerbs{"projectile", "drop",    "push",   "remove",  "gravity",
+                                                  "explosion",  "grab",    "move",   "release", "speed",
+                                                  "camera",     "overlay", "caption"};
 
 }  // namespace shatterbox::sandbox::scene

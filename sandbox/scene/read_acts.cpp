@@ -15,6 +15,16 @@ std::vector<std::string> body_names(const SceneDescription& scene) {
   return names;
 }
 
+const Range kPlace = between(-1e6, 1e6, "m");
+
+Vec3 read_needed(TableReader& reader, const std::string& key, const Range& range, const char* example) {
+  const auto value = reader.vector(key, range);
+  if (!reader.has(key))
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"{}\"", reader.what(), key),
+                       fmt::format("add {} = {}", key, example));
+  return value.value_or(Vec3::Zero());
+}
+
 }  // namespace
 
 int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
@@ -80,15 +90,10 @@ int read_acted_body(TableReader& reader, const SceneDescription& scene) {
 
 Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
   Push push;
-  if (const auto impulse = reader.vector("impulse", between(-1e6, 1e6, "N s"))) {
-    push.impulse = *impulse;
-    if (impulse->squaredNorm() == 0.0)
-      reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
-  } else if (!reader.has("impulse")) {
-    reader.add_problem(reader.table().place, fmt::format("{} has no \"impulse\"", reader.what()),
-                       "add impulse = [x, y, z] (N s)");
-  }
-  push.point = reader.vector("point", between(-1e6, 1e6, "m"));
+  push.impulse = read_needed(reader, "impulse", between(-1e6, 1e6, "N s"), "[x, y, z] (N s)");
+  if (reader.has("impulse") && push.impulse.squaredNorm() == 0.0)
+    reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
+  push.point = reader.vector("point", kPlace);
   if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
     reader.add_problem_at("body", "what is static or scripted cannot be pushed",
                           "give it motion = \"dynamic\"");
@@ -97,12 +102,7 @@ Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
 
 Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
   Projectile projectile;
-  if (const auto from = reader.vector("from", between(-1e6, 1e6, "m"))) {
-    projectile.from = *from;
-  } else if (!reader.has("from")) {
-    reader.add_problem(reader.table().place, fmt::format("{} has no \"from\"", reader.what()),
-                       "add from = [x, y, z]: where it starts");
-  }
+  projectile.from = read_needed(reader, "from", kPlace, "[x, y, z]: where it starts");
   if (const auto speed = reader.number("speed", between(1e-3, 1e4, "m/s"))) {
     projectile.speed = *speed;
   } else if (!reader.has("speed")) {
@@ -124,6 +124,43 @@ Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
     }
   }
   return projectile;
+}
+
+Gravity read_gravity(TableReader& reader) {
+  Gravity gravity;
+  gravity.gravity = read_needed(reader, "gravity", between(-1e4, 1e4, "m/s2"), "[0, -1.62, 0] (m/s2)");
+  gravity.ramp = reader.number("ramp", between(0.0, 1e6, "s")).value_or(gravity.ramp);
+  return gravity;
+}
+
+Explosion read_explosion(TableReader& reader) {
+  Explosion explosion;
+  explosion.centre = read_needed(reader, "centre", kPlace, "[x, y, z] (m)");
+  if (const auto energy = reader.number("energy", between(1e-6, 1e12, "J"))) {
+    explosion.energy = *energy;
+  } else if (!reader.has("energy")) {
+    reader.add_problem(reader.table().place, fmt::format("{} has no \"energy\"", reader.what()),
+                       "add energy = 10000 (J): what 2.4 grams of TNT have");
+  }
+  explosion.duration = reader.number("duration", between(1e-7, 0.1, "s")).value_or(0.0);
+  return explosion;
+}
+
+Grab read_grab(TableReader& reader, int body, const SceneDescription& scene) {
+  Grab grab;
+  grab.point = reader.vector("point", kPlace);
+  grab.force = reader.number("force", between(1e-6, 1e9, "N"));
+  if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
+    reader.add_problem_at("body", "what is static or scripted cannot be grabbed",
+                          "give it motion = \"dynamic\"");
+  return grab;
+}
+
+Carry read_carry(TableReader& reader) {
+  Carry carry;
+  carry.to = read_needed(reader, "to", kPlace, "[x, y, z] (m): where the hand goes");
+  carry.duration = reader.number("duration", between(1e-3, 1e6, "s")).value_or(carry.duration);
+  return carry;
 }
 
 }  // namespace shatterbox::sandbox::scene

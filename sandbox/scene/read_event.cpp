@@ -12,8 +12,6 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kLaterVerbs{"explosion", "grab", "release", "gravity"};
-
 struct VerbKeys {
   std::string verb;
   std::vector<std::string> keys;  // beside those of all events
@@ -24,6 +22,11 @@ const std::vector<VerbKeys> kVerbKeys{
     {"drop", {"body", "position"}},
     {"push", {"body", "impulse", "point"}},
     {"remove", {"body"}},
+    {"gravity", {"gravity", "ramp"}},
+    {"explosion", {"centre", "energy", "duration"}},
+    {"grab", {"body", "point", "force"}},
+    {"move", {"body", "to", "duration"}},
+    {"release", {"body"}},
     {"speed", {"factor", "ramp"}},
     {"camera", {"move", "position", "target", "fov", "angle", "body", "offset", "duration", "easing"}},
     {"overlay", {"show", "most"}},
@@ -72,7 +75,7 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   TableReader reader(table, fmt::format("event \"{}\"", event.name), problems);
   reader.text("name");
   read_when(reader, event);
-  const auto verb = reader.choice("do", kEventVerbs, kLaterVerbs);
+  const auto verb = reader.choice("do", kEventVerbs);
   if (!reader.has("do")) {
     reader.add_problem(table.place, fmt::format("{} does nothing", reader.what()),
                        fmt::format("add do = one of {}", quoted_list(kEventVerbs)));
@@ -91,6 +94,19 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   } else if (*verb == "remove") {
     event.body = read_acted_body(reader, scene);
     event.action = Remove{};
+  } else if (*verb == "gravity") {
+    event.action = read_gravity(reader);
+  } else if (*verb == "explosion") {
+    event.action = read_explosion(reader);
+  } else if (*verb == "grab") {
+    event.body = read_acted_body(reader, scene);
+    event.action = read_grab(reader, event.body, scene);
+  } else if (*verb == "move") {
+    event.body = read_acted_body(reader, scene);
+    event.action = read_carry(reader);
+  } else if (*verb == "release") {
+    event.body = read_acted_body(reader, scene);
+    event.action = Release{};
   } else if (*verb == "speed") {
     event.action = read_speed(reader);
   } else if (*verb == "camera") {

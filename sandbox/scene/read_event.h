@@ -22,6 +22,11 @@ int read_acted_body(TableReader& reader, const SceneDescription& scene);
 Projectile read_projectile(TableReader& reader, SceneDescription& scene);
 Push read_push(TableReader& reader, int body, const SceneDescription& scene);
 
+Gravity read_gravity(TableReader& reader);
+Explosion read_explosion(TableReader& reader);
+Grab read_grab(TableReader& reader, int body, const SceneDescription& scene);
+Carry read_carry(TableReader& reader);
+
 Speed read_speed(TableReader& reader);
 /// `body`: takes the number of the one to follow.
 CameraChange read_camera_change(TableReader& reader, const SceneDescription& scene, int& body);

@@ -145,6 +145,19 @@ std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene
   if (const auto* push = std::get_if<scene::Push>(&event.action))
     return push_bodies(*push, event.body, built);
   if (std::holds_alternative<scene::Remove>(event.action)) return remove_bodies(event.body, built);
+  if (const auto* gravity = std::get_if<scene::Gravity>(&event.action)) {
+    forces_.change(*gravity, built.world);
+    return {};
+  }
+  if (const auto* blast = std::get_if<scene::Explosion>(&event.action)) {
+    built.world.explode({blast->centre, blast->energy, blast->duration});
+    return {};
+  }
+  if (const auto* grab = std::get_if<scene::Grab>(&event.action))
+    return forces_.grab(*grab, event.body, built);
+  if (const auto* carry = std::get_if<scene::Carry>(&event.action))
+    return forces_.carry(*carry, event.body, built);
+  if (std::holds_alternative<scene::Release>(event.action)) return forces_.release(event.body, built);
   if (const auto* speed = std::get_if<scene::Speed>(&event.action)) {
     clock_.change(clock_.film_at(built.world.time()), speed->factor, speed->ramp);
     return {};
@@ -201,6 +214,7 @@ std::vector<std::string> Script::play(scene::BuiltScene& built) {
   std::vector<std::string> faults;
   bring_copies(built, faults);
   play_events(built, faults);
+  forces_.advance(built.world);
   return faults;
 }
 

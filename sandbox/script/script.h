@@ -12,6 +12,7 @@
 #include "sandbox/scene/scene_description.h"
 #include "sandbox/script/conditions.h"
 #include "sandbox/script/film_clock.h"
+#include "sandbox/script/forces.h"
 
 namespace shatterbox::sandbox::script {
 
@@ -60,6 +61,7 @@ class Script {
   std::size_t next_copy_ = 0;
   std::vector<std::size_t> coming_;  // events that have not been played
   Conditions conditions_;
+  Forces forces_;
   FilmClock clock_;
   std::vector<scene::Cue> cues_;
   std::vector<int> throws_;  // per [[body]]: how often it was brought in

@@ -131,3 +131,39 @@ TEST_CASE("a copy waits until there is room for it, an event into another body i
   CHECK(words[1].find("\"late\"") != std::string::npos);
   CHECK(script.is_over());
 }
+
+TEST_CASE("hands grab, carry and release, explosions and gravity come on time, and what cannot be is told") {
+  const auto reading = scene::read(
+      "[[body]]\nname = \"a\"\nkind = \"box\"\nsize = 0.1\nposition = [0,2,0]\n"
+      "[[body]]\nname = \"b\"\nkind = \"box\"\nsize = 0.1\nposition = [9,2,0]\n"
+      "[[event]]\nat = 0\ndo = \"grab\"\nbody = \"a\"\n"
+      "[[event]]\nat = 0.5\ndo = \"move\"\nbody = \"a\"\nto = [0,3,0]\nduration = 0.5\n"
+      "[[event]]\nat = 1\ndo = \"gravity\"\ngravity = [0,0,0]\nramp = 0.2\n"
+      "[[event]]\nat = 1.5\ndo = \"release\"\nbody = \"a\"\n"
+      "[[event]]\nat = 1.6\ndo = \"move\"\nbody = \"a\"\nto = [0,0,0]\n"
+      "[[event]]\nat = 2\ndo = \"explosion\"\ncentre = [-1,3,0]\nenergy = 1e5\n");
+  auto built = build(reading);
+  script::Script script(*reading.scene);
+  std::vector<std::string> words;
+  const auto play_to = [&](double time) {
+    while (built->world.time() < time - 1e-9) {
+      for (std::string& word : script.play(*built)) words.push_back(word);
+      built->world.step();
+    }
+    return built->world.bodies()[0];
+  };
+  CHECK((play_to(0.5).pose.translation - Vec3(0, 2, 0)).norm() < 1e-3);
+  CHECK((play_to(0.75).pose.translation - Vec3(0, 2.5, 0)).norm() < 0.02);
+  CHECK((play_to(1.0).pose.translation - Vec3(0, 3, 0)).norm() < 0.02);
+  const body::Body fallen = built->world.bodies()[1];
+  CHECK(fallen.pose.translation.y() == Approx(2 - 0.5 * 9.81).epsilon(1e-6));
+  CHECK(play_to(1.2).id == 1);
+  // Over the smooth ramp gravity acts for half its time.
+  CHECK(built->world.bodies()[1].velocity.y() == Approx(-9.81 * 1.1).epsilon(0.01));
+  CHECK(built->world.settings().gravity == Vec3(0, 0, 0));
+  CHECK(play_to(1.9).velocity.norm() < 1e-3);
+  REQUIRE(words.size() == 1);
+  CHECK(words[0].find("no hand holds its body") != std::string::npos);
+  CHECK(play_to(2.1).velocity.x() > 0.01);
+  CHECK(script.is_over());
+}
