@@ -67,6 +67,14 @@ Quat rotation_by(const Vec3& rotation_vector) {
   return Quat(core::cos(0.5 * angle), axis.x(), axis.y(), axis.z());
 }
 
+Vec3 turn_between(const Quat& from, const Quat& to) {
+  Quat way = to * from.conjugate();
+  if (way.w() < 0.0) way.coeffs() = -way.coeffs();
+  const double sine = way.vec().norm();
+  if (sine < 1e-150) return Vec3::Zero();
+  return way.vec() * (2.0 * core::atan2(sine, way.w()) / sine);
+}
+
 void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin) {
   constexpr double kMostAngle = 0.05;  // rad a part, unless there would be too many
   constexpr double kMostParts = 4000.0;

@@ -27,4 +27,7 @@ void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order,
 /// Rotation by a rotation vector (rad).
 Quat rotation_by(const Vec3& rotation_vector);
 
+/// The rotation vector (rad) that leads from one to the other the short way.
+Vec3 turn_between(const Quat& from, const Quat& to);
+
 }  // namespace shatterbox::dynamics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/core/elementary.h"
+#include "engine/dynamics/free_motion.h"
 
 namespace shatterbox::dynamics {
 
@@ -23,15 +23,6 @@ Vec3 limited(const Vec3& v, double most) {
   return size > most ? Vec3(v * (most / size)) : v;
 }
 
-/// The rotation vector, rad, that leads from one to the other the short way.
-Vec3 short_way(const Quat& from, const Quat& to) {
-  Quat way = to * from.conjugate();
-  if (way.w() < 0.0) way.coeffs() = -way.coeffs();
-  const double sine = way.vec().norm();
-  if (sine < 1e-150) return Vec3::Zero();
-  return way.vec() * (2.0 * core::atan2(sine, way.w()) / sine);
-}
-
 }  // namespace
 
 HandPush drive_by_hand(const body::Body& body, const Hand& hand, const Vec3& gravity, double time_step) {
@@ -45,7 +36,7 @@ HandPush drive_by_hand(const body::Body& body, const Hand& hand, const Vec3& gra
   // half of gravity's gain before that at either end.
   const Vec3 half_gain = 0.5 * time_step * gravity;
   const Vec3 turned =
-      driven(body.angular_velocity, short_way(body.pose.rotation, hand.attitude), Vec3::Zero(), time_step);
+      driven(body.angular_velocity, turn_between(body.pose.rotation, hand.attitude), Vec3::Zero(), time_step);
   const Vec3 grip_velocity = body.velocity_at(push.point) - half_gain;
   const Vec3 wanted = driven(grip_velocity, hand.place - push.point, hand.velocity, time_step) + half_gain;
   // First the weight, so that a hand that pulls with all its force lets nothing fall; then the way.

@@ -17,15 +17,6 @@ constexpr double kPaceTime = 0.1;     // and s until it has its full pace again
 constexpr double kOnPath = 1e-9;      // of size and place: what is so near its path is on it
 constexpr double kRounding = 1e-12;   // of size and place: what is so near is there
 
-// The rotation vector, rad, that leads from one to the other the short way.
-Vec3 turn_between(const Quat& from, const Quat& to) {
-  Quat way = to * from.conjugate();
-  if (way.w() < 0.0) way.coeffs() = -way.coeffs();
-  const double sine = way.vec().norm();
-  if (sine < 1e-150) return Vec3::Zero();
-  return way.vec() * (2.0 * core::atan2(sine, way.w()) / sine);
-}
-
 void aim(Body& b, double time_step) {
   body::Script& script = b.script;
   const double from = script.time;

@@ -3,22 +3,11 @@
 #include <algorithm>
 #include <map>
 
-#include "engine/core/elementary.h"
+#include "engine/dynamics/free_motion.h"
 
 namespace shatterbox::sandbox::script {
 
 namespace {
-
-/// The way round by the lesser angle, at one speed.
-Quat turned(const Quat& from, const Quat& to, double share) {
-  Quat way = to * from.conjugate();
-  if (way.w() < 0.0) way.coeffs() = -way.coeffs();
-  const double sine = way.vec().norm();
-  if (sine < 1e-12) return to;
-  const double half = share * core::atan2(sine, way.w());
-  const Vec3 axis = way.vec() * (core::sin(half) / sine);
-  return (Quat(core::cos(half), axis.x(), axis.y(), axis.z()) * from).normalized();
-}
 
 /// Of bodies that are no more: where they would be, had they stayed with their heaviest piece.
 std::map<body::BodyId, Pose> find_broken(std::span<const body::Body> before, const world::World& world) {
@@ -61,7 +50,8 @@ std::vector<body::Body> bodies_between(std::span<const body::Body> before, const
       if (const auto found = broken.find(body.id); found != broken.end()) end = found->second;
     }
     body.pose.translation += share * (end.translation - body.pose.translation);
-    body.pose.rotation = turned(body.pose.rotation, end.rotation, share);
+    const Vec3 turn = dynamics::turn_between(body.pose.rotation, end.rotation);
+    body.pose.rotation = (dynamics::rotation_by(share * turn) * body.pose.rotation).normalized();
   }
   return bodies;
 }

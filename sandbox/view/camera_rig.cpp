@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/core/elementary.h"
+#include "engine/dynamics/free_motion.h"
 #include "sandbox/view/to_glm.h"
 
 namespace shatterbox::sandbox::view {
@@ -20,12 +20,6 @@ void go(Vec3& from, const Vec3& to, double share) {
   from += share * (to - from);
 }
 
-Vec3 turned_about(const Vec3& axis, double angle, const Vec3& v) {
-  const double half = 0.5 * angle;
-  const Vec3 sine = core::sin(half) * axis.normalized();
-  return Quat(core::cos(half), sine.x(), sine.y(), sine.z()) * v;
-}
-
 }  // namespace
 
 void CameraRig::apply(Shot& shot, double film, const Whereabouts& where, Viewpoint& view) const {
@@ -39,8 +33,8 @@ void CameraRig::apply(Shot& shot, double film, const Whereabouts& where, Viewpoi
       if (change.fov) view.fov += share * (*change.fov - view.fov);
       break;
     case scene::CameraMove::orbit:
-      view.position =
-          view.target + turned_about(entry_.up, share * change.angle, view.position - view.target);
+      view.position = view.target + dynamics::rotation_by(share * change.angle * entry_.up.normalized()) *
+                                        (view.position - view.target);
       break;
     case scene::CameraMove::follow:
       if (const auto place = where(shot.entry)) shot.last_seen = place;

@@ -90,7 +90,8 @@ TEST_CASE("what stands in the way holds a led body back, and the hand's force do
   CHECK(held.body().pose.translation.x() > 0.29);
   const Vec3 pressed = held.body().pose.translation;
   for (int i = 0; i < 120; ++i) held.w.step();
-  CHECK((held.body().pose.translation - pressed).norm() < 1e-3);
+  CHECK(std::abs(held.body().pose.translation.x() - pressed.x()) < 1e-4);
+  CHECK(held.body().pose.translation.y() > 0.95);  // it creeps down the wall: nearly all force goes into it
 }
 
 TEST_CASE("gravity that changes wakes what rests, and acts at once") {
