@@ -14,16 +14,18 @@ command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 # test_preset PRESET LABEL...: configures, builds what these tests need, tests. A new build folder compiles the files of
 # a source folder together, which takes half the time when everything is compiled; one that is there keeps its way.
 test_preset() {
-  local preset=$1
+  local preset=$1 begin=$SECONDS
   shift
   echo "== $preset"
   local unity=()
   [ -e "build/$preset/CMakeCache.txt" ] || unity=(-DCMAKE_UNITY_BUILD=ON)
   cmake --preset "$preset" -DSHATTERBOX_TESTS=ON "${unity[@]}" "${launcher[@]}" >/dev/null
   cmake --build "build/$preset" -j "$jobs" --target "${@/#/tests_}"
+  echo "== $preset built in $((SECONDS - begin)) s"
   local labels
   labels=$(IFS='|' && echo "$*")
   ctest --test-dir "build/$preset" --output-on-failure -j "$jobs" -L "^($labels)\$"
+  echo "== $preset passed in $((SECONDS - begin)) s"
 }
 
 test_preset asan unit robustness structure  # -DSHATTERBOX_RENDER=OFF, so the engine alone is built here

@@ -8,6 +8,7 @@
 #include "engine/geometry/generators.h"
 #include "engine/geometry/tetrahedralise.h"
 #include "tests/engine/geometry/solids.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 using namespace shatterbox::geometry;
@@ -89,7 +90,7 @@ TEST_CASE("solid kerf: a wide kerf gives way where the material is narrow") {
 
 TEST_CASE("solid kerf: pieces of random cuts cross neither each other nor themselves") {
   int crossing = 0, self_crossing = 0, empty = 0;
-  for (int trial = 0; trial < 90; ++trial) {
+  for (int trial = 0; trial < test::how_many(90, 30); ++trial) {
     core::Random random(21, static_cast<std::uint64_t>(trial));
     SolidComplex complex =
         make_solid_complex(test::make_cube_elements(1 + trial % 2, 0.2, static_cast<std::uint64_t>(trial)));
@@ -136,8 +137,8 @@ TEST_CASE("solid kerf: an embedded ball keeps its given triangles, and its piece
   for (std::size_t t = 0; t < areas.size(); ++t)
     CHECK(areas[t] == Approx(area(given, given.triangles[t])).epsilon(1e-9));
 
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    core::Random random(7, seed);
+  for (long seed = 0; seed < test::how_many(4, 2); ++seed) {
+    core::Random random(7, static_cast<std::uint64_t>(seed));
     SolidComplex complex = whole;
     SolidCutter cutter(complex);
     for (int i = 0; i < 4; ++i) {

@@ -7,6 +7,7 @@
 #include "engine/geometry/solid_surface.h"
 #include "engine/geometry/vertex_fans.h"
 #include "tests/engine/geometry/solids.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 using namespace shatterbox::geometry;
@@ -136,7 +137,7 @@ int try_random_cuts(int trial) {
 
 TEST_CASE("split solid: 1e4 random cuts") {
   int cuts = 0;
-  for (int trial = 0; cuts < 10'000; ++trial) cuts += try_random_cuts(trial);
+  for (int trial = 0; cuts < test::how_many(10'000, 2000); ++trial) cuts += try_random_cuts(trial);
 }
 
 TEST_CASE("split solid: 1e6 random cuts", "[.][long]") {

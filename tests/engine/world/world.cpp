@@ -148,21 +148,20 @@ TEST_CASE("pieces of one body collide with each other, whatever group they are i
 }
 
 TEST_CASE("the same scene gives the same bits on any number of threads") {
-  std::uint64_t hashes[3];
-  const int threads[3] = {1, 2, 4};
-  for (int i = 0; i < 3; ++i) {
-    core::set_thread_count(threads[i]);
+  const std::vector<int> threads = test::kIsSanitized ? std::vector{1, 4} : std::vector{1, 2, 4};
+  std::vector<std::uint64_t> hashes;
+  for (const int count : threads) {
+    core::set_thread_count(count);
     world::World w = make_drop(2.0);
     for (int k = 0; k < 20; ++k) w.step();
     CHECK(w.bodies().size() > 5);
-    hashes[i] = w.state_hash();
+    hashes.push_back(w.state_hash());
   }
   core::set_thread_count(0);
   // Pinned: any compiler and optimisation gives these bits. A change of the physics changes them; say so
   // where it does.
   CHECK(hashes[0] == 0x19c77c9cd553a4d0ULL);
-  CHECK(hashes[0] == hashes[1]);
-  CHECK(hashes[0] == hashes[2]);
+  for (const std::uint64_t hash : hashes) CHECK(hash == hashes[0]);
 }
 
 TEST_CASE("a scripted body follows its path through the door, and goes it once where a step is taken again") {
