@@ -15,8 +15,6 @@ std::vector<std::string> body_names(const SceneDescription& scene) {
   return names;
 }
 
-const Range kPlace = between(-1e6, 1e6, "m");
-
 Vec3 read_needed(TableReader& reader, const std::string& key, const Range& range, const char* example) {
   const auto value = reader.vector(key, range);
   if (!reader.has(key))
@@ -93,7 +91,7 @@ Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
   push.impulse = read_needed(reader, "impulse", between(-1e6, 1e6, "N s"), "[x, y, z] (N s)");
   if (reader.has("impulse") && push.impulse.squaredNorm() == 0.0)
     reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
-  push.point = reader.vector("point", kPlace);
+  push.point = reader.vector("point", coordinate());
   if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
     reader.add_problem_at("body", "what is static or scripted cannot be pushed",
                           "give it motion = \"dynamic\"");
@@ -102,7 +100,7 @@ Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
 
 Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
   Projectile projectile;
-  projectile.from = read_needed(reader, "from", kPlace, "[x, y, z]: where it starts");
+  projectile.from = read_needed(reader, "from", coordinate(), "[x, y, z]: where it starts");
   if (const auto speed = reader.number("speed", between(1e-3, 1e4, "m/s"))) {
     projectile.speed = *speed;
   } else if (!reader.has("speed")) {
@@ -110,7 +108,7 @@ Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
                        "add speed = 10 (m/s)");
   }
   projectile.spin = reader.vector("spin", between(-1e5, 1e5, "rad/s")).value_or(projectile.spin);
-  const auto point = reader.vector("at_point", between(-1e6, 1e6, "m"));
+  const auto point = reader.vector("at_point", coordinate());
   const auto body = reader.text("at_body");
   if (reader.has("at_point") == reader.has("at_body")) {
     reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
@@ -135,7 +133,7 @@ Gravity read_gravity(TableReader& reader) {
 
 Explosion read_explosion(TableReader& reader) {
   Explosion explosion;
-  explosion.centre = read_needed(reader, "centre", kPlace, "[x, y, z] (m)");
+  explosion.centre = read_needed(reader, "centre", coordinate(), "[x, y, z] (m)");
   if (const auto energy = reader.number("energy", between(1e-6, 1e12, "J"))) {
     explosion.energy = *energy;
   } else if (!reader.has("energy")) {
@@ -148,7 +146,7 @@ Explosion read_explosion(TableReader& reader) {
 
 Grab read_grab(TableReader& reader, int body, const SceneDescription& scene) {
   Grab grab;
-  grab.point = reader.vector("point", kPlace);
+  grab.point = reader.vector("point", coordinate());
   grab.force = reader.number("force", between(1e-6, 1e9, "N"));
   if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
     reader.add_problem_at("body", "what is static or scripted cannot be grabbed",
@@ -158,7 +156,7 @@ Grab read_grab(TableReader& reader, int body, const SceneDescription& scene) {
 
 Carry read_carry(TableReader& reader) {
   Carry carry;
-  carry.to = read_needed(reader, "to", kPlace, "[x, y, z] (m): where the hand goes");
+  carry.to = read_needed(reader, "to", coordinate(), "[x, y, z] (m): where the hand goes");
   carry.duration = reader.number("duration", between(1e-3, 1e6, "s")).value_or(carry.duration);
   return carry;
 }

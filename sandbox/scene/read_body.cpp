@@ -179,7 +179,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.material = find_material(material, material_value != nullptr ? material_value->place : table.place,
                                 scene, problems);
   body.density = reader.number("density", positive("kg/m3"));
-  body.position = reader.vector("position", between(-1e6, 1e6, "m")).value_or(body.position);
+  body.position = reader.vector("position", coordinate()).value_or(body.position);
   body.rotation = read_rotation(reader);
   read_motion(reader, form_kind, body);
   body.group = reader.text("group").value_or("");

@@ -87,7 +87,7 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
     reader.foreign({"position"}, "a projectile starts at \"from\"");
   } else if (*verb == "drop") {
     event.body = read_thrown_body(reader, event.name, false, scene);
-    event.action = Drop{reader.vector("position", between(-1e6, 1e6, "m"))};
+    event.action = Drop{reader.vector("position", coordinate())};
   } else if (*verb == "push") {
     event.body = read_acted_body(reader, scene);
     event.action = read_push(reader, event.body, scene);

@@ -10,7 +10,6 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const Range kPlace = between(-1e6, 1e6, "m");
 const Range kAngle = between(-360000.0, 360000.0, "degrees");
 const std::vector<std::string> kPathKeys{"keyframes", "between_keys", "pivot"};
 
@@ -44,7 +43,7 @@ std::vector<body::Keyframe> read_keys(TableReader& reader, const TomlValue& path
           "at",
           fmt::format("keyframes must go forward in time, but {:g} s comes after {:g} s", *at, key.time));
     key.time = at.value_or(key.time + 1.0);
-    key.position = key_reader.vector("position", kPlace).value_or(key.position);
+    key.position = key_reader.vector("position", coordinate()).value_or(key.position);
     if (const auto angles = key_reader.vector("rotation", kAngle)) {
       key.angles = *angles * (core::kPi / 180.0);
       if (std::holds_alternative<PlaneForm>(body.form) && !keys.empty() && key.angles != keys[0].angles)
@@ -83,7 +82,7 @@ void read_path(TableReader& reader, BodyEntry& body) {
   entry.between = reader.choice("between_keys", {"smooth", "straight"}).value_or("smooth") == "smooth"
                       ? body::Between::smooth
                       : body::Between::straight;
-  entry.pivot = reader.vector("pivot", kPlace).value_or(entry.pivot);
+  entry.pivot = reader.vector("pivot", coordinate()).value_or(entry.pivot);
   if (entry.keys.empty()) return;
   body.position = entry.keys.front().position;
   body.rotation = turn_by(entry.keys.front().angles * (180.0 / core::kPi));

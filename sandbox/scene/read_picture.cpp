@@ -10,7 +10,6 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const Range kPlace = between(-1e6, 1e6, "m");
 const Range kFov = between(1.0, 150.0, "degrees");
 
 void read_path(TableReader& reader, CameraEntry& camera, Problems& problems) {
@@ -40,8 +39,8 @@ void read_path(TableReader& reader, CameraEntry& camera, Problems& problems) {
       key_reader.add_problem(path->items[i].place, fmt::format("the first keyframe needs a {}", needed),
                              fmt::format("add {} = [x, y, z] here or in [camera]", needed));
     }
-    key.position = key_reader.vector("position", kPlace).value_or(key.position);
-    key.target = key_reader.vector("target", kPlace).value_or(key.target);
+    key.position = key_reader.vector("position", coordinate()).value_or(key.position);
+    key.target = key_reader.vector("target", coordinate()).value_or(key.target);
     key.fov = key_reader.number("fov", kFov).value_or(key.fov);
     key_reader.finish();
     camera.path.push_back(key);
@@ -54,15 +53,15 @@ void read_path(TableReader& reader, CameraEntry& camera, Problems& problems) {
 void read_camera(const TomlValue& table, SceneDescription& scene, Problems& problems) {
   CameraEntry& camera = scene.camera;
   TableReader reader(table, "[camera]", problems);
-  camera.position = reader.vector("position", kPlace);
-  camera.target = reader.vector("target", kPlace);
+  camera.position = reader.vector("position", coordinate());
+  camera.target = reader.vector("target", coordinate());
   camera.up = reader.vector("up", between(-1e6, 1e6)).value_or(camera.up);
   camera.fov = reader.number("fov", kFov).value_or(camera.fov);
   read_path(reader, camera, problems);
   if (reader.has("follow")) {
     camera.follow = read_named_body(reader, "follow", scene);
     reader.foreign({"target"}, "the camera looks at the body that it follows");
-    camera.offset = reader.vector("offset", kPlace);
+    camera.offset = reader.vector("offset", coordinate());
     if (camera.offset && camera.offset->norm() < 1e-9)
       reader.add_problem_at("offset", "the camera cannot be where it looks at", "for example [0, 0.3, 1]");
     if (camera.offset) reader.foreign({"position", "path"}, "the offset from the body says where it is");

@@ -11,7 +11,6 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 const Range kFilmTime = between(0.0, 1e4, "s");
-const Range kPlace = between(-1e6, 1e6, "m");
 
 /// Keys of other moves of the camera.
 void refuse_other_moves(TableReader& reader) {
@@ -22,8 +21,8 @@ void refuse_other_moves(TableReader& reader) {
 }
 
 void read_view(TableReader& reader, CameraChange& change) {
-  change.position = reader.vector("position", kPlace);
-  change.target = reader.vector("target", kPlace);
+  change.position = reader.vector("position", coordinate());
+  change.target = reader.vector("target", coordinate());
   change.fov = reader.number("fov", between(1.0, 150.0, "degrees"));
   if (!reader.has("position") && !reader.has("target") && !reader.has("fov"))
     reader.add_problem(reader.table().place, fmt::format("{} changes nothing", reader.what()),
@@ -72,7 +71,7 @@ CameraChange read_camera_change(TableReader& reader, const SceneDescription& sce
   } else if (move == "follow") {
     change.move = CameraMove::follow;
     body = read_acted_body(reader, scene);
-    change.offset = reader.vector("offset", kPlace);
+    change.offset = reader.vector("offset", coordinate());
     if (change.offset && change.offset->norm() < 1e-9)
       reader.add_problem_at("offset", "the camera cannot be where it looks at", "for example [0, 0.3, 1]");
   }

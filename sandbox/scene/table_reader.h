@@ -33,6 +33,10 @@ inline Range not_negative(std::string_view unit = "") {
 inline Range between(double least, double most, std::string_view unit = "") {
   return {least, most, false, unit};
 }
+/// Of a place.
+inline Range coordinate() {
+  return between(-1e6, 1e6, "m");
+}
 
 class TableReader {
  public:
