@@ -99,7 +99,7 @@ void add_golden_options(CLI::App& make, CLI::App& check, GoldenOptions& options)
 }
 
 void add_study_options(CLI::App& command, StudyOptions& options) {
-  command.add_option("NAME", options.what, "a study");
+  command.add_option("NAME", options.what, "a study, or a scene to be compared with itself at a finer step");
   command.add_option("-o", options.folder, "folder for the files; study_NAME without it")->type_name("DIR");
   command.add_flag("--quick", options.is_quick, "fewer settings, smaller cases, one repeat");
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,11 @@
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/options.h"
 #include "sandbox/run/progress.h"
+#include "sandbox/scene/build_world.h"
+#include "sandbox/scene/find_scene.h"
 #include "sandbox/scene/nearest_name.h"
+#include "sandbox/scene/read_scene.h"
+#include "sandbox/study/own_reference.h"
 #include "sandbox/study/plot.h"
 #include "sandbox/study/study.h"
 #include "sandbox/study/telling.h"
@@ -20,25 +25,42 @@ namespace shatterbox::sandbox::run {
 
 namespace {
 
-const study::Study* find_study(const std::string& name) {
-  const auto& list = study::studies();
-  const auto found =
-      std::find_if(list.begin(), list.end(), [&](const study::Study& study) { return study.name == name; });
-  return found == list.end() ? nullptr : &*found;
+/// A word that ends in .toml, or is a path, or names a scene and no study.
+bool is_scene(const std::string& word) {
+  if (word.size() > 5 && word.ends_with(".toml")) return true;
+  if (word.find('/') != std::string::npos) return true;
+  const auto known = scene::known_scenes();
+  return std::any_of(known.begin(), known.end(), [&](const scene::KnownScene& s) { return s.name == word; });
 }
 
-int refuse_study(const std::string& name) {
+/// The study of that name, or of that scene; nothing, after saying why.
+std::optional<study::Study> find_study(const std::string& word) {
   std::vector<std::string> names;
-  for (const study::Study& study : study::studies()) names.push_back(study.name);
-  if (name.empty()) {
-    fmt::print(stderr, "study needs a NAME\n");
+  for (const study::Study& study : study::studies()) {
+    if (study.name == word) return study;
+    names.push_back(study.name);
+  }
+  if (!word.empty() && is_scene(word)) {
+    scene::Problems problems;
+    const std::string file = scene::find_scene(word, problems);
+    if (!file.empty()) {
+      const auto description = scene::read_scene_file(file, {}, problems);
+      // What cannot be built is told now, and not after the first row.
+      if (description && scene::build_world(*description, problems) && problems.empty())
+        return study::scene_study(*description);
+    }
+    fmt::print(stderr, "{}\n", scene::describe(problems));
+    return std::nullopt;
+  }
+  if (word.empty()) {
+    fmt::print(stderr, "study needs a NAME, or a SCENE.toml to be compared with itself at a finer step\n");
   } else {
-    fmt::print(stderr, "there is no study \"{}\"\n    {}\n", name,
-               scene::hint_for_name(name, names, "studies"));
+    fmt::print(stderr, "there is no study \"{}\"\n    {}\n", word,
+               scene::hint_for_name(word, names, "studies"));
   }
   for (const study::Study& study : study::studies())
     fmt::print(stderr, "    {:<12} {}\n", study.name, study.what);
-  return kBadInput;
+  return std::nullopt;
 }
 
 /// Writes what was found; a sentence if that fails.
@@ -56,8 +78,8 @@ std::string write_results(const study::StudyResult& result, const std::string& n
 }  // namespace
 
 int run_study(const StudyOptions& options) {
-  const study::Study* const study = find_study(options.what);
-  if (study == nullptr) return refuse_study(options.what);
+  const auto study = find_study(options.what);
+  if (!study) return kBadInput;
   const std::string folder = options.folder.empty() ? "study_" + study->name : options.folder;
   scene::Problems problems;
   make_folder("-o", folder, problems);

@@ -15,7 +15,6 @@ namespace motion {
 namespace {
 
 constexpr double kGravity = 9.81;  // m/s2
-const int kDefaultRate = world::WorldSettings{}.steps_per_second;
 
 world::World make_world(int rate, const material::Material& material, bool has_gravity = true) {
   world::WorldSettings settings;
@@ -159,56 +158,38 @@ Measured worst_of_starts(const std::function<Measured(double)>& measure, double 
   return worst;
 }
 
-void add_table(Plan& plan, Table table, const std::vector<int>& rates,
-               const std::function<Measured(int)>& measure) {
-  table.setting_name = "steps a second";
-  table.value_name = "step, s";
-  for (const int rate : rates)
-    plan.jobs.push_back({plan.tables.size(), std::to_string(rate), 1.0 / rate, rate == kDefaultRate,
-                         [measure, rate] { return measure(rate); }});
-  plan.tables.push_back(std::move(table));
-}
-
-Table table_of(const char* name, const char* what, std::vector<std::string> errors) {
-  Table table;
-  table.name = name;
-  table.what = what;
-  table.error_names = std::move(errors);
-  return table;
-}
-
 Plan make_plan(bool is_quick) {
   const std::vector<int> rates = is_quick ? std::vector<int>{60, 120, 240, 480}
                                           : std::vector<int>{30, 60, 120, 240, 480, 960, 1920, 3840};
   Plan plan;
-  Table top = table_of("top", "a free asymmetric box spins for 10 s, against Jacobi's elliptic functions",
-                       {"spin", "angular momentum"});
+  Table top = rate_table("top", "a free asymmetric box spins for 10 s, against Jacobi's elliptic functions",
+                         {"spin", "angular momentum"});
   top.theory = {4.0};  // of the composition [free_motion.h]
-  add_table(plan, top, rates, spin_freely);
-  add_table(plan,
-            table_of("throw", "a spinning box thrown, after 2 s, against the parabola", {"place", "speed"}),
+  add_rates(plan, top, rates, spin_freely);
+  add_rates(plan,
+            rate_table("throw", "a spinning box thrown, after 2 s, against the parabola", {"place", "speed"}),
             rates, throw_box);
-  Table incline = table_of("incline",
-                           "a box slides down 30 degrees at friction 0.3 for a second, against "
-                           "g (sin - mu cos) t^2 / 2",
-                           {"way", "lift, m"});
-  add_table(plan, incline, rates, [](int rate) { return slide_down(rate, 0.3); });
-  Table stuck = table_of("stick", "the same box at friction 0.6 > tan 30 degrees must not move",
-                         {"way, m", "lift, m", "drift of the next second, m"});
+  Table incline = rate_table("incline",
+                             "a box slides down 30 degrees at friction 0.3 for a second, against "
+                             "g (sin - mu cos) t^2 / 2",
+                             {"way", "lift, m"});
+  add_rates(plan, incline, rates, [](int rate) { return slide_down(rate, 0.3); });
+  Table stuck = rate_table("stick", "the same box at friction 0.6 > tan 30 degrees must not move",
+                           {"way, m", "lift, m", "drift of the next second, m"});
   stuck.is_relative = false;
-  add_table(plan, stuck, rates, [](int rate) { return slide_down(rate, 0.6); });
-  Table ball = table_of(
+  add_rates(plan, stuck, rates, [](int rate) { return slide_down(rate, 0.6); });
+  Table ball = rate_table(
       "bounce",
       "a ball of restitution 0.8 dropped from 1 to 1.1 m (worst of 8), 1.9 s later, against its parabolas",
       {"height", "energy"});
   ball.theory = {1.0};
-  add_table(plan, ball, rates,
+  add_rates(plan, ball, rates,
             [](int rate) { return worst_of_starts([rate](double h) { return bounce(rate, h); }, 1.0); });
-  Table rolling =
-      table_of("roll", "a ball sent sliding at 2 to 2.2 m/s (worst of 8) rolls at 5/7 of it, after a second",
-               {"place", "speed", "slip"});
+  Table rolling = rate_table(
+      "roll", "a ball sent sliding at 2 to 2.2 m/s (worst of 8) rolls at 5/7 of it, after a second",
+      {"place", "speed", "slip"});
   rolling.theory = {2.0};  // a constant force, but for one piece of a step
-  add_table(plan, rolling, rates,
+  add_rates(plan, rolling, rates,
             [](int rate) { return worst_of_starts([rate](double v) { return roll(rate, v); }, 2.0); });
   return plan;
 }

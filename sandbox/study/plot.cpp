@@ -94,7 +94,7 @@ std::string plot_commands(const std::vector<Table>& tables, const std::string& t
 std::string draw_plot(const std::vector<Table>& tables, const std::string& title, const std::string& name,
                       const std::filesystem::path& folder) {
   const std::string commands = plot_commands(tables, title, name);
-  if (commands.empty()) return "nothing to plot: no row has both an error and a time";
+  if (commands.empty()) return {};
   return run_gnuplot(commands, folder);
 }
 

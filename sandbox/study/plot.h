@@ -10,7 +10,8 @@
 namespace shatterbox::sandbox::study {
 
 /// Draws the first error of every table against run time, both on logarithmic axes, to NAME.png and NAME.svg
-/// in `folder`; the default's rows are ringed. A sentence if it cannot (no gnuplot), else empty.
+/// in `folder`; the default's rows are ringed. Nothing is drawn where no table is to be plotted. A sentence
+/// if it cannot (no gnuplot), else empty.
 std::string draw_plot(const std::vector<Table>& tables, const std::string& title, const std::string& name,
                       const std::filesystem::path& folder);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "engine/world/settings.h"
 #include "sandbox/study/study.h"
 
 namespace shatterbox::sandbox::study {
@@ -31,6 +32,25 @@ Row measure_row(const Job& job, bool is_quick) {
 
 }  // namespace
 
+Table rate_table(std::string name, std::string what, std::vector<std::string> errors) {
+  Table table;
+  table.name = std::move(name);
+  table.what = std::move(what);
+  table.error_names = std::move(errors);
+  table.setting_name = "steps a second";
+  table.value_name = "step, s";
+  return table;
+}
+
+void add_rates(Plan& plan, Table table, const std::vector<int>& rates,
+               const std::function<Measured(int)>& measure) {
+  const int usual = world::WorldSettings{}.steps_per_second;
+  for (const int rate : rates)
+    plan.jobs.push_back({plan.tables.size(), std::to_string(rate), 1.0 / rate, rate == usual,
+                         [measure, rate] { return measure(rate); }});
+  plan.tables.push_back(std::move(table));
+}
+
 StudyResult run_plan(const Plan& plan, const RunSettings& settings) {
   StudyResult result;
   result.tables = plan.tables;
@@ -46,7 +66,7 @@ StudyResult run_plan(const Plan& plan, const RunSettings& settings) {
   }
   if (settings.go_on) settings.go_on(total, total, "");
   if (plan.conclude) result.conclusions = plan.conclude(result.tables);
-  if (plan.draw) result.figures = plan.draw();
+  if (plan.draw) result.figures = plan.draw(result.tables);
   return result;
 }
 

@@ -357,7 +357,7 @@ Plan make_stress_plan(bool is_quick) {
   add_shells(plan, is_quick);
   add_solver(plan, is_quick, pins);
   plan.conclude = conclude;
-  plan.draw = [pins] {
+  plan.draw = [pins](const std::vector<Table>&) {
     return std::vector<Figure>{{"pins", "greatest principal stress along a free beam hit at x = 0.4", "x, m",
                                 "stress, Pa (of 1 N)", false, pins->curves}};
   };

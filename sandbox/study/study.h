@@ -42,8 +42,14 @@ struct Plan {
   std::vector<Job> jobs;
   /// More to be said when all is measured: sentences, each of which follows from numbers of the tables.
   std::function<std::vector<std::string>(const std::vector<Table>&)> conclude;
-  std::function<std::vector<Figure>()> draw;  // after all jobs
+  std::function<std::vector<Figure>(const std::vector<Table>&)> draw;  // after all jobs
 };
+
+/// A table over steps a second, without rows.
+Table rate_table(std::string name, std::string what, std::vector<std::string> errors);
+/// Adds it, and a job for each of `rates`; the world's own rate is the default's row.
+void add_rates(Plan& plan, Table table, const std::vector<int>& rates,
+               const std::function<Measured(int)>& measure);
 
 struct Study {
   std::string name;

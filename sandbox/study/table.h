@@ -27,7 +27,8 @@ struct Table {
   std::string value_name;                // what `value` is, "step, s"; empty: the rows have none
   std::vector<std::string> error_names;  // the first one decides which setting is good enough
   std::vector<double> theory;  // the order in `value` that theory gives each error; NaN, or too short: none
-  bool is_relative = true;     // the first error is a share: 1 % means something
+  std::string order_name = "order";  // "exponent", where the first column is a cost
+  bool is_relative = true;           // the first error is a share: 1 % means something
   bool is_plotted = true;
   std::vector<Row> rows;
 };

@@ -51,8 +51,8 @@ std::string other_orders(const Table& table) {
   for (std::size_t e = 1; e < table.theory.size(); ++e) {
     const auto order = fit_order(table, e);
     if (!order || theory_text(table, e).empty()) continue;
-    text += fmt::format(" {}: order {:.2f} over {} settings{}.", table.error_names[e], order->order,
-                        order->rows.size(), theory_text(table, e));
+    text += fmt::format(" {}: {} {:.2f} over {} settings{}.", table.error_names[e], table.order_name,
+                        order->order, order->rows.size(), theory_text(table, e));
   }
   return text;
 }
@@ -68,12 +68,12 @@ std::string order_sentence(const Table& table) {
       least = std::min(least, first_error(row));
       most = std::max(most, first_error(row));
     }
-    return fmt::format("No order of convergence is seen: the error lies between {} and {}.{}",
+    return fmt::format("No {} is seen: the first column lies between {} and {}.{}", table.order_name,
                        error_text(table, least), error_text(table, most), other_orders(table));
   }
   std::string text =
-      fmt::format("Observed order {:.2f} over {} settings ({} to {} {}){}.", order->order, order->rows.size(),
-                  table.rows[static_cast<std::size_t>(order->rows.front())].setting,
+      fmt::format("Observed {} {:.2f} over {} settings ({} to {} {}){}.", table.order_name, order->order,
+                  order->rows.size(), table.rows[static_cast<std::size_t>(order->rows.front())].setting,
                   table.rows[static_cast<std::size_t>(order->rows.back())].setting, table.setting_name,
                   theory_text(table, 0));
   if (order->is_at_end) text += " Finer settings than these gain nothing.";

@@ -3,6 +3,8 @@
 
 #include "engine/core/parallel.h"
 #include "sandbox/study/order.h"
+#include "sandbox/study/own_reference.h"
+#include "sandbox/study/scene_play.h"
 #include "sandbox/study/study.h"
 #include "sandbox/study/telling.h"
 
@@ -94,4 +96,90 @@ TEST_CASE("study stress: elements of the first order, moments of the second") {
   CHECK(membrane.back().errors[0] > 3.0 * membrane[membrane.size() - 2].errors[0]);
   REQUIRE(result.figures.size() == 1);
   CHECK(result.figures[0].curves.size() == 2);
+}
+
+TEST_CASE("study contact: weights are carried and momentum is kept, nothing crosses, arches stand or fall") {
+  const StudyResult result = run_quick("contact");
+  INFO(describe(result));
+  for (const char* name : {"stack", "stack-steps", "stack-substeps"})
+    for (const Row& row : table_of(result, name).rows) CHECK(row.errors[0] < 1e-3);
+  for (const char* name : {"heap-steps", "heap-substeps"})
+    for (const Row& row : table_of(result, name).rows) {
+      CHECK(row.errors[0] < 1e-3);   // of the energy at the start, in a step
+      CHECK(row.errors[1] < 1e-12);  // momentum
+      CHECK(row.errors[2] == 0.0);   // overlap
+    }
+  for (const char* name : {"gas-steps", "gas-substeps"})
+    for (const Row& row : table_of(result, name).rows) {
+      CHECK(row.errors[0] < 0.02);
+      CHECK(row.errors[1] < 1e-12);
+      CHECK(row.errors[2] == 0.0);
+      CHECK(row.errors[3] > 20.0);
+    }
+  for (const Row& row : table_of(result, "arch").rows) CHECK(row.errors[1] == 0.0);
+  for (const Row& row : table_of(result, "boats").rows) CHECK(row.errors[0] + row.errors[1] == 0.0);
+  for (const Row& row : table_of(result, "boats-paper").rows) CHECK(row.errors[0] + row.errors[1] > 0.0);
+}
+
+TEST_CASE("study step-size: one stress whatever the step, and the right verdict at rest") {
+  const StudyResult result = run_quick("step-size");
+  INFO(describe(result));
+  const Table& hit = table_of(result, "hit");
+  for (const Row& row : hit.rows) CHECK(row.errors[0] < 0.01);
+  // An impulse that is spread over the step has a stress in proportion to the steps a second.
+  CHECK(hit.rows.back().errors[3] / hit.rows.front().errors[3] == Approx(8.0).epsilon(0.05));
+  for (const Row& row : table_of(result, "rest").rows) CHECK(row.errors[0] == 0.0);
+  CHECK(error_at_default(table_of(result, "break")) < 0.25);
+}
+
+TEST_CASE("study refine: means over flaw seeds hardly know the mesh") {
+  const StudyResult result = run_quick("refine");
+  INFO(describe(result));
+  for (const Row& row : table_of(result, "bauble").rows) {
+    CHECK(row.errors[0] < 0.25);
+    CHECK(row.errors[2] > 5.0);
+    CHECK(row.errors[5] < 1.0);  // cracks never use more than there is
+  }
+}
+
+TEST_CASE("study scaling: factors and solves grow as theory says") {
+  const StudyResult result = run_quick("scaling");
+  INFO(describe(result));
+  // Counts, which no clock disturbs: entries of the factor n log n, iterations n^(1/3).
+  const auto entries = fit_order(table_of(result, "pane"), 2),
+             iterations = fit_order(table_of(result, "cube"), 2);
+  REQUIRE(entries);
+  CHECK(entries->order == Approx(1.1).margin(0.15));
+  REQUIRE(iterations);
+  CHECK(iterations->order == Approx(1.0 / 3.0).margin(0.12));
+  REQUIRE(table_of(result, "bodies").rows.size() == 3);
+  for (const Row& row : table_of(result, "bodies").rows) CHECK(row.errors[1] > 0.0);
+  REQUIRE(result.figures.size() == 1);
+}
+
+TEST_CASE("a scene beside itself at a finer step") {
+  const auto scene = scene_of(R"([scene]
+name = "thrown"
+seconds = 0.5
+[[body]]
+kind = "plane"
+material = "concrete"
+[[body]]
+kind = "sphere"
+radius = 0.1
+material = "steel"
+position = [0, 0.6, 0]
+velocity = [1, 0, 0]
+)",
+                              {});
+  const StudyResult result = run_plan(scene_study(scene).plan(false), {true, {}});
+  INFO(describe(result));
+  const Table& table = table_of(result, "thrown");
+  REQUIRE(table.rows.size() == 4);
+  CHECK(error_at_default(table) < 0.02);
+  CHECK(table.rows.back().errors[0] < table.rows.front().errors[0]);
+  for (const Row& row : table.rows) {
+    CHECK(row.errors[2] == 0.0);  // nothing breaks
+    CHECK(row.errors[3] == 0.0);
+  }
 }
