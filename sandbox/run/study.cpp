@@ -64,11 +64,12 @@ std::optional<study::Study> find_study(const std::string& word) {
 }
 
 /// Writes what was found; a sentence if that fails.
-std::string write_results(const study::StudyResult& result, const std::string& name,
+std::string write_results(const study::StudyResult& result, const std::string& name, const std::string& what,
                           const std::filesystem::path& folder) {
   for (const auto& [ending, text] :
        {std::pair<const char*, std::string>{".csv", study::to_csv(result.tables)},
-        {".txt", study::describe(result)}}) {
+        {".txt", study::describe(result)},
+        {".md", study::to_markdown(result, name, what)}}) {
     std::string fault = report::write_text((folder / (name + ending)).string(), text);
     if (!fault.empty()) return fault;
   }
@@ -99,7 +100,7 @@ int run_study(const StudyOptions& options) {
   };
   const study::StudyResult result = study::run_plan(plan, settings);
   progress.clear();
-  const std::string fault = write_results(result, study->name, folder);
+  const std::string fault = write_results(result, study->name, study->what, folder);
   if (!fault.empty()) {
     fmt::print(stderr, "failed: {}\n", fault);
     return kFailed;
@@ -107,7 +108,7 @@ int run_study(const StudyOptions& options) {
   std::string plot_fault = study::draw_plot(result.tables, study->what, study->name, folder);
   for (const study::Figure& figure : result.figures)
     if (plot_fault.empty()) plot_fault = study::draw_figure(figure, study->name, folder);
-  fmt::print("{}\n{}/{}.csv .txt{}\n", study::describe(result), folder, study->name,
+  fmt::print("{}\n{}/{}.csv .txt .md{}\n", study::describe(result), folder, study->name,
              plot_fault.empty() ? " .png .svg" : "");
   if (!plot_fault.empty()) fmt::print(stderr, "{}\n", plot_fault);
   return result.is_whole ? kDone : kFailed;

@@ -7,47 +7,13 @@
 #include <fmt/format.h>
 
 #include "sandbox/study/scene_play.h"
+#include "sandbox/study/scene_texts.h"
 #include "sandbox/study/telling.h"
 
 namespace shatterbox::sandbox::study {
 
 namespace refine {
 namespace {
-
-const char* const kBauble = R"([[body]]
-name = "floor"
-kind = "plane"
-material = "concrete"
-[[body]]
-name = "whole"
-kind = "shell"
-shape = "ornament"
-radius = 0.04
-material = "ornament_glass"
-thickness = 0.0005
-rotation = [24, 0, 38]
-position = [0, 0.05, 0]
-velocity = [0, -4.4, 0]
-)";
-
-const char* const kPane = R"([[body]]
-name = "whole"
-kind = "shell"
-shape = "pane"
-width = 1
-height = 1
-thickness = 0.004
-material = "glass"
-support = "edge"
-[[body]]
-name = "ball"
-kind = "sphere"
-radius = 0.0315
-material = "steel"
-position = [0.06, 0.05, 0.04]
-velocity = [0, 0, 10]
-rotation = [0, 0, 0]
-)";
 
 /// The first break, over flaw seeds.
 struct Break {
@@ -60,12 +26,14 @@ struct Break {
   double seconds = 0.0;
 };
 
-Break first_breaks(const char* text, double edge, int seeds) {
+Break first_breaks(const Overrides& motion, const char* text, double edge, int seeds) {
   Break found;
   double squares = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    ScenePlay play(scene_of(text, {"scene.after_break=\"inherit\"", fmt::format("scene.seed={}", seed),
-                                   fmt::format("whole.edge_length={}", edge)}));
+    Overrides overrides = motion;
+    overrides.insert(overrides.end(), {"scene.after_break=\"inherit\"", fmt::format("scene.seed={}", seed),
+                                       fmt::format("whole.edge_length={}", edge)});
+    ScenePlay play(scene_of(text, overrides));
     for (const body::Body& body : play.world().bodies())
       found.triangles += static_cast<double>(body.shape->surface.triangles.size()) / seeds;
     while (play.world().time() < 0.1 && play.world().report().breaks.empty()) play.step();
@@ -83,7 +51,7 @@ Break first_breaks(const char* text, double edge, int seeds) {
   return found;
 }
 
-void add_body(Plan& plan, const char* name, const char* what, const char* text,
+void add_body(Plan& plan, const char* name, const char* what, const char* text, const Overrides& motion,
               const std::vector<double>& edges, double finest, double usual, int seeds) {
   Table table;
   table.name = name;
@@ -94,9 +62,9 @@ void add_body(Plan& plan, const char* name, const char* what, const char* text,
                        "scatter of pieces", "masses (Kolmogorov)", "energy used of the elastic",
                        "triangles"};
   const auto reference = std::make_shared<std::unique_ptr<Break>>();
-  const auto measure = [reference, text, finest, seeds](double edge) {
-    if (!*reference) *reference = std::make_unique<Break>(first_breaks(text, finest, seeds));
-    const Break found = first_breaks(text, edge, seeds), &exact = **reference;
+  const auto measure = [reference, text, motion, finest, seeds](double edge) {
+    if (!*reference) *reference = std::make_unique<Break>(first_breaks(motion, text, finest, seeds));
+    const Break found = first_breaks(motion, text, edge, seeds), &exact = **reference;
     return Measured{
         {std::abs(found.area / exact.area - 1.0), 1e4 * found.area, found.pieces, found.pieces_scatter,
          distribution_distance(found.masses, exact.masses), found.energy_share, found.triangles},
@@ -125,17 +93,18 @@ std::vector<std::string> conclude(const std::vector<Table>& tables) {
 
 Plan make_refine_plan(bool is_quick) {
   Plan plan;
+  const Overrides falls{"whole.position=[0, 0.05, 0]", "whole.velocity=[0, -4.4, 0]"};
   if (is_quick) {
     add_body(plan, "bauble", "a bauble hits the floor at 4.4 m/s, mean of 2 flaw seeds, beside edges of 3 mm",
-             kBauble, {0.006, 0.0042}, 0.003, 0.0042, 2);
+             kBaubleText, falls, {0.006, 0.0042}, 0.003, 0.0042, 2);
   } else {
     add_body(plan, "bauble",
-             "a bauble hits the floor at 4.4 m/s, means over 6 flaw seeds, beside edges of 1.5 mm", kBauble,
-             {0.006, 0.0042, 0.003, 0.0021}, 0.0015, 0.0042, 6);
+             "a bauble hits the floor at 4.4 m/s, means over 6 flaw seeds, beside edges of 1.5 mm",
+             kBaubleText, falls, {0.006, 0.0042, 0.003, 0.0021}, 0.0015, 0.0042, 6);
     add_body(
         plan, "window",
         "a steel ball of 1 kg hits a held pane at 10 m/s, means over 6 flaw seeds, beside edges of 10 mm",
-        kPane, {0.06, 0.042, 0.03, 0.021, 0.015}, 0.01, 0.03, 6);
+        kHeldPaneText, {"ball.velocity=[0, 0, -10]"}, {0.06, 0.042, 0.03, 0.021, 0.015}, 0.01, 0.03, 6);
   }
   plan.conclude = conclude;
   return plan;

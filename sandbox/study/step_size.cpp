@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "sandbox/study/scene_play.h"
+#include "sandbox/study/scene_texts.h"
 #include "sandbox/study/telling.h"
 
 namespace shatterbox::sandbox::study {
@@ -16,26 +17,6 @@ namespace step_size {
 namespace {
 
 constexpr double kSize = 0.04;  // m, radius of the bauble
-
-// A glass bauble falls on stone, turned so that its round side meets it.
-const char* const kDrop = R"([[material]]
-name = "stone"
-like = "concrete"
-friction = 0.45
-restitution = 0.35
-[[body]]
-name = "floor"
-kind = "plane"
-material = "stone"
-[[body]]
-name = "bauble"
-kind = "shell"
-shape = "ornament"
-radius = 0.04
-material = "ornament_glass"
-thickness = 0.0005
-rotation = [24, 0, 38]
-)";
 
 // A steel ball lies in the middle of a pane that is held at its border, at the gap that is kept.
 const char* const kRest = R"([scene]
@@ -72,9 +53,9 @@ Overrides scene_overrides(int rate, world::Criterion criterion) {
 ScenePlay drop(int rate, world::Criterion criterion, double height, double after, int seed, double edge) {
   Overrides overrides = scene_overrides(rate, criterion);
   overrides.push_back(fmt::format("scene.seed={}", seed));
-  overrides.push_back(fmt::format("bauble.edge_length={}", edge));
-  overrides.push_back(fmt::format("bauble.position=[0, {}, 0]", kSize + height));
-  ScenePlay play(scene_of(kDrop, overrides));
+  overrides.push_back(fmt::format("whole.edge_length={}", edge));
+  overrides.push_back(fmt::format("whole.position=[0, {}, 0]", kSize + height));
+  ScenePlay play(scene_of(kBaubleText, overrides));
   play.play_until(std::ceil((std::sqrt(2.0 * height / 9.81) + after) * 30.0) / 30.0);
   return play;
 }

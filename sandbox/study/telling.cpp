@@ -159,6 +159,21 @@ std::string summary_rows(const StudyResult& result) {
   return text;
 }
 
+std::string to_markdown(const StudyResult& result, const std::string& name, const std::string& what) {
+  std::string text = fmt::format("## {}\n\n{}.\n\n<!-- summary -->\n{}<!-- end of summary -->\n\n", name,
+                                 what, summary_rows(result));
+  const bool is_drawn = std::any_of(result.tables.begin(), result.tables.end(),
+                                    [](const Table& table) { return table.is_plotted; });
+  if (is_drawn) text += fmt::format("![error against run time]({}.png)\n\n", name);
+  for (const Figure& figure : result.figures)
+    text += fmt::format("![{}]({}_{}.png)\n\n", figure.title, name, figure.name);
+  for (const std::string& sentence : result.conclusions) text += sentence + "\n\n";
+  for (const Table& table : result.tables)
+    if (!table.rows.empty())
+      text += fmt::format("**{}**\n\n{}\n", describe_table(table), markdown_rows(table));
+  return text;
+}
+
 std::string markdown_rows(const Table& table) {
   std::string text = fmt::format("| {} |", table.setting_name), rule = "|---|";
   for (const std::string& name : table.error_names) {

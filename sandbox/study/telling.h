@@ -30,6 +30,10 @@ std::string summary_rows(const StudyResult& result);
 /// All rows of a table in Markdown.
 std::string markdown_rows(const Table& table);
 
+/// The whole study as a page: its summary between two marks, its pictures (NAME.png, NAME_FIGURE.png), and of
+/// each table the paragraph and the rows.
+std::string to_markdown(const StudyResult& result, const std::string& name, const std::string& what);
+
 /// "0.12 %" of a share; scientific below a hundredth of a percent, "12 times" from ten on.
 std::string percent(double share);
 /// "12 ms" of seconds.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/core/parallel.h"
+#include "sandbox/study/explicit_motion.h"
 #include "tests/engine/stress/solid_meshes.h"
 
 using namespace shatterbox;
@@ -283,31 +284,6 @@ TEST_CASE("screening: towards no window the balanced stress, in a short one only
   }
   CHECK(far < 1e-3 * near);
 }
-
-namespace {
-
-/// A body at rest that gets an impulse J at once, by central differences: M a + C (v - rigid) + K u = 0.
-/// Returns the integral of exp(-s t) u over `seconds`.
-VecX integrate_motion(const Beam& beam, const SolidSystem& system, const VecX& impulse, double damping,
-                      double screening, double seconds, double step) {
-  const VecX mass = lumped_mass(*beam.stiffness, beam.mesh);
-  VecX u = VecX::Zero(mass.size()), v = impulse.cwiseQuotient(mass), integral = u;
-  const double decay = core::exp(-screening * step);
-  double weight = 1.0;
-  const int steps = static_cast<int>(seconds / step);
-  for (int i = 0; i < steps; ++i) {
-    integral += 0.5 * step * weight * u;
-    u += step * v;
-    weight *= decay;
-    integral += 0.5 * step * weight * u;
-    VecX force = -apply_stiffness(*beam.stiffness, beam.mesh, u);
-    if (damping > 0.0) force -= damping * system.balance(mass.cwiseProduct(v));
-    v += step * force.cwiseQuotient(mass);
-  }
-  return integral;
-}
-
-}  // namespace
 
 TEST_CASE(
     "what a damped free solid feels over time is the balanced solve, through a window, the screened one") {

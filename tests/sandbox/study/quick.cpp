@@ -1,7 +1,9 @@
 // Every study runs, and finds the order that theory gives.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "engine/core/parallel.h"
+#include "sandbox/study/fragments.h"
 #include "sandbox/study/order.h"
 #include "sandbox/study/own_reference.h"
 #include "sandbox/study/scene_play.h"
@@ -182,4 +184,36 @@ velocity = [1, 0, 0]
     CHECK(row.errors[2] == 0.0);  // nothing breaks
     CHECK(row.errors[3] == 0.0);
   }
+}
+
+TEST_CASE("study dynamics: waves that die out leave the balanced stress, a window the screened one") {
+  const StudyResult result = run_quick("dynamics");
+  INFO(describe(result));
+  const auto& waves = table_of(result, "waves").rows;
+  CHECK(waves[0].errors[0] > 10.0 * waves[1].errors[0]);
+  CHECK(waves[1].errors[0] < 2e-3);  // over twelve periods
+  for (const Row& row : table_of(result, "window").rows) {
+    CHECK(row.errors[0] < 0.01);
+    CHECK(row.errors[1] > 2.0 * row.errors[0]);
+  }
+  REQUIRE(result.conclusions.size() == 1);
+}
+
+TEST_CASE("study fragments: pieces of every size") {
+  const StudyResult result = run_quick("fragments");
+  INFO(describe(result));
+  for (const Row& row : table_of(result, "sizes").rows) CHECK(row.errors[3] > 5.0);
+  for (const Row& row : table_of(result, "radial").rows) CHECK(row.errors[0] > 3.0);
+}
+
+TEST_CASE("the exponent of a power law is found with its interval") {
+  // The quantiles of m^-1.5 above 1.
+  std::vector<double> masses;
+  for (int i = 0; i < 4000; ++i) masses.push_back(std::pow(1.0 - (i + 0.5) / 4000.0, -2.0));
+  const PowerLaw law = fit_power_law(masses, 1.0);
+  CHECK(law.exponent == Approx(1.5).epsilon(1e-3));
+  CHECK(law.half_width == Approx(1.96 * 0.5 / std::sqrt(4000.0)).epsilon(0.01));
+  CHECK(law.count == 4000);
+  CHECK(fit_power_law(masses, 4.0).exponent == Approx(1.5).epsilon(1e-2));
+  CHECK(std::isnan(fit_power_law({1.0}, 1.0).exponent));
 }
