@@ -200,8 +200,11 @@ Json make_json(const RunRecord& record) {
   return json;
 }
 
-std::string write_report(const std::string& path, const RunRecord& record) {
-  return write_text(path, make_json(record).dump(2) + "\n");
+std::string write_report(const std::string& path, const std::vector<const RunRecord*>& shots) {
+  if (shots.size() == 1) return write_text(path, make_json(*shots.front()).dump(2) + "\n");
+  Json json = {{"report_version", kReportVersion}, {"shots", Json::array()}};
+  for (const RunRecord* shot : shots) json["shots"].push_back(make_json(*shot));
+  return write_text(path, json.dump(2) + "\n");
 }
 
 }  // namespace shatterbox::sandbox::report

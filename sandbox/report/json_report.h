@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "sandbox/report/run_record.h"
 
@@ -13,8 +14,9 @@ inline constexpr int kReportVersion = 1;
 /// The whole report; numbers that are not finite become null.
 nlohmann::ordered_json make_json(const RunRecord& record);
 
-/// Writes it beside its name and renames it. A sentence if that fails, else empty.
-std::string write_report(const std::string& path, const RunRecord& record);
+/// Writes it beside its name and renames it; of several shots of one film a list of theirs. A sentence if
+/// that fails, else empty.
+std::string write_report(const std::string& path, const std::vector<const RunRecord*>& shots);
 
 /// 16 lower-case hex digits.
 std::string hex_digits(std::uint64_t number);

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "engine/core/elementary.h"
 #include "sandbox/run/interrupt.h"
+#include "sandbox/scene/parts.h"
 #include "sandbox/script/between.h"
 
 namespace shatterbox::sandbox::run {
@@ -13,6 +15,7 @@ Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& bu
       built_(built),
       recorder_(recorder),
       script_(scene),
+      rig_(scene.camera, view::find_subject(scene, built.plan)),
       inspector_(has_audit, recorder.record),
       frames_per_second_(frames_per_second) {
   if (has_audit) built_.world.keep_ways();
@@ -24,9 +27,34 @@ double Projector::steps_at(double film) const {
   return std::abs(steps - whole) < 1e-6 ? whole : steps;
 }
 
+view::Moment Projector::now() const {
+  const double time = built_.world.time(), film = script_.clock().film_at(time);
+  return {film, time, script_.clock().factor_at(film), built_.world.bodies()};
+}
+
+view::Whereabouts Projector::whereabouts() const {
+  return [this](int entry) { return scene::centre_of(built_, built_.world.bodies(), entry); };
+}
+
+script::Sight Projector::look() {
+  const view::Viewpoint view = rig_.view_at(now(), whereabouts());
+  const Vec3 way = view.target - view.position;
+  const double half = view.fov * core::kPi / 360.0;
+  const double height = 2.0 * way.norm() * core::sin(half) / core::cos(half);
+  const Vec3 right = way.cross(scene_.camera.up).normalized();
+  return {view.position, view.target, height * right, height * right.cross(way).normalized()};
+}
+
 void Projector::step(double film) {
   world::World& world = built_.world;
-  for (std::string& fault : script_.play(built_)) recorder_.record.warnings.push_back(std::move(fault));
+  for (std::string& fault : script_.play(built_, [this] { return look(); }))
+    recorder_.record.warnings.push_back(std::move(fault));
+  const view::Moment moment = now();
+  for (const scene::Cue& cue : script_.take_cues()) {
+    if (const auto* change = std::get_if<scene::CameraChange>(&cue.event->action))
+      rig_.begin(*change, cue.event->body, cue.film, moment, whereabouts());
+    cues_.push_back(cue);
+  }
   if (steps_at(film) < static_cast<double>(world.steps() + 1)) {
     before_.assign(world.bodies().begin(), world.bodies().end());
     steps_before_ = world.steps();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "sandbox/run/inspector.h"
@@ -23,7 +24,7 @@ class Projector {
   std::optional<view::Moment> next();
 
   /// What the script asked of the picture up to that moment.
-  std::vector<scene::Cue> take_cues() { return script_.take_cues(); }
+  std::vector<scene::Cue> take_cues() { return std::exchange(cues_, {}); }
 
   /// The world's time that the frame after the last one will show, s, unless the script changes that.
   double time_ahead() const;
@@ -33,6 +34,11 @@ class Projector {
 
  private:
   void step(double film);
+  /// Before the coming step.
+  view::Moment now() const;
+  view::Whereabouts whereabouts() const;
+  /// The camera before the coming step.
+  script::Sight look();
   /// The step border, in steps, of a moment of the film; whole where it is one.
   double steps_at(double film) const;
 
@@ -40,12 +46,14 @@ class Projector {
   scene::BuiltScene& built_;
   Recorder& recorder_;
   script::Script script_;
+  view::CameraRig rig_;  // as the script sees it: at step borders, whatever frames there are
   Inspector inspector_;
   int frames_per_second_;
   int frame_ = -1;
   std::vector<body::Body> before_;  // before the last step, if a frame shows a moment within it
   long steps_before_ = -1;
   std::vector<body::Body> between_;
+  std::vector<scene::Cue> cues_;
 };
 
 }  // namespace shatterbox::sandbox::run

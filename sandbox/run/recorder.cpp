@@ -37,13 +37,14 @@ void Recorder::note_frame(const world::World& world, double simulate, double aud
   breaks_ = report.breaks.size();
 }
 
-void Recorder::note_pictures(const Painted& painted) {
+void Recorder::note_pictures(const Painted& painted, int first) {
   record.gl_renderer = painted.gl_renderer;
-  record.frame_hashes = painted.hashes;
   record.load.emplace_back("renderer", painted.start);
   for (std::size_t i = 0; i < painted.frame.size(); ++i) {
-    const auto number = static_cast<std::size_t>(painted.numbers[i]);
+    if (painted.numbers[i] < first) continue;
+    const auto number = static_cast<std::size_t>(painted.numbers[i] - first);
     if (number >= record.frames.size()) continue;
+    record.frame_hashes.push_back(painted.hashes[i]);
     report::FrameRecord& frame = record.frames[number];
     frame.frame = std::max(painted.frame[i] - frame.audit, 0.0);
     frame.render = painted.render[i];

@@ -17,8 +17,9 @@ class Recorder {
   void note_step(const world::World& world);
   /// After the steps of one frame, which took `simulate` ms, and the audit of them `audit` ms more.
   void note_frame(const world::World& world, double simulate, double audit);
-  /// Times and hashes of pictures.
-  void note_pictures(const Painted& painted);
+  /// Times and hashes of the pictures that are this record's: its frames begin with number `first` of the
+  /// film.
+  void note_pictures(const Painted& painted, int first);
   /// At the end: counts, hash, memory, what was used.
   void finish(const world::World& world, double wall_seconds);
 

@@ -13,12 +13,19 @@
 
 namespace shatterbox::sandbox::scene {
 
+/// A place in the picture: from its middle, in heights of the picture, to the right and up. So it does not
+/// depend on the picture's size.
+struct ScreenPlace {
+  double right = 0.0, up = 0.0;
+};
+
 struct Projectile {
-  Vec3 from = Vec3::Zero();
-  std::variant<Vec3, int> target = Vec3(Vec3::Zero());  // a point, or the number of a body
+  std::optional<Vec3> from;                                          // m; nothing: from the camera
+  std::variant<Vec3, int, ScreenPlace> target = Vec3(Vec3::Zero());  // a point, or the number of a body
   double speed = 0.0;
   Vec3 spin = Vec3::Zero();
 };
+/// With all copies of the body.
 struct Drop {
   std::optional<Vec3> position;  // nothing: the body's own
 };

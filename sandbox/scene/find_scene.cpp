@@ -66,4 +66,19 @@ std::string find_scene(const std::string& scene, Problems& problems) {
   return {};
 }
 
+std::vector<std::string> find_shots(const std::string& folder) {
+  std::vector<fs::path> places{folder};
+  for (const fs::path& scenes : scene_folders()) places.push_back(scenes / folder);
+  std::error_code code;
+  std::vector<std::string> shots;
+  for (const fs::path& place : places) {
+    if (!fs::is_directory(place, code)) continue;
+    for (const fs::directory_entry& entry : fs::directory_iterator(place, code))
+      if (entry.path().extension() == ".toml") shots.push_back(entry.path().string());
+    break;
+  }
+  std::sort(shots.begin(), shots.end());
+  return shots;
+}
+
 }  // namespace shatterbox::sandbox::scene

@@ -30,4 +30,8 @@ std::string find_scene(const std::string& scene, Problems& problems);
 /// The first line of a scene's text without its comment sign; empty if it is no comment.
 std::string first_comment(std::string_view text);
 
+/// The scenes of a folder, or of the folder of that name that came along, by their names: the shots of one
+/// film. None if it is no folder.
+std::vector<std::string> find_shots(const std::string& folder);
+
 }  // namespace shatterbox::sandbox::scene

@@ -23,6 +23,20 @@ Vec3 read_needed(TableReader& reader, const std::string& key, const Range& range
   return value.value_or(Vec3::Zero());
 }
 
+ScreenPlace read_screen_place(TableReader& reader, const TomlValue& value) {
+  ScreenPlace place;
+  const Range range = between(-2.0, 2.0);
+  if (!value.is_array() || value.items.size() != 2) {
+    reader.add_problem(value.place,
+                       fmt::format("at_screen must be two numbers, but is {}", kind_in_words(value)),
+                       "write [right, up]: from the middle, in heights of the picture");
+    return place;
+  }
+  place.right = reader.as_number(value.items[0], "the first of at_screen", range).value_or(0.0);
+  place.up = reader.as_number(value.items[1], "the second of at_screen", range).value_or(0.0);
+  return place;
+}
+
 }  // namespace
 
 int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
@@ -98,9 +112,11 @@ Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
   return push;
 }
 
-Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
+Projectile read_projectile(TableReader& reader, const SceneDescription& scene) {
   Projectile projectile;
-  projectile.from = read_needed(reader, "from", coordinate(), "[x, y, z]: where it starts");
+  const TomlValue* screen = reader.value("at_screen");
+  if (screen == nullptr || reader.has("from"))
+    projectile.from = read_needed(reader, "from", coordinate(), "[x, y, z]: where it starts");
   if (const auto speed = reader.number("speed", between(1e-3, 1e4, "m/s"))) {
     projectile.speed = *speed;
   } else if (!reader.has("speed")) {
@@ -109,15 +125,18 @@ Projectile read_projectile(TableReader& reader, SceneDescription& scene) {
   }
   projectile.spin = reader.vector("spin", between(-1e5, 1e5, "rad/s")).value_or(projectile.spin);
   const auto point = reader.vector("at_point", coordinate());
-  const auto body = reader.text("at_body");
-  if (reader.has("at_point") == reader.has("at_body")) {
+  const int body = read_named_body(reader, "at_body", scene);
+  const int targets = int{reader.has("at_point")} + int{reader.has("at_body")} + int{screen != nullptr};
+  if (targets != 1) {
     reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
-                       "give either at_point = [x, y, z] or at_body = \"name\"");
-  } else if (body) {
-    projectile.target = read_named_body(reader, "at_body", scene);
+                       "give one of at_point = [x, y, z], at_body = \"name\" and at_screen = [right, up]");
+  } else if (screen != nullptr) {
+    projectile.target = read_screen_place(reader, *screen);
+  } else if (reader.has("at_body")) {
+    projectile.target = body;
   } else if (point) {
     projectile.target = *point;
-    if ((*point - projectile.from).norm() < 1e-9) {
+    if (projectile.from && (*point - *projectile.from).norm() < 1e-9) {
       reader.add_problem_at("at_point", "the target is where the projectile starts", "move from or at_point");
     }
   }

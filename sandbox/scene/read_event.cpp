@@ -18,7 +18,7 @@ struct VerbKeys {
 };
 
 const std::vector<VerbKeys> kVerbKeys{
-    {"projectile", {"body", "from", "at_point", "at_body", "speed", "spin"}},
+    {"projectile", {"body", "from", "at_point", "at_body", "at_screen", "speed", "spin"}},
     {"drop", {"body", "position"}},
     {"push", {"body", "impulse", "point"}},
     {"remove", {"body"}},

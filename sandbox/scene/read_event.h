@@ -19,7 +19,7 @@ int read_named_body(TableReader& reader, const std::string& key, const SceneDesc
 /// The number of the body that an event acts on, -1 with a problem if it names none.
 int read_acted_body(TableReader& reader, const SceneDescription& scene);
 
-Projectile read_projectile(TableReader& reader, SceneDescription& scene);
+Projectile read_projectile(TableReader& reader, const SceneDescription& scene);
 Push read_push(TableReader& reader, int body, const SceneDescription& scene);
 
 Gravity read_gravity(TableReader& reader);

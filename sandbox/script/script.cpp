@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/elementary.h"
+#include "engine/dynamics/line_of_sight.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/script/room.h"
 
@@ -53,8 +54,18 @@ double time_of(const scene::EventEntry& event, const scene::BuiltScene& built) {
   return event.when == scene::When::time ? event.at : built.world.time();
 }
 
+/// What the camera sees at a place of its picture; where nothing is, as far away as it looks.
+Vec3 seen_at(const scene::ScreenPlace& place, const Sight& sight, const world::World& world) {
+  constexpr double kFar = 100.0;  // times as far as it looks
+  const Vec3 there = sight.target + place.right * sight.right + place.up * sight.up;
+  const Vec3 far = sight.eye + kFar * (there - sight.eye);
+  const auto share = dynamics::LineOfSight(world.bodies()).first_hit(sight.eye, far);
+  return share ? Vec3(sight.eye + *share * (far - sight.eye)) : there;
+}
+
 /// The motion of what an event brings in, or a sentence why it cannot be.
 core::Result<world::BodyDescription> describe(const scene::EventEntry& event, const scene::BuiltScene& built,
+                                              const std::function<Sight()>& look,
                                               std::vector<std::string>& faults) {
   world::BodyDescription description = built.plan.bodies[static_cast<std::size_t>(event.body)].description;
   if (const auto* drop = std::get_if<scene::Drop>(&event.action)) {
@@ -62,19 +73,28 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
     return description;
   }
   const auto& projectile = std::get<scene::Projectile>(event.action);
+  std::optional<Sight> sight;
+  const bool is_from_camera = !projectile.from.has_value();
+  if (const auto* place = std::get_if<scene::ScreenPlace>(&projectile.target); place || is_from_camera) {
+    if (!look) return core::Error{"there is no camera"};
+    sight = look();
+  }
+  const Vec3 from = is_from_camera ? sight->eye : *projectile.from;
   Vec3 target = Vec3::Zero();
   if (const auto* point = std::get_if<Vec3>(&projectile.target)) {
     target = *point;
+  } else if (const auto* place = std::get_if<scene::ScreenPlace>(&projectile.target)) {
+    target = seen_at(*place, *sight, built.world);
   } else {
     const auto centre = scene::centre_of(built, built.world.bodies(), std::get<int>(projectile.target));
     if (!centre) return core::Error{"its target is not there"};
     target = *centre;
   }
-  const Vec3 way = target - projectile.from;
+  const Vec3 way = target - from;
   const double distance = way.norm();
   if (distance < 1e-9) return core::Error{"its target is where it starts"};
-  description.pose.translation = projectile.from;
-  const auto velocity = aim(projectile.from, target, projectile.speed, built.world.settings().gravity);
+  description.pose.translation = from;
+  const auto velocity = aim(from, target, projectile.speed, built.world.settings().gravity);
   description.velocity = velocity.value_or(Vec3(way * (projectile.speed / distance)));
   if (!velocity) {
     faults.push_back(fmt::format(
@@ -109,9 +129,32 @@ Script::Script(const scene::SceneDescription& scene)
                    [](const LateCopy& a, const LateCopy& b) { return a.due < b.due; });
 }
 
-std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& built,
+void Script::drop_copies(const scene::EventEntry& event, const scene::BuiltScene& built) {
+  const auto entry = static_cast<std::size_t>(event.body);
+  const scene::BodyEntry& body = scene_.bodies[entry];
+  const auto& drop = std::get<scene::Drop>(event.action);
+  const Vec3 shift = drop.position.value_or(body.position) - body.position;
+  std::vector<Pose> poses = scene::copy_poses(body, scene_.world.seed, entry);
+  const int before = throws_[entry];
+  throws_[entry] += static_cast<int>(poses.size());
+  for (std::size_t copy = 0; copy < poses.size(); ++copy) {
+    poses[copy].translation += shift;
+    const long after = step_of(static_cast<double>(copy) * body.repeat.every, scene_.world.steps_per_second);
+    copies_.push_back(
+        {built.world.steps() + after, event.body, before + static_cast<int>(copy), poses[copy]});
+  }
+  std::stable_sort(copies_.begin() + static_cast<std::ptrdiff_t>(next_copy_), copies_.end(),
+                   [](const LateCopy& a, const LateCopy& b) { return a.due < b.due; });
+}
+
+std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                              std::vector<std::string>& faults) {
-  auto description = describe(event, built, faults);
+  const scene::BodyEntry& entry = scene_.bodies[static_cast<std::size_t>(event.body)];
+  if (std::holds_alternative<scene::Drop>(event.action) && entry.repeat.total() > 1) {
+    drop_copies(event, built);
+    return {};
+  }
+  auto description = describe(event, built, sight, faults);
   if (!description) return description.error();
   if (const std::string obstacle = find_obstacle(built.world, description.value()); !obstacle.empty())
     return fmt::format("{} is where its body would come in", obstacle);
@@ -140,7 +183,7 @@ std::vector<std::size_t> Script::take_due(const world::World& world) {
   return numbers;
 }
 
-std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene& built,
+std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                                std::vector<std::string>& faults) {
   if (const auto* push = std::get_if<scene::Push>(&event.action))
     return push_bodies(*push, event.body, built);
@@ -166,13 +209,13 @@ std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene
     cues_.push_back({clock_.film_at(built.world.time()), &event});
     return {};
   }
-  return bring_in(event, built, faults);
+  return bring_in(event, built, sight, faults);
 }
 
-void Script::play_events(scene::BuiltScene& built, std::vector<std::string>& faults) {
+void Script::play_events(scene::BuiltScene& built, const Look& sight, std::vector<std::string>& faults) {
   for (const std::size_t number : take_due(built.world)) {
     const scene::EventEntry& event = scene_.events[number];
-    const std::string fault = play_event(event, built, faults);
+    const std::string fault = play_event(event, built, sight, faults);
     if (!fault.empty())
       faults.push_back(
           fmt::format("event \"{}\" at {:g} s did nothing: {}", event.name, time_of(event, built), fault));
@@ -210,10 +253,11 @@ void Script::bring_copies(scene::BuiltScene& built, std::vector<std::string>& fa
   waiting_ = std::move(still_waiting);
 }
 
-std::vector<std::string> Script::play(scene::BuiltScene& built) {
+std::vector<std::string> Script::play(scene::BuiltScene& built, const Look& sight) {
   std::vector<std::string> faults;
   bring_copies(built, faults);
-  play_events(built, faults);
+  play_events(built, sight, faults);
+  bring_copies(built, faults);  // what the events let fall
   forces_.advance(built.world);
   return faults;
 }

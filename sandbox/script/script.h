@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +17,12 @@
 
 namespace shatterbox::sandbox::script {
 
+/// Where the camera is and looks, for what is thrown at a place of the picture.
+struct Sight {
+  Vec3 eye = Vec3::Zero(), target = Vec3::Zero();  // m
+  Vec3 right = Vec3::UnitX(), up = Vec3::UnitY();  // m, at the target: a height of the picture
+};
+
 class Script {
  public:
   /// `scene` must outlive the script.
@@ -24,7 +31,8 @@ class Script {
   /// Brings in the copies and plays the events that are due before the coming step (each lands on the first
   /// step border at or after its time). A copy for which there is no room waits until there is; an event is
   /// refused. Returns what could not be done, in sentences.
-  std::vector<std::string> play(scene::BuiltScene& built);
+  /// `sight` tells of the camera; it is asked only if an event needs it.
+  std::vector<std::string> play(scene::BuiltScene& built, const std::function<Sight()>& sight = {});
 
   /// Whether nothing is left to come.
   bool is_over() const;
@@ -45,14 +53,17 @@ class Script {
   };
 
   void bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults);
-  void play_events(scene::BuiltScene& built, std::vector<std::string>& faults);
+  using Look = std::function<Sight()>;
+  void play_events(scene::BuiltScene& built, const Look& sight, std::vector<std::string>& faults);
   /// The events that are due, in the order of their times, then of the scene.
   std::vector<std::size_t> take_due(const world::World& world);
   /// A sentence why it could not be done, or nothing.
-  std::string play_event(const scene::EventEntry& event, scene::BuiltScene& built,
+  std::string play_event(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                          std::vector<std::string>& faults);
+  /// All copies of a body, one after another where it says so.
+  void drop_copies(const scene::EventEntry& event, const scene::BuiltScene& built);
   /// A sentence why it could not be done, or nothing.
-  std::string bring_in(const scene::EventEntry& event, scene::BuiltScene& built,
+  std::string bring_in(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                        std::vector<std::string>& faults);
 
   const scene::SceneDescription& scene_;

@@ -18,6 +18,8 @@ class CameraRig {
   void begin(const scene::CameraChange& change, int entry, double film, const Moment& moment,
              const Whereabouts& where);
 
+  Viewpoint view_at(const Moment& moment, const Whereabouts& where);
+  /// The same in the picture's terms.
   render::Camera at(const Moment& moment, const Whereabouts& where);
 
  private:
@@ -29,7 +31,6 @@ class CameraRig {
     std::optional<Vec3> last_seen;  // of the body that is followed
   };
 
-  Viewpoint view_at(const Moment& moment, const Whereabouts& where);
   void apply(Shot& shot, double film, const Whereabouts& where, Viewpoint& view) const;
 
   scene::CameraEntry entry_;

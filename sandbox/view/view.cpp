@@ -106,8 +106,12 @@ std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uin
   return make_surface_mesh(shape, id);
 }
 
-View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built)
-    : scene_(scene), built_(built), camera_(scene.camera, find_subject(scene, built.plan)), overlays_(scene) {
+View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built, int shot)
+    : scene_(scene),
+      built_(built),
+      camera_(scene.camera, find_subject(scene, built.plan)),
+      overlays_(scene),
+      next_mesh_((static_cast<std::uint64_t>(shot) << 32U) + 1) {
   stage_.lights = make_lights(scene.light);
   stage_.ground = make_ground_of(scene, built);
   stage_.backdrop = make_backdrop(scene.render.backdrop);

@@ -21,8 +21,9 @@ namespace shatterbox::sandbox::view {
 
 class View {
  public:
-  /// `scene` and `built` must outlive the view.
-  View(const scene::SceneDescription& scene, const scene::BuiltScene& built);
+  /// `scene` and `built` must outlive the view. Views whose frames one renderer draws have different numbers
+  /// of their `shot`.
+  View(const scene::SceneDescription& scene, const scene::BuiltScene& built, int shot = 0);
 
   /// What the script asks of the picture, not later than `moment`.
   void begin(const scene::Cue& cue, const Moment& moment);
@@ -63,7 +64,7 @@ class View {
   std::map<const body::Shape*, DrawnShape> shapes_;
   std::map<body::BodyId, std::vector<render::Look>> looks_;
   std::shared_ptr<const render::Mesh> marker_;
-  std::uint64_t next_mesh_ = 1;
+  std::uint64_t next_mesh_;
   std::uint64_t frame_ = 0;
 };
 

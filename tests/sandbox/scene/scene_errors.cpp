@@ -226,6 +226,8 @@ const Broken kCorpus[] = {
     {"[[event]]\nat = 1\ndo = \"explosion\"\ncentre = [0,0,0]\n", "t.toml:1:", "has no \"energy\"", "TNT"},
     {"[[event]]\nat = 1\ndo = \"explosion\"\ncentre = [0,0,0]\nenergy = 1\nduration = 1\n", "t.toml:6:12",
      "0.1 s", ""},
+    {"[[event]]\nat = 1\ndo = \"projectile\"\nat_screen = [0.1]\nspeed = 1\n", "t.toml:4:13", "two numbers",
+     "[right, up]"},
     {"[[event]]\nat = 1\ndo = \"gravity\"\n", "t.toml:1:", "has no \"gravity\"", "[0, -1.62, 0]"},
     {"[[event]]\nat = 1\ndo = \"grab\"\nbody = \"p\"\n[[body]]\nname = \"p\"\nkind = \"plane\"\n",
      "t.toml:4:8", "cannot be grabbed", "dynamic"},

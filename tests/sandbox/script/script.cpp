@@ -167,3 +167,54 @@ TEST_CASE("hands grab, carry and release, explosions and gravity come on time, a
   CHECK(play_to(2.1).velocity.x() > 0.01);
   CHECK(script.is_over());
 }
+
+TEST_CASE("what is thrown at a place of the picture meets what is seen there") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"wall\"\nkind = \"box\"\nsize = [3,3,0.2]\nmotion = "
+      "\"static\"\n"
+      "[[event]]\nat = 0\ndo = \"projectile\"\nat_screen = [0.25, -0.5]\nspeed = 10\n"
+      "[[event]]\nat = 0.1\ndo = \"projectile\"\nfrom = [0,3,3]\nat_screen = [2, 0]\nspeed = 10\n");
+  auto built = build(reading);
+  script::Script script(*reading.scene);
+  script::Sight sight;  // a metre of picture height at the target
+  sight.eye = Vec3(0, 0, 5);
+  const auto look = [&sight] { return sight; };
+  CHECK(script.play(*built, look).empty());
+  REQUIRE(built->world.bodies().size() == 2);
+  // From the eye through (0.25, -0.5, 0) onto the wall's face at z = 0.1.
+  const Vec3 way = Vec3(0.25, -0.5, -5);
+  CHECK(built->world.bodies()[1].pose.translation == sight.eye);
+  CHECK(built->world.bodies()[1].velocity.isApprox(10.0 * way.normalized(), 1e-9));
+  while (built->world.time() < 0.1) built->world.step();
+  CHECK(script.play(*built, look).empty());
+  REQUIRE(built->world.bodies().size() == 3);
+  // 2 m aside of the target there is the wall's edge no more: as far as the camera looks.
+  CHECK(built->world.bodies()[2].velocity.isApprox(10.0 * Vec3(2, -3, -3).normalized(), 1e-9));
+}
+
+TEST_CASE("a drop brings in all copies of its body, one after another where it says so") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n[[body]]\nkind = \"plane\"\nposition = [0,-9,0]\n"
+      "[[event]]\nat = 0.1\ndo = \"drop\"\nposition = [5,1,0]\n"
+      "body = {kind = \"sphere\", radius = 0.1, position = [1,0,0], repeat = {count = [3,1,2], spacing = "
+      "0.5}}\n"
+      "[[event]]\nat = 0.2\ndo = \"drop\"\n"
+      "body = {kind = \"sphere\", radius = 0.1, repeat = {count = 3, spacing = [1,0,0], every = 0.05}}\n");
+  auto built = build(reading);
+  script::Script script(*reading.scene);
+  std::vector<std::size_t> counts;
+  for (int step = 0; step < 80; ++step) {
+    CHECK(script.play(*built).empty());
+    counts.push_back(built->world.bodies().size());
+    built->world.step();
+  }
+  CHECK(counts[23] == 1);
+  CHECK(counts[24] == 7);
+  CHECK(built->world.bodies()[1].pose.translation == Vec3(5, 1, 0));
+  CHECK(built->world.bodies()[6].pose.translation == Vec3(6, 1, 0.5));
+  CHECK(counts[48] == 8);
+  CHECK(counts[59] == 8);
+  CHECK(counts[60] == 9);
+  CHECK(counts[72] == 10);
+  CHECK(script.is_over());
+}

@@ -1,0 +1,55 @@
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "sandbox/run/job.h"
+#include "sandbox/run/run.h"
+#include "sandbox/scene/find_scene.h"
+#include "sandbox/study/study.h"
+
+namespace shatterbox::sandbox::run {
+
+int check_scene(const Options& options) {
+  scene::Problems problems;
+  const std::string file = scene::find_scene(options.scene, problems);
+  if (file.empty()) return refuse(problems);
+  const auto scene = scene::read_scene_file(file, changes_of(options), problems);
+  if (!scene) return refuse(problems);
+  const auto built = scene::build_world(*scene, problems);
+  if (!built) return refuse(problems);
+  for (const std::string& note : built->plan.notes) fmt::print("note: {}\n", note);
+  for (const std::string& warning : scene->warnings) fmt::print("warning: {}\n", warning);
+  std::size_t triangles = 0;
+  for (const body::Body& body : built->world.bodies()) triangles += body.shape->surface.triangles.size();
+  fmt::print("{}: fine. {} bodies, {} triangles, {} events, {:g} s at {} steps a second\n", file,
+             built->world.bodies().size(), triangles, scene->events.size(), scene->seconds,
+             scene->world.steps_per_second);
+  return kDone;
+}
+
+int list_all() {
+  fmt::print("scenes\n");
+  for (const scene::KnownScene& known : scene::known_scenes())
+    fmt::print("    {:<12} {}\n", known.name, known.goal);
+  fmt::print("materials\n");
+  for (const material::Preset& preset : material::presets()) {
+    const material::Material& m = preset.material;
+    fmt::print("    {:<12} {:g} kg/m3, {:g} GPa, strength {:g} MPa; {}\n", m.name, m.density, 1e-9 * m.young,
+               1e-6 * m.strength, preset.source);
+  }
+  const auto row = [](const char* title, const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    fmt::print("{}\n    {}\n", title, text);
+  };
+  row("looks", scene::kLookNames);
+  row("grounds", scene::kGroundNames);
+  row("backdrops", scene::kBackdropNames);
+  row("overlays", scene::kOverlayNames);
+  row("events", scene::kEventVerbs);
+  fmt::print("studies\n");
+  for (const study::Study& study : study::studies()) fmt::print("    {:<12} {}\n", study.name, study.what);
+  return kDone;
+}
+
+}  // namespace shatterbox::sandbox::run

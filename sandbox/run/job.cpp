@@ -1,0 +1,111 @@
+#include "sandbox/run/job.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "engine/core/clock.h"
+#include "engine/core/parallel.h"
+#include "sandbox/scene/find_scene.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+using core::Clock;
+using core::milliseconds_since;
+
+void check_stills(const Options& options, double seconds, scene::Problems& problems) {
+  for (const double time : options.stills)
+    if (!(time >= 0.0 && time < seconds))
+      scene::book(problems, scene::Place{"--stills", 0, 0},
+                  fmt::format("{:g} s is not in the film, which goes from 0 to {:g} s", time, seconds),
+                  "--seconds makes it longer");
+}
+
+void describe_job(const Job& job, report::RunRecord& record) {
+  const scene::SceneDescription& scene = *job.scene;
+  record.version = SHATTERBOX_VERSION;
+  record.compiler = SHATTERBOX_COMPILER;
+  record.scene = scene.name;
+  record.goal = scene.goal;
+  record.seed = scene.world.seed;
+  record.threads = core::thread_count();
+  record.steps_per_second = scene.world.steps_per_second;
+  record.frames_per_second = job.options.frames_per_second;
+  record.asked_seconds = scene.seconds;
+  record.warnings = scene.warnings;
+  record.warnings.insert(record.warnings.end(), job.built->plan.notes.begin(), job.built->plan.notes.end());
+  bool has_breakable = false, has_grains = false, has_script = !scene.events.empty();
+  for (const scene::BodyEntry& body : scene.bodies) {
+    has_script |= body.repeat.every > 0.0;
+    const auto* shell = std::get_if<scene::ShellForm>(&body.form);
+    if (shell == nullptr || !shell->is_breakable) continue;
+    has_breakable = true;
+    has_grains |= scene.materials[static_cast<std::size_t>(body.material)].material.grain_size > 0.0;
+  }
+  const auto sort_in = [&record](bool is_used, const char* name) {
+    (is_used ? record.used : record.left_out).emplace_back(name);
+  };
+  sort_in(has_breakable, "shell_stress");
+  sort_in(has_breakable, "fracture");
+  sort_in(has_grains, "grains");
+  sort_in(job.options.has_pictures, "render");
+  sort_in(job.options.has_pictures && scene.light.casts_shadow, "shadow");
+  sort_in(!job.options.video.empty(), "video");
+  sort_in(has_script, "script");
+}
+
+}  // namespace
+
+std::string film_of(const Options& options) {
+  const bool has_other_output = !options.frames_folder.empty() || !options.meshes_folder.empty();
+  if (!options.has_pictures || !options.video.empty() || has_other_output) return options.video;
+  const std::filesystem::path path =
+      std::filesystem::path(options.scene) / "";  // a folder may end in a slash
+  return path.parent_path().stem().string() + ".mp4";
+}
+
+int refuse(const scene::Problems& problems) {
+  fmt::print(stderr, "{}\n", scene::describe(problems));
+  return kBadInput;
+}
+
+Job make_job(const Options& options, Recorder& recorder, scene::Problems& problems) {
+  Job job{options, {}, std::nullopt, std::nullopt};
+  const std::string file = scene::find_scene(options.scene, problems);
+  job.options.video = film_of(options);
+  if (const auto size = parse_size(options.size, problems)) job.painter.size = *size;
+  job.painter.quality = options.quality == "full" ? render::Quality::full : render::Quality::preview;
+  job.painter.frames_per_second = options.frames_per_second;
+  job.painter.video = job.options.video;
+  job.painter.frames_folder = options.frames_folder;
+  if (!options.has_pictures && (!options.video.empty() || !options.frames_folder.empty())) {
+    scene::book(problems, scene::Place{"--no-render", 0, 0}, "no pictures, but -o or --frames asks for some",
+                "leave one of them out");
+  }
+  if (!options.stills.empty() && options.frames_folder.empty()) {
+    scene::book(problems, scene::Place{"--stills", 0, 0}, "there is no folder for the pictures",
+                "name one: --frames DIR");
+  }
+  if (!options.stills.empty() && !options.video.empty()) {
+    scene::book(problems, scene::Place{"--stills", 0, 0}, "single moments make no video", "leave -o out");
+  }
+  if (file.empty()) return job;
+  job.scene = scene::read_scene_file(file, changes_of(options), problems);
+  if (job.scene) check_stills(options, job.scene->seconds, problems);
+  prepare_outputs(job.options, problems);
+  if (!problems.empty()) return job;
+  const auto start = Clock::now();
+  job.built = scene::build_world(*job.scene, problems);
+  recorder.record.load.emplace_back("meshes", milliseconds_since(start));
+  if (!job.built) return job;
+  const auto prepared = Clock::now();
+  job.built->world.prepare();
+  recorder.record.load.emplace_back("factors", milliseconds_since(prepared));
+  describe_job(job, recorder.record);
+  return job;
+}
+
+}  // namespace shatterbox::sandbox::run
