@@ -60,4 +60,12 @@ int ShellSystemCache::count() const {
   return static_cast<int>(systems_.size());
 }
 
+double ShellSystemCache::factor_entries() const {
+  const std::lock_guard lock(mutex_);
+  double sum = 0.0;
+  for (const auto& [key, system] : systems_)
+    if (system) sum += system.value()->factor_entries();
+  return sum;
+}
+
 }  // namespace shatterbox::stress

@@ -39,8 +39,9 @@ class ShellSystemCache {
   const ShellStiffness& stiffness() const { return *stiffness_; }
   const std::shared_ptr<const ShellStiffness>& shared_stiffness() const { return stiffness_; }
   const ShellSupport& support() const { return support_; }
-  /// Number of systems made so far.
+  /// Number of systems made so far, and of the entries of their factors.
   int count() const;
+  double factor_entries() const;
 
  private:
   const System& get(int key, double screening);

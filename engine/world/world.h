@@ -14,6 +14,7 @@
 #include "engine/dynamics/blast.h"
 #include "engine/material/material.h"
 #include "engine/world/description.h"
+#include "engine/world/inventory.h"
 #include "engine/world/report.h"
 #include "engine/world/settings.h"
 
@@ -97,6 +98,9 @@ class World {
   /// Impulses of the last step, of the pass that was kept.
   const body::ImpulseLog& impulse_log() const;
   const WorldSettings& settings() const;
+
+  /// What it has made of its optional parts.
+  std::vector<PartCount> inventory() const;
 
   double time() const;  // s
   long steps() const;

@@ -191,7 +191,11 @@ Json make_json(const RunRecord& record) {
                     {"skipped", w.solver.skipped},
                     {"factorisations", w.solver.factorisations}};
   json["used"] = record.used;
+  json["idle"] = record.idle;
   json["left_out"] = record.left_out;
+  json["parts"] = Json::object();
+  for (const world::PartCount& row : record.inventory)
+    json["parts"][row.part] = {{"count", row.count}, {"bytes", number(row.bytes)}};
   json["time_ms"] = times(record);
   json["load_ms"] = Json::object();
   for (const auto& [name, milliseconds] : record.load) json["load_ms"][name] = number(milliseconds);

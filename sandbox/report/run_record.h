@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/audit/audit.h"
+#include "engine/world/inventory.h"
 #include "engine/world/report.h"
 
 namespace shatterbox::sandbox::report {
@@ -42,7 +43,9 @@ struct RunRecord {
   std::vector<std::pair<std::string, std::vector<double>>>
       stages;                                        // ms in each frame, in the order of the step
   std::vector<std::pair<std::string, double>> load;  // ms
-  std::vector<std::string> used, left_out;
+  std::vector<std::string> used, idle, left_out;     // parts of the program
+  std::vector<world::PartCount> inventory;           // at the end
+  bool has_sleepers = false;                         // at the end
   bool has_audit = false;
   audit::AuditReport audit;
   double audit_time = 0.0;               // ms, in no frame's time

@@ -7,6 +7,7 @@
 #include "sandbox/run/bench.h"
 #include "sandbox/run/diff.h"
 #include "sandbox/run/golden.h"
+#include "sandbox/run/plan.h"
 #include "sandbox/run/run.h"
 #include "sandbox/run/study.h"
 #include "sandbox/scene/nearest_name.h"
@@ -104,19 +105,13 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_flag("--quick", options.is_quick, "fewer settings, smaller cases, one repeat");
 }
 
-/// A mistyped verb gets the nearest one named, and verbs of later versions are told as such.
+/// A mistyped verb gets the nearest one named.
 bool is_known_verb(const std::string& verb) {
-  const std::vector<std::string> verbs{"run", "check", "diff", "golden", "study", "bench", "list"};
-  const std::vector<std::string> later{"plan"};
+  const std::vector<std::string> verbs{"run", "check", "plan", "diff", "golden", "study", "bench", "list"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
-  if (std::find(later.begin(), later.end(), verb) != later.end()) {
-    std::fprintf(stderr, "\"%s\" is not available in this version\n    verbs: %s\n", verb.c_str(),
-                 scene::quoted_list(verbs).c_str());
-  } else {
-    std::fprintf(stderr, "there is no verb \"%s\"\n    %s\n", verb.c_str(),
-                 scene::hint_for_name(verb, verbs, "verbs").c_str());
-  }
+  std::fprintf(stderr, "there is no verb \"%s\"\n    %s\n", verb.c_str(),
+               scene::hint_for_name(verb, verbs, "verbs").c_str());
   return false;
 }
 
@@ -131,6 +126,10 @@ int run_command_line(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "simulate, draw and encode a scene");
   CLI::App* check_command =
       app.add_subcommand("check", "say what is wrong with a scene, where, and how to mend it");
+  CLI::App* plan_command = app.add_subcommand(
+      "plan", "say which parts a run needs and why, what it leaves out, and what that takes");
+  bool is_lean = false;
+  plan_command->add_flag("--lean", is_lean, "list what could still be switched off, and what that saves");
   BenchOptions bench;
   CLI::App* bench_command = app.add_subcommand("bench", "time the benchmark scenes, one after the other");
   add_bench_options(*bench_command, bench);
@@ -149,14 +148,16 @@ int run_command_line(int argc, char** argv) {
   app.add_subcommand("list", "scenes, materials, looks, events and studies");
   run_command->add_option("SCENE", options.scene, "a .toml file, or the name of a scene that came along");
   check_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
-  for (CLI::App* command : {run_command, check_command}) add_scene_options(*command, options);
-  add_run_options(*run_command, options);
+  plan_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
+  for (CLI::App* command : {run_command, check_command, plan_command}) add_scene_options(*command, options);
+  for (CLI::App* command : {run_command, plan_command}) add_run_options(*command, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
   if (app.got_subcommand("run")) return run_scene(options);
+  if (app.got_subcommand("plan")) return plan_scene(options, is_lean);
   if (app.got_subcommand("bench")) return run_bench(bench);
   if (app.got_subcommand("diff")) return run_diff(diff);
   if (app.got_subcommand("study")) return run_study(study);

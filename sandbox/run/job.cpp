@@ -37,24 +37,6 @@ void describe_job(const Job& job, report::RunRecord& record) {
   record.asked_seconds = scene.seconds;
   record.warnings = scene.warnings;
   record.warnings.insert(record.warnings.end(), job.built->plan.notes.begin(), job.built->plan.notes.end());
-  bool has_breakable = false, has_grains = false, has_script = !scene.events.empty();
-  for (const scene::BodyEntry& body : scene.bodies) {
-    has_script |= body.repeat.every > 0.0;
-    const auto* shell = std::get_if<scene::ShellForm>(&body.form);
-    if (shell == nullptr || !shell->is_breakable) continue;
-    has_breakable = true;
-    has_grains |= scene.materials[static_cast<std::size_t>(body.material)].material.grain_size > 0.0;
-  }
-  const auto sort_in = [&record](bool is_used, const char* name) {
-    (is_used ? record.used : record.left_out).emplace_back(name);
-  };
-  sort_in(has_breakable, "shell_stress");
-  sort_in(has_breakable, "fracture");
-  sort_in(has_grains, "grains");
-  sort_in(job.options.has_pictures, "render");
-  sort_in(job.options.has_pictures && scene.light.casts_shadow, "shadow");
-  sort_in(!job.options.video.empty(), "video");
-  sort_in(has_script, "script");
 }
 
 }  // namespace

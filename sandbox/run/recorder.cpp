@@ -57,8 +57,10 @@ void Recorder::finish(const world::World& world, double wall_seconds) {
   record.simulated_seconds = world.time();
   record.state_hash = world.state_hash();
   record.world = world.report();
+  record.inventory = world.inventory();
   for (const body::Body& body : world.bodies()) {
     ++record.bodies_end;
+    record.has_sleepers |= body.is_dynamic() && !body.is_awake;
     record.pieces += world.ancestry(body.id).parent != 0 ? 1 : 0;
     record.triangles_end += static_cast<long>(body.shape->surface.triangles.size());
   }

@@ -14,6 +14,7 @@
 #include "sandbox/report/summary.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/job.h"
+#include "sandbox/run/plan.h"
 #include "sandbox/run/progress.h"
 #include "sandbox/run/projector.h"
 #include "sandbox/scene/find_scene.h"
@@ -92,6 +93,7 @@ void play_shot(Shot& shot, int number, Painter* painter, int first, std::string&
   }
   shot.recorder.record.is_interrupted = is_interrupted();
   shot.recorder.finish(shot.job->built->world, milliseconds_since(start) / 1000.0);
+  sort_parts(plan_parts(*shot.job->scene, shot.job->options), shot.recorder.record);
 }
 
 /// The reports and the closing words of all shots that were played. The exit status.

@@ -38,3 +38,78 @@ TEST_CASE("slow motion makes the film longer, not the world, and gives the same 
   CHECK(still["frame_hashes"][0] == slow["frame_hashes"][18]);
   CHECK(fs::exists(folder / "m" / "frame_000047.obj"));
 }
+
+TEST_CASE("plan tells what a scene needs and why, and the report what of it was used") {
+  const Folder folder;
+  write_text(folder / "small.toml", kSmallScene);
+  write_text(
+      folder / "glass.toml",
+      "[scene]\nseconds = 0.1\n[[body]]\nkind = \"plane\"\n[[body]]\nname = \"ball\"\nshape = \"sphere\"\n"
+      "radius = 0.05\nthickness = 0.0006\nedge_length = 0.012\nmaterial = \"glass\"\nposition = "
+      "[0,0.1,0]\nvelocity = [0,-6,0]\n");
+  const Outcome small = program(folder, "plan small.toml --no-render");
+  INFO(small.err << small.out);
+  REQUIRE(small.status == 0);
+  const auto line_of = [](const std::string& text, const std::string& word) {
+    const std::size_t at = text.find(word);
+    return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+  };
+  const std::size_t left_out = small.out.find("leaves out");
+  REQUIRE(left_out != std::string::npos);
+  for (const char* part : {"shell_stress", "fracture", "grains", "render", "shadow", "video", "hands"})
+    CHECK(small.out.find(part) > left_out);
+  CHECK(small.out.find("contact") < left_out);
+  CHECK(line_of(small.out, "contact").find("\"balls\"") != std::string::npos);
+  const Outcome glass = program(folder, "plan glass.toml --size 64x48 --lean");
+  INFO(glass.err << glass.out);
+  REQUIRE(glass.status == 0);
+  CHECK(glass.out.find("shell_stress") < glass.out.find("leaves out"));
+  CHECK(line_of(glass.out, "shell_stress").find("\"ball\" can break") != std::string::npos);
+  CHECK(glass.out.find("light.shadow=false") != std::string::npos);
+  CHECK(!fs::exists(folder / "glass.mp4"));
+
+  const auto has = [](const nlohmann::json& list, const char* name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  REQUIRE(program(folder, "run small.toml --no-render --report s.json").status == 0);
+  REQUIRE(program(folder, "run glass.toml --no-render --report g.json").status == 0);
+  REQUIRE(program(folder,
+                  "run glass.toml --no-render --report h.json --set ball.velocity=[0,0,0] "
+                  "--set ball.position=[0,0.2,0]")
+              .status == 0);
+  const auto s = read_json(folder / "s.json"), g = read_json(folder / "g.json"),
+             h = read_json(folder / "h.json");
+  for (const char* part : {"shell_stress", "fracture"}) {
+    CHECK(has(s["left_out"], part));
+    CHECK(has(g["used"], part));
+    CHECK(has(h["idle"], part));  // it has not come down yet
+  }
+  CHECK(s["parts"]["factors"]["bytes"] == 0);
+  CHECK(g["parts"]["factors"]["bytes"] > 0);
+  CHECK_FALSE(s["time_ms"]["stages"].contains("stress"));
+  CHECK(g["time_ms"]["stages"].contains("stress"));
+}
+
+TEST_CASE("a folder of scenes is a film of several shots with one report, and each shot is as by itself") {
+  const Folder folder;
+  fs::create_directories(folder / "reel");
+  write_text(folder / "reel" / "1.toml", kSmallScene);
+  write_text(folder / "reel" / "2.toml",
+             std::string(kSmallScene) + "[camera]\nposition = [1,1,1]\ntarget = [0,0,0]\n");
+  REQUIRE(
+      program(folder, "run reel --size 64x48 --fps 30 --seconds 0.2 -o film.mp4 --report r.json").status ==
+      0);
+  CHECK(count_frames(folder, "film.mp4") == 12);
+  const auto report = read_json(folder / "r.json");
+  REQUIRE(report["shots"].size() == 2);
+  for (int shot = 0; shot < 2; ++shot) {
+    const std::string name = std::to_string(shot + 1);
+    REQUIRE(program(folder, "run reel/" + name + ".toml --size 64x48 --fps 30 --seconds 0.2 -o " + name +
+                                ".mp4 --report " + name + ".json")
+                .status == 0);
+    const auto alone = read_json(folder / (name + ".json"));
+    CHECK(report["shots"][shot]["state_hash"] == alone["state_hash"]);
+    CHECK(report["shots"][shot]["frame_hashes"] == alone["frame_hashes"]);
+  }
+  CHECK(program(folder, "run real --no-render").status == 2);
+}

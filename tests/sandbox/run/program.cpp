@@ -17,7 +17,6 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   };
   refused("", "");
   refused("runn good.toml", "did you mean \"run\"?");
-  refused("plan", "not available in this version");
   refused("study", "study needs a NAME");
   refused("study moton", "did you mean \"motion\"?");
   refused("study motion -o good.toml", "good.toml");

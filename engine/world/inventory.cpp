@@ -1,0 +1,75 @@
+#include "engine/world/inventory.h"
+
+#include <set>
+
+#include "engine/world/state.h"
+
+namespace shatterbox::world {
+namespace {
+
+/// Of things that several bodies may share, each once.
+template <class Thing, class Bytes>
+PartCount count_shared(const char* part, const std::set<const Thing*>& things, const Bytes& bytes_of) {
+  PartCount sum{part, 0, 0.0};
+  for (const Thing* thing : things) {
+    if (thing == nullptr) continue;
+    ++sum.count;
+    sum.bytes += bytes_of(*thing);
+  }
+  return sum;
+}
+
+template <class Item>
+double bytes_in(const std::vector<Item>& items) {
+  return static_cast<double>(items.size() * sizeof(Item));
+}
+
+}  // namespace
+
+std::vector<PartCount> World::inventory() const {
+  const State& s = *state_;
+  std::set<const body::Shape*> surfaces;
+  std::set<const stress::ShellStiffness*> stiffnesses;
+  std::set<const stress::ShellSystemCache*> systems;
+  std::set<const fracture::FlawField*> flaws;
+  std::set<const fracture::GrainField*> grains;
+  for (const body::Body& body : s.moving.bodies)
+    if (body::is_mesh(body.shape->kind)) surfaces.insert(body.shape.get());
+  for (const auto& [id, fragile] : s.moving.fragiles) {
+    const fracture::ShellSubject& subject = fragile->subject;
+    systems.insert(subject.systems.get());
+    if (subject.systems) stiffnesses.insert(subject.systems->shared_stiffness().get());
+    flaws.insert(subject.flaws.get());
+    grains.insert(subject.grains.get());
+  }
+  PartCount factors{"factors", 0, 0.0};
+  for (const stress::ShellSystemCache* cache : systems) {
+    if (cache == nullptr) continue;
+    factors.count += cache->count();
+    factors.bytes += sizeof(double) * cache->factor_entries();
+  }
+  const auto memory = static_cast<long>(s.moving.memories.size());
+  const auto hands = static_cast<long>(s.hands.size());
+  return {
+      count_shared("surfaces", surfaces,
+                   [](const body::Shape& shape) {
+                     return bytes_in(shape.surface.positions) + bytes_in(shape.surface.triangles) +
+                            bytes_in(shape.topology.edges) + bytes_in(shape.topology.triangle_edges);
+                   }),
+      count_shared(
+          "shell_stiffness", stiffnesses,
+          [](const stress::ShellStiffness& k) { return bytes_in(k.matrices) + bytes_in(k.vertex_rank); }),
+      factors,
+      count_shared(
+          "flaws", flaws,
+          [](const fracture::FlawField& f) { return bytes_in(f.flaws) + bytes_in(f.first_of_element); }),
+      count_shared("grains", grains,
+                   [](const fracture::GrainField& g) {
+                     return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);
+                   }),
+      {"impact_memory", memory, static_cast<double>(memory) * sizeof(ImpactMemory)},
+      {"hands", hands, static_cast<double>(hands) * sizeof(dynamics::Hand)},
+  };
+}
+
+}  // namespace shatterbox::world

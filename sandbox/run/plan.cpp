@@ -1,0 +1,158 @@
+#include "sandbox/run/plan.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "engine/core/clock.h"
+#include "engine/core/parallel.h"
+#include "sandbox/run/job.h"
+#include "sandbox/run/projector.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+using core::Clock;
+using core::milliseconds_since;
+
+constexpr int kFirstSteps = 12;
+
+/// What the first steps and the first picture took, ms.
+struct Measured {
+  double load = 0.0, factors = 0.0;
+  double step = 0.0;
+  double picture = 0.0, shadow = 0.0;
+  double memory = 0.0;  // MB
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0.0 : values[values.size() / 2];
+}
+
+void measure_picture(const Job& job, const render::Frame& frame, Measured& measured) {
+  render::Renderer renderer(job.painter.size, job.painter.quality);
+  (void)renderer.render(frame);  // compiles the shaders
+  renderer.set_timing(true);
+  renderer.forget();
+  const auto start = Clock::now();
+  (void)renderer.render(frame);
+  measured.picture = milliseconds_since(start);
+  for (const auto& pass : renderer.pass_times().passes)
+    if (pass.name == "shadow") measured.shadow = pass.wall_ms;
+}
+
+Measured measure(Job& job, Recorder& recorder) {
+  Measured measured;
+  for (const auto& [name, milliseconds] : recorder.record.load) {
+    measured.load += milliseconds;
+    if (name == "factors") measured.factors = milliseconds;
+  }
+  if (job.options.has_pictures) {
+    view::View view(*job.scene, *job.built);
+    measure_picture(job, view.make_frame(), measured);
+  }
+  std::vector<double> steps;
+  script::Script script(*job.scene);
+  for (int i = 0; i < kFirstSteps; ++i) {
+    const auto start = Clock::now();
+    (void)script.play(*job.built);
+    job.built->world.step();
+    steps.push_back(milliseconds_since(start));
+  }
+  measured.step = median(steps);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  measured.memory = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  return measured;
+}
+
+void tell_parts(const std::vector<PartPlan>& parts, bool is_needed, const char* title) {
+  fmt::print("{}\n", title);
+  for (const PartPlan& plan : parts)
+    if (plan.is_needed == is_needed) fmt::print("    {:<17} {}\n", plan.name, plan.why);
+}
+
+void tell_inventory(const std::vector<world::PartCount>& rows) {
+  fmt::print("made of them when loaded\n");
+  for (const world::PartCount& row : rows)
+    fmt::print("    {:<17} {:>6} {:>10.2f} MB\n", row.part, row.count, row.bytes / 1e6);
+}
+
+void tell_expectation(const Job& job, const Measured& measured) {
+  const int fps = job.options.frames_per_second;
+  const double steps_a_frame = static_cast<double>(job.scene->world.steps_per_second) / fps;
+  const double frames = std::max(1.0, job.scene->seconds * fps);
+  fmt::print("expected\n");
+  fmt::print("    memory            {:.0f} MB so far\n", measured.memory);
+  fmt::print("    loading           {:.2f} s, {:.2f} s of it factors\n", 1e-3 * measured.load,
+             1e-3 * measured.factors);
+  fmt::print("    a step            {:.2f} ms, as the first {} took; what breaks later costs more\n",
+             measured.step, kFirstSteps);
+  const double simulate = steps_a_frame * measured.step;
+  if (job.options.has_pictures)
+    fmt::print("    a picture         {:.1f} ms, drawn wholly; what does not change is kept\n",
+               measured.picture);
+  // Steps and pictures have a thread each.
+  const double a_frame = std::max(simulate, measured.picture);
+  fmt::print("    in all            {:.0f} frames at true speed: {:.1f} s, if it goes on as it begins\n",
+             frames, 1e-3 * (measured.load + frames * a_frame));
+}
+
+void tell_lean(const Job& job, const Measured& measured, const std::vector<PartPlan>& parts) {
+  const auto needs = [&parts](const char* name) {
+    return std::any_of(parts.begin(), parts.end(),
+                       [name](const PartPlan& plan) { return plan.name == name && plan.is_needed; });
+  };
+  fmt::print("what could still be switched off\n");
+  const auto row = [](const std::string& how, const std::string& saves) {
+    fmt::print("    {:<46} {}\n", how, saves);
+  };
+  double factor_bytes = 0.0;
+  for (const world::PartCount& part : job.built->world.inventory())
+    if (part.part == "factors" || part.part == "shell_stiffness") factor_bytes += part.bytes;
+  if (needs("shell_stress"))
+    row("breakable = false, where nothing need break",
+        fmt::format("at most {:.2f} s of loading, {:.1f} MB, and all that breaking costs",
+                    1e-3 * measured.factors, factor_bytes / 1e6));
+  if (needs("shadow"))
+    row("--set light.shadow=false",
+        fmt::format("{:.1f} of {:.1f} ms a picture", measured.shadow, measured.picture));
+  if (job.options.has_pictures && job.options.quality == "full")
+    row("--quality preview", "about half of each picture");
+  if (job.options.has_pictures && job.options.frames_per_second > 30)
+    row("--fps 30", fmt::format("{:.0f} pictures", 0.5 * job.options.frames_per_second * job.scene->seconds));
+  if (job.options.has_pictures)
+    row("--no-render", fmt::format("{:.1f} ms a picture, and the encoder", measured.picture));
+  if (job.scene->world.steps_per_second > 240)
+    row("--set scene.steps_per_second=240",
+        fmt::format("{:.0f} % of the steps", 100.0 * (1.0 - 240.0 / job.scene->world.steps_per_second)));
+  if (!job.scene->world.has_sleep) row("--set scene.sleep=true", "what rests costs nothing");
+  if (needs("audit")) row("no --audit", "its time after each step");
+}
+
+}  // namespace
+
+int plan_scene(const Options& options, bool is_lean) {
+  core::set_thread_count(options.threads);
+  Recorder recorder;
+  scene::Problems problems;
+  Job job = make_job(options, recorder, problems);
+  if (!problems.empty()) return refuse(problems);
+  const std::vector<PartPlan> parts = plan_parts(*job.scene, job.options);
+  const std::vector<world::PartCount> made = job.built->world.inventory();
+  fmt::print("{}\n", job.scene->name);
+  tell_parts(parts, true, "needs");
+  tell_parts(parts, false, "leaves out");
+  tell_inventory(made);
+  const Measured measured = measure(job, recorder);
+  tell_expectation(job, measured);
+  if (is_lean) tell_lean(job, measured, parts);
+  return kDone;
+}
+
+}  // namespace shatterbox::sandbox::run

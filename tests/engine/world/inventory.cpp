@@ -1,0 +1,100 @@
+// What a scene does not need is not made: counts, bytes and stage times of zero, with the control that
+// needing it makes them rise.
+#include <catch2/catch.hpp>
+
+#include "engine/geometry/generators.h"
+#include "engine/world/world.h"
+
+using namespace shatterbox;
+
+namespace {
+
+world::PartCount part(const world::World& w, const std::string& name) {
+  for (const world::PartCount& row : w.inventory())
+    if (row.part == name) return row;
+  FAIL("no part is called " << name);
+  return {};
+}
+
+world::World make_scene(bool is_breakable, bool has_grains, bool has_shell = true) {
+  world::World w{world::WorldSettings{}};
+  material::Material glass = *material::find_preset("glass");
+  glass.grain_size = has_grains ? 0.01 : 0.0;
+  REQUIRE(w.add_material(glass).ok());
+  world::BodyDescription floor;
+  floor.form = world::PlaneDescription{};
+  REQUIRE(w.add_body(floor).ok());
+  world::BodyDescription box;
+  box.form = world::BoxDescription{Vec3::Constant(0.05)};
+  box.pose.translation = Vec3(1, 0.06, 0);
+  REQUIRE(w.add_body(box).ok());
+  if (!has_shell) return w;
+  for (int copy = 0; copy < 3; ++copy) {
+    world::BodyDescription ball;
+    world::ShellDescription shell;
+    shell.mesh = geometry::make_sphere(0.04, {0.008, 0.0, 1}).value();
+    shell.thickness = 0.0006;
+    shell.is_breakable = is_breakable;
+    ball.form = shell;
+    ball.pose.translation = Vec3(-0.2 * copy, 0.1, 0);
+    ball.velocity = Vec3(0, -6, 0);
+    REQUIRE(w.add_body(ball).ok());
+  }
+  return w;
+}
+
+bool has_stage(const world::World& w, const std::string& name) {
+  for (const auto& stage : w.report().stages.stages())
+    if (stage.name == name) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a world of boxes has no meshes, one of unbreakable shells no stress, and neither spends time on it") {
+  for (const bool has_shell : {false, true}) {
+    world::World w = make_scene(false, true, has_shell);
+    w.prepare();
+    for (int i = 0; i < 24; ++i) w.step();
+    CHECK(part(w, "surfaces").count == (has_shell ? 1 : 0));
+    CHECK((part(w, "surfaces").bytes > 0.0) == has_shell);
+    for (const char* name : {"shell_stiffness", "factors", "flaws", "grains", "impact_memory", "hands"}) {
+      INFO(name);
+      CHECK(part(w, name).count == 0);
+      CHECK(part(w, name).bytes == 0.0);
+    }
+    for (const char* stage : {"snapshot", "stress", "fracture", "acts"}) {
+      INFO(stage);
+      CHECK_FALSE(has_stage(w, stage));
+    }
+    CHECK(w.report().solver.solves + w.report().solver.factorisations == 0);
+  }
+}
+
+TEST_CASE(
+    "what can break has stress, shared by copies; grains only if its material has them; factors when "
+    "prepared") {
+  for (const bool has_grains : {false, true}) {
+    world::World w = make_scene(true, has_grains);
+    CHECK(part(w, "surfaces").count == 1);  // three copies
+    CHECK(part(w, "shell_stiffness").count == 1);
+    CHECK(part(w, "shell_stiffness").bytes > 1e4);
+    CHECK(part(w, "flaws").count == 3);  // each has its own
+    CHECK(part(w, "impact_memory").count == 3);
+    CHECK((part(w, "grains").count > 0) == has_grains);
+    CHECK((part(w, "grains").bytes > 0.0) == has_grains);
+    CHECK(part(w, "factors").count == 0);
+    w.prepare();
+    CHECK(part(w, "factors").count > 0);
+    CHECK(part(w, "factors").bytes > 1e5);
+    for (int i = 0; i < 12; ++i) w.step();
+    CHECK(w.report().breaks.size() > 0);
+    for (const char* stage : {"snapshot", "stress", "fracture"}) CHECK(has_stage(w, stage));
+    CHECK_FALSE(has_stage(w, "acts"));
+    REQUIRE(w.grab(2, w.bodies()[1].pose.translation, 10.0) != 0);
+    w.step();
+    CHECK(part(w, "hands").count == 1);
+    CHECK(has_stage(w, "acts"));
+  }
+}
