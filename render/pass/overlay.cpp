@@ -58,9 +58,21 @@ std::vector<std::string> wrap(std::string_view text, float unit, float width) {
   return lines;
 }
 
+// In as few lines, and as evenly filled as that allows: no word by itself in the last one.
+std::vector<std::string> wrap_evenly(std::string_view text, float unit, float width) {
+  std::vector<std::string> lines = wrap(text, unit, width);
+  for (float narrower = 0.95F * width; narrower > 0.3F * width; narrower -= 0.05F * width) {
+    std::vector<std::string> narrow = wrap(text, unit, narrower);
+    if (narrow.size() > lines.size()) break;
+    lines = std::move(narrow);
+  }
+  return lines;
+}
+
 void draw_title(Image& image, const Title& title, bool has_caption) {
   const float unit = 1.7F * unit_for(image), line = 10.5F * unit;
-  const std::vector<std::string> lines = wrap(title.text, unit, 0.9F * static_cast<float>(image.width));
+  const std::vector<std::string> lines =
+      wrap_evenly(title.text, unit, 0.9F * static_cast<float>(image.width));
   const float below = (has_caption ? 15.0F : 8.0F) * unit;
   float y = static_cast<float>(image.height) - below - static_cast<float>(lines.size() - 1) * line;
   for (const std::string& text : lines) {
