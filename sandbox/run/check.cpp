@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -9,7 +10,9 @@
 
 namespace shatterbox::sandbox::run {
 
-int check_scene(const Options& options) {
+namespace {
+
+int check_one(const Options& options) {
   scene::Problems problems;
   const std::string file = scene::find_scene(options.scene, problems);
   if (file.empty()) return refuse(problems);
@@ -25,6 +28,18 @@ int check_scene(const Options& options) {
              built->world.bodies().size(), triangles, scene->events.size(), scene->seconds,
              scene->world.steps_per_second);
   return kDone;
+}
+
+}  // namespace
+
+int check_scene(const Options& options) {
+  int status = kDone;
+  for (const std::string& file : scene::shots_or_scene(options.scene)) {
+    Options own = options;
+    own.scene = file;
+    status = std::max(status, check_one(own));
+  }
+  return status;
 }
 
 int list_all() {

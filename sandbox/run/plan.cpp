@@ -11,6 +11,7 @@
 #include "engine/core/parallel.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/projector.h"
+#include "sandbox/scene/find_scene.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -135,10 +136,7 @@ void tell_lean(const Job& job, const Measured& measured, const std::vector<PartP
   if (needs("audit")) row("no --audit", "its time after each step");
 }
 
-}  // namespace
-
-int plan_scene(const Options& options, bool is_lean) {
-  core::set_thread_count(options.threads);
+int plan_one(const Options& options, bool is_lean) {
   Recorder recorder;
   scene::Problems problems;
   Job job = make_job(options, recorder, problems);
@@ -153,6 +151,19 @@ int plan_scene(const Options& options, bool is_lean) {
   tell_expectation(job, measured);
   if (is_lean) tell_lean(job, measured, parts);
   return kDone;
+}
+
+}  // namespace
+
+int plan_scene(const Options& options, bool is_lean) {
+  core::set_thread_count(options.threads);
+  int status = kDone;
+  for (const std::string& file : scene::shots_or_scene(options.scene)) {
+    Options own = options;
+    own.scene = file;
+    status = std::max(status, plan_one(own, is_lean));
+  }
+  return status;
 }
 
 }  // namespace shatterbox::sandbox::run

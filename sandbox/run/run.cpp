@@ -169,8 +169,7 @@ int run_scene(const Options& options) {
   catch_interrupts();
   core::set_thread_count(options.threads);
   scene::Problems problems;
-  std::vector<std::string> files = scene::find_shots(options.scene);
-  if (files.empty()) files.push_back(options.scene);
+  const std::vector<std::string> files = scene::shots_or_scene(options.scene);
   std::vector<Shot> shots(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     Options own = options;

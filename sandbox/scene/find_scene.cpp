@@ -81,4 +81,10 @@ std::vector<std::string> find_shots(const std::string& folder) {
   return shots;
 }
 
+std::vector<std::string> shots_or_scene(const std::string& scene) {
+  std::vector<std::string> files = find_shots(scene);
+  if (files.empty()) files.push_back(scene);
+  return files;
+}
+
 }  // namespace shatterbox::sandbox::scene

@@ -34,4 +34,7 @@ std::string first_comment(std::string_view text);
 /// film. None if it is no folder.
 std::vector<std::string> find_shots(const std::string& folder);
 
+/// Those, or `scene` itself if it is no folder of scenes.
+std::vector<std::string> shots_or_scene(const std::string& scene);
+
 }  // namespace shatterbox::sandbox::scene
