@@ -9,6 +9,7 @@
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_diagnosis.h"
 #include "sandbox/scene/build_mesh.h"
+#include "sandbox/scene/limits.h"
 
 namespace shatterbox::sandbox::scene {
 
@@ -216,6 +217,8 @@ std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& p
     }
   }
   if (problems.size() > before) return std::nullopt;
+  for (std::string& sentence : find_limits(scene.world, built.world.bodies()))
+    built.plan.notes.push_back(std::move(sentence));
   return built;
 }
 

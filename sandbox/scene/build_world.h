@@ -22,7 +22,7 @@ struct BodyPlan {
 
 struct ScenePlan {
   std::vector<BodyPlan> bodies;    // by the numbers of SceneDescription::bodies
-  std::vector<std::string> notes;  // what was mended in meshes
+  std::vector<std::string> notes;  // what was mended in meshes, what is beyond the engine's limits
 };
 
 /// Where an original body came from.

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "engine/stress/shell_stress.h"
 #include "sandbox/study/shell_models.h"
 #include "sandbox/study/stress_cases.h"
 
@@ -71,4 +72,53 @@ TEST_CASE("sphere under two opposite forces: Reissner's deflection is approached
   REQUIRE(ratios[2] > 1.0);
   REQUIRE(ratios[2] < 1.2);
   REQUIRE(membrane_ratios[1] > 3.0 * membrane_ratios[0]);
+}
+
+TEST_CASE("pressurised sphere, thin to 1e-6 of its size, thick as itself, and of rubber") {
+  using namespace shatterbox;
+  const auto elements = model::icosphere(3);
+  const geometry::ShellMesh mesh = geometry::make_shell_mesh(elements);
+  for (const double thickness : {1e-6, 1e-4, 1e-2, 1.0})
+    for (const double poisson : {0.0, 0.3, 0.4999}) {
+      const stress::ShellProperties properties = model::properties_of(thickness, poisson);
+      const auto stiffness = stress::make_shell_stiffness(elements, properties);
+      const auto solution = model::make_system(stiffness, mesh)->solve(model::pressure_load(mesh, 1.0));
+      REQUIRE(solution.is_evaluated());
+      const auto stresses = stress::cell_stresses(*stiffness, mesh, solution.displacement);
+      double sum = 0.0, area = 0.0;
+      for (std::size_t c = 0; c < stresses.size(); ++c) {
+        sum += mesh.cells[c].area * 0.5 * (stresses[c].membrane(0) + stresses[c].membrane(1));
+        area += mesh.cells[c].area;
+      }
+      CAPTURE(thickness, poisson);
+      CHECK(sum / area == Approx(0.5 / thickness).epsilon(0.01));
+    }
+}
+
+TEST_CASE("a row of slivers to 1e-6 of their length does not change a plate's answer") {
+  using namespace shatterbox;
+  const auto deflection = [](double width) {
+    geometry::TriangleMesh mesh = model::grid_mesh(17, 16, 1.0, 1.0);
+    // The middle column of cells becomes that narrow, the others take its place.
+    for (Vec3& p : mesh.positions) {
+      const double column = p.x() * 17.0;
+      p.x() = column < 8.5 ? column / 8.0 * 0.5 * (1.0 - width)
+                           : 1.0 - (17.0 - column) / 8.0 * 0.5 * (1.0 - width);
+    }
+    const auto elements = model::make_elements(mesh);
+    const geometry::ShellMesh cells = geometry::make_shell_mesh(elements);
+    const stress::ShellProperties properties = model::properties_of(0.01);
+    const auto stiffness = stress::make_shell_stiffness(elements, properties);
+    const auto solution = model::make_system(stiffness, cells, 0.0, model::square_support(cells, false))
+                              ->solve(model::pressure_load(cells, 1.0));
+    REQUIRE(solution.is_evaluated());
+    double most = 0.0;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      most = std::max(most, solution.displacement(stress::vertex_dof(static_cast<int>(v)) + 2));
+    return most * model::bending_stiffness(properties) / 0.00406235;
+  };
+  for (const double width : {1e-2, 1e-4, 1e-6}) {
+    CAPTURE(width);
+    CHECK(deflection(width) == Approx(1.0).epsilon(0.03));
+  }
 }

@@ -215,3 +215,29 @@ TEST_CASE("copies of a scripted body go the same way from where each stands, abo
   for (int i = 0; i < 120; ++i) built->world.step();
   check(Vec3(0, 2, -0.5));
 }
+
+TEST_CASE("a scene beyond what the engine bears says so at load") {
+  const auto notes = [](const std::string& text) {
+    const Reading reading = read(text);
+    REQUIRE(reading.scene.has_value());
+    Problems problems;
+    const auto built = build_world(*reading.scene, problems);
+    REQUIRE(built);
+    std::string all;
+    for (const std::string& note : built->plan.notes) all += note + "\n";
+    return all;
+  };
+  const std::string box = "[[body]]\nname = \"crate\"\nkind = \"box\"\nsize = 0.2\ndensity = 2500\n";
+  const std::string heavy =
+      "[[body]]\nname = \"block\"\nkind = \"box\"\nsize = 0.2\nposition = [1, 0, 0]\ndensity = ";
+  CHECK(notes(box) == "");
+  CHECK(notes(box + heavy + "2.0e7\n") == "");
+  const std::string apart = notes(box + heavy + "2.6e7\n");
+  INFO(apart);
+  CHECK(apart.find("\"block\" has 1e+04 times the mass of \"crate\"") != std::string::npos);
+  CHECK(notes("[scene]\ngravity = [0, -300, 0]\n" + box) == "");
+  const std::string strong = notes("[scene]\ngravity = [0, -9810, 0]\n" + box);
+  INFO(strong);
+  CHECK(strong.find("\"crate\", 0.35 m in size, falls by 0.085 m in a step") != std::string::npos);
+  CHECK(strong.find("at least 842 steps a second") != std::string::npos);
+}
