@@ -11,7 +11,7 @@
 namespace shatterbox::geometry {
 namespace {
 
-constexpr double kFlat = 1e-12;
+constexpr double kStillFlat = 1e-12;
 constexpr int kMostPasses = 16;
 
 using core::at;
@@ -65,9 +65,9 @@ class Round {
   bool take_out(std::size_t t) {
     const Triangle corners = mesh_.triangles[t];
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return true;
-    if (flatness(mesh_, corners) >= kFlat) return false;
+    if (flatness(mesh_, corners) >= kStillFlat) return false;
     const Extremes e = find_extremes(mesh_, corners);
-    if (e.shortest_length <= kFlat * e.longest_length) {
+    if (e.shortest_length <= kStillFlat * e.longest_length) {
       const int a = corners[e.shortest];
       const int b = corners[(e.shortest + 1) % 3];
       joined_[at(std::max(a, b))] = std::min(a, b);

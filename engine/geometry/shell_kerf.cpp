@@ -13,8 +13,8 @@ using core::at;
 constexpr double kFlat = 1e-7;           // rad: planes that differ by less are one
 constexpr double kMitreSoftness = 0.02;  // bounds how far a sharp corner retreats along its bisector
 constexpr double kLeastAreaKept = 0.4;   // of a triangle, after the kerf
-constexpr int kPropagations = 3;         // rounds in which vertices near a crack move along with it
-constexpr int kHalvings = 10;            // rounds in which a kerf that is still too wide is halved
+constexpr int kMovingRounds = 3;         // rounds in which vertices near a crack move along with it
+constexpr int kHalvingRounds = 10;       // rounds in which a kerf that is still too wide is halved
 
 /// Where a vertex may go without leaving the planes of its triangles.
 class Freedom {
@@ -91,11 +91,11 @@ std::vector<int> collapsed(const TriangleMesh& mesh, const std::vector<Vec3>& sh
 void limit(const TriangleMesh& mesh, const std::vector<char>& is_border, const std::vector<Freedom>& freedoms,
            std::vector<Vec3>& shift) {
   std::vector<int> bad = collapsed(mesh, shift);
-  for (int round = 0; round < kPropagations + kHalvings && !bad.empty(); ++round) {
+  for (int round = 0; round < kMovingRounds + kHalvingRounds && !bad.empty(); ++round) {
     for (const int t : bad) {
       const Triangle& triangle = mesh.triangles[at(t)];
-      if (round >= kPropagations) {
-        for (const int v : triangle) shift[at(v)] *= round + 1 < kPropagations + kHalvings ? 0.5 : 0.0;
+      if (round >= kMovingRounds) {
+        for (const int v : triangle) shift[at(v)] *= round + 1 < kMovingRounds + kHalvingRounds ? 0.5 : 0.0;
         continue;
       }
       Vec3 largest = Vec3::Zero();

@@ -18,7 +18,7 @@ constexpr float kFarTargets =
 constexpr float kPlaces = 16.0F;  // the map's place moves in such parts of its size
 constexpr int kTile = 16;         // texels; a disc of taps stays within one tile of its centre
 
-struct Box {
+struct SunBox {
   glm::vec3 least{std::numeric_limits<float>::max()}, most{std::numeric_limits<float>::lowest()};
   void add(glm::vec3 p, float radius = 0.0F) {
     least = glm::min(least, p - radius);
@@ -36,10 +36,10 @@ glm::mat3 sun_from_world(glm::vec3 sun) {
 
 // Only shadows that can be seen matter: the view's cone, to where the ground is mostly faded, in the sun's
 // frame.
-Box find_seen(const FrameBlock& block, const glm::mat3& sun_frame) {
+SunBox find_seen(const FrameBlock& block, const glm::mat3& sun_frame) {
   const float far = kFarTargets * block.target_distance.w;
   const glm::mat4 world_from_clip = glm::inverse(block.clip_from_world);
-  Box box;
+  SunBox box;
   const glm::vec3 eye(block.eye_exposure);
   box.add(sun_frame * eye);
   for (int i = 0; i < 4; ++i) {
@@ -81,11 +81,11 @@ ShadowPass::ShadowPass(int map_size)
 
 void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& block) const {
   const glm::mat3 sun_frame = sun_from_world(glm::vec3(block.sun));
-  Box casters;
+  SunBox casters;
   for (const Item& item : meshes.items()) {
     if (item.casts_shadow) casters.add(sun_frame * item.centre_world, item.radius);
   }
-  const Box seen = find_seen(block, sun_frame);
+  const SunBox seen = find_seen(block, sun_frame);
   const glm::vec2 least = glm::max(glm::vec2(casters.least), glm::vec2(seen.least));
   const glm::vec2 most = glm::min(glm::vec2(casters.most), glm::vec2(seen.most));
   const bool is_needed =

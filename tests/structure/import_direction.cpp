@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "tests/structure/import_rules.h"
+#include "tests/structure/local_names.h"
 
 namespace shatterbox::structure {
 namespace {
@@ -34,6 +35,7 @@ class PlantedHouse {
   }
   std::string wrong() const { return joined(find_wrong_includes(read_sources(root_))); }
   std::string circles() const { return joined(find_circles(read_sources(root_))); }
+  std::string shared_names() const { return joined(find_shared_local_names(root_)); }
   std::string unreached() const { return joined(find_unreached(root_, read_sources(root_))); }
 
  private:
@@ -56,6 +58,30 @@ TEST_CASE("no file includes itself by a circle") {
 
 TEST_CASE("every source is built and every header is used") {
   CHECK(joined(find_unreached(kRoot, read_sources(kRoot))) == "");
+}
+
+TEST_CASE("no two files of a namespace have a constant or a type of their own under one name") {
+  CHECK(joined(find_shared_local_names(kRoot)) == "");
+}
+
+TEST_CASE("control: names that two files share are found, those of other namespaces are not") {
+  const PlantedHouse house;
+  const auto file = [](const std::string& scope, const std::string& text) {
+    return "namespace " + scope + " {\nnamespace {\n" + text + "\n}  // namespace\n}  // namespace " + scope +
+           "\n";
+  };
+  house.write("engine/core/a.cpp",
+              file("core", "constexpr double kSmall = 1e-9;\nstruct Row {\n};\nusing Size = std::size_t;"));
+  house.write("engine/core/b.cpp", file("core::only_b", "const int kSmall = 3;\nstruct Row {\n};"));
+  house.write("engine/body/c.cpp", file("body", "const int kSmall = 3;\nstruct Row {\n};"));
+  house.write("engine/core/d.cpp", file("core", "using Size = std::size_t;\nconst int kLarge = 2;"));
+  CHECK(house.shared_names() == "");
+  house.write("engine/core/e.cpp", file("core", "const char* const kSmall = \"\";\nstruct Row {\n};"));
+  house.write("engine/core/f.cpp", file("core", "using Size = int;"));
+  CHECK(house.shared_names() ==
+        "core::Row is defined by engine/core/a.cpp and by engine/core/e.cpp\n"
+        "core::Size is defined by engine/core/a.cpp and by engine/core/f.cpp\n"
+        "core::kSmall is defined by engine/core/a.cpp and by engine/core/e.cpp\n");
 }
 
 TEST_CASE("control: a house without faults passes") {
