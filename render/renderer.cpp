@@ -243,6 +243,9 @@ bool Renderer::is_llvmpipe() const {
 int Renderer::mesh_count() const {
   return rooms_->meshes.mesh_count();
 }
+bool Renderer::has_shadow_maps() const {
+  return rooms_->shadow.has_maps();
+}
 void Renderer::set_timing(bool on) {
   rooms_->is_timed = on;
   rooms_->times.passes.clear();

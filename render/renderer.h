@@ -49,6 +49,7 @@ class Renderer {
   const std::string& gl_renderer() const;  // for the report: "llvmpipe (LLVM 15.0.6, 256 bits)"
   bool is_llvmpipe() const;                // pictures are only comparable if so
   int mesh_count() const;                  // meshes on the GPU now
+  bool has_shadow_maps() const;            // they are made when something first casts a shadow
 
   void set_timing(bool on);
   const PassTimes& pass_times() const;

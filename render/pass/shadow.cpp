@@ -63,21 +63,24 @@ bool is_before(const Caster& a, const Caster& b) {
 
 }  // namespace
 
-ShadowPass::ShadowPass(int map_size)
-    : depth_compared_(map_size, map_size, GL_DEPTH_COMPONENT32F, gpu::Filter::compare),
-      glass_compared_(map_size / 2, map_size / 2, GL_DEPTH_COMPONENT32F, gpu::Filter::compare),
-      tile_bounds_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::nearest),
-      tile_casters_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::nearest),
-      near_bounds_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::nearest),
-      near_casters_(map_size / kTile, map_size / kTile, GL_RG32F, gpu::Filter::linear),
-      map_({}, &depth_compared_),
-      glass_map_({}, &glass_compared_),
-      tiles_({&tile_bounds_, &tile_casters_}, nullptr),
-      near_({&near_bounds_, &near_casters_}, nullptr),
-      depth_("shadow.vert", ""),
-      reduce_("full_screen.vert", "shadow_tiles.frag", {"SHADOW_TILE " + std::to_string(kTile)}),
-      spread_("full_screen.vert", "shadow_spread.frag"),
-      map_size_(map_size) {}
+// Until something casts, the least that can be bound stands for the maps; no shader looks into it.
+ShadowPass::ShadowPass(int map_size) : map_size_(map_size) {
+  make_maps(kTile);
+}
+
+void ShadowPass::make_maps(int size) {
+  const int tiles = size / kTile;
+  depth_compared_ = gpu::Texture(size, size, GL_DEPTH_COMPONENT32F, gpu::Filter::compare);
+  glass_compared_ = gpu::Texture(size / 2, size / 2, GL_DEPTH_COMPONENT32F, gpu::Filter::compare);
+  tile_bounds_ = gpu::Texture(tiles, tiles, GL_RG32F, gpu::Filter::nearest);
+  tile_casters_ = gpu::Texture(tiles, tiles, GL_RG32F, gpu::Filter::nearest);
+  near_bounds_ = gpu::Texture(tiles, tiles, GL_RG32F, gpu::Filter::nearest);
+  near_casters_ = gpu::Texture(tiles, tiles, GL_RG32F, gpu::Filter::linear);
+  map_ = gpu::Framebuffer({}, &depth_compared_);
+  glass_map_ = gpu::Framebuffer({}, &glass_compared_);
+  tiles_ = gpu::Framebuffer({&tile_bounds_, &tile_casters_}, nullptr);
+  near_ = gpu::Framebuffer({&near_bounds_, &near_casters_}, nullptr);
+}
 
 void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& block) const {
   const glm::mat3 sun_frame = sun_from_world(glm::vec3(block.sun));
@@ -212,6 +215,12 @@ void ShadowPass::reduce(const Part& changed) {
 }
 
 void ShadowPass::run(const MeshStore& meshes, const FrameBlock& block) {
+  if (!has_maps()) {
+    make_maps(map_size_);
+    depth_ = gpu::Program("shadow.vert", "");
+    reduce_ = gpu::Program("full_screen.vert", "shadow_tiles.frag", {"SHADOW_TILE " + std::to_string(kTile)});
+    spread_ = gpu::Program("full_screen.vert", "shadow_spread.frag");
+  }
   const Part changed = draw_casters(meshes, block, false, drawn_solids_);
   if (!changed.is_empty()) reduce(changed);
   if (block.shadow_on_floor.w > 0.0F) draw_casters(meshes, block, true, drawn_glass_);

@@ -14,7 +14,7 @@ namespace shatterbox::render::pass {
 
 class ShadowPass {
  public:
-  explicit ShadowPass(int map_size);  // texels a side, a multiple of 16
+  explicit ShadowPass(int map_size);  // texels a side, a multiple of 16; made when something first casts
 
   // Chooses the map's place: in steps, so that shadow edges hold still while bodies move. Fills the block's
   // shadow members; sun_radiance.w stays 0 when nothing casts.
@@ -24,6 +24,7 @@ class ShadowPass {
   void run(const MeshStore& meshes, const FrameBlock& block);
   void forget() { drawn_solids_ = drawn_glass_ = Drawn{}; }  // draws both when next asked
   void bind() const;                                         // texture units 0, 1, 2, 11
+  bool has_maps() const { return depth_.name() != 0; }
 
  private:
   struct Caster {
@@ -45,6 +46,7 @@ class ShadowPass {
   // Draws the map's casters where they are not those drawn; tells where.
   Part draw_casters(const MeshStore& meshes, const FrameBlock& block, bool is_glass, Drawn& drawn) const;
   void reduce(const Part& changed);
+  void make_maps(int size);
 
   gpu::Texture depth_compared_, glass_compared_, tile_bounds_, tile_casters_, near_bounds_, near_casters_;
   gpu::Framebuffer map_, glass_map_, tiles_, near_;

@@ -55,6 +55,10 @@ std::vector<KnownScene> known_scenes() {
 std::string find_scene(const std::string& scene, Problems& problems) {
   std::error_code code;
   if (fs::is_regular_file(scene, code)) return scene;
+  for (const fs::path& folder : scene_folders()) {  // one of a folder's: reel/1_ornament
+    const fs::path file = folder / (scene + ".toml");
+    if (fs::is_regular_file(file, code)) return file.string();
+  }
   std::vector<std::string> names;
   for (const KnownScene& known : known_scenes()) {
     if (known.name == scene) return known.path.string();

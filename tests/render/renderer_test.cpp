@@ -193,6 +193,21 @@ TEST_CASE("meshes stay on the GPU while frames name them and leave it after") {
   CHECK(renderer.mesh_count() == 0);
 }
 
+TEST_CASE("no light that casts, no shadow maps, and they come with the first that does") {
+  Frame frame = busy_frame();
+  frame.lights.casts_shadow = false;
+  Renderer renderer(kSize, Quality::preview);
+  const Image flat = renderer.render(frame);
+  CHECK_FALSE(renderer.has_shadow_maps());
+  frame.lights.casts_shadow = true;
+  const Image shaded = renderer.render(frame);
+  CHECK(renderer.has_shadow_maps());
+  CHECK(shaded == Renderer(kSize, Quality::preview).render(frame));
+  CHECK_FALSE(shaded == flat);
+  frame.lights.casts_shadow = false;
+  CHECK(renderer.render(frame) == flat);
+}
+
 TEST_CASE("each pass is timed when asked and only then") {
   Renderer renderer(kSize, Quality::preview);
   static_cast<void>(renderer.render(busy_frame()));

@@ -8,6 +8,21 @@
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
 
+namespace {
+
+/// Plays so many steps. How many bodies there were in each.
+std::vector<std::size_t> count_bodies(script::Script& script, scene::BuiltScene& built, int steps) {
+  std::vector<std::size_t> counts;
+  for (int step = 0; step < steps; ++step) {
+    CHECK(script.play(built).empty());
+    counts.push_back(built.world.bodies().size());
+    built.world.step();
+  }
+  return counts;
+}
+
+}  // namespace
+
 TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
   for (const Vec3& gravity : {Vec3(0, -9.81, 0), Vec3(0, 0, 0), Vec3(3, -1, 2)}) {
     const Vec3 from(-1, 0.5, 2), target(0.3, 1.2, 0);
@@ -38,12 +53,7 @@ TEST_CASE("events land on the first step border at or after their time") {
   auto built = build(reading);
   CHECK(built->world.bodies().size() == 1);  // what events bring in waits
   script::Script script(*reading.scene);
-  std::vector<std::size_t> counts;
-  for (int step = 0; step < 26; ++step) {
-    CHECK(script.play(*built).empty());
-    counts.push_back(built->world.bodies().size());
-    built->world.step();
-  }
+  const std::vector<std::size_t> counts = count_bodies(script, *built, 26);
   CHECK(counts[23] == 1);
   CHECK(counts[24] == 2);  // 0.1 s at 240 steps a second
   CHECK(counts[25] == 3);
@@ -90,12 +100,7 @@ TEST_CASE("copies with a time between them come in one after another, named and 
       "repeat = {count = 3, spacing = [1, 0, 0], every = 0.1}\n");
   auto built = build(reading);
   script::Script script(*reading.scene);
-  std::vector<std::size_t> counts;
-  for (int step = 0; step < 50; ++step) {
-    CHECK(script.play(*built).empty());
-    counts.push_back(built->world.bodies().size());
-    built->world.step();
-  }
+  const std::vector<std::size_t> counts = count_bodies(script, *built, 50);
   CHECK(counts[0] == 1);
   CHECK(counts[23] == 1);
   CHECK(counts[24] == 2);
@@ -202,12 +207,7 @@ TEST_CASE("a drop brings in all copies of its body, one after another where it s
       "body = {kind = \"sphere\", radius = 0.1, repeat = {count = 3, spacing = [1,0,0], every = 0.05}}\n");
   auto built = build(reading);
   script::Script script(*reading.scene);
-  std::vector<std::size_t> counts;
-  for (int step = 0; step < 80; ++step) {
-    CHECK(script.play(*built).empty());
-    counts.push_back(built->world.bodies().size());
-    built->world.step();
-  }
+  const std::vector<std::size_t> counts = count_bodies(script, *built, 80);
   CHECK(counts[23] == 1);
   CHECK(counts[24] == 7);
   CHECK(built->world.bodies()[1].pose.translation == Vec3(5, 1, 0));
