@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/geometry/generators.h"
 #include "engine/world/world.h"
 
 using namespace shatterbox;
@@ -110,4 +111,35 @@ TEST_CASE("gravity that changes wakes what rests, and acts at once") {
   const double start = w.bodies()[1].pose.translation.y();
   for (int i = 0; i < 240; ++i) w.step();
   CHECK(w.bodies()[1].pose.translation.y() - start == Approx(1.0).epsilon(1e-3));
+}
+
+TEST_CASE("a hand whose body breaks keeps the piece at its grip, and the others fly") {
+  world::WorldSettings settings;
+  settings.gravity.setZero();
+  world::World w(settings);
+  REQUIRE(w.add_material(*material::find_preset("glass")).ok());
+  world::BodyDescription pane;
+  world::ShellDescription shell;
+  shell.mesh = geometry::make_pane(1.0, 1.0, {0.05, 0.0, 1}).value();  // in the plane z = 0
+  shell.thickness = 0.004;
+  pane.form = shell;
+  const auto id = w.add_body(pane).value();
+  const Vec3 grip(0.5, 0.5, 0);
+  const int hand = w.grab(id, grip, 500.0);
+  REQUIRE(hand != 0);
+  w.explode({Vec3(0.1, 0.05, 1.0), 4e5, 0.0});
+  for (int i = 0; i < 60; ++i) {
+    w.step();
+    REQUIRE(w.move_hand(hand, grip));  // it holds something
+  }
+  REQUIRE(w.report().breaks.size() > 0);
+  REQUIRE(w.bodies().size() > 3);
+  double nearest = 1.0, farthest = 0.0;
+  for (const body::Body& piece : w.bodies()) {
+    farthest = std::max(farthest, (piece.pose.translation - grip).norm());
+    for (const Vec3& p : piece.shape->surface.positions)
+      nearest = std::min(nearest, (piece.pose.apply(p) - grip).norm());
+  }
+  CHECK(nearest < 0.01);
+  CHECK(farthest > 0.2);
 }
