@@ -8,7 +8,6 @@
 
 #include "engine/core/vec.h"
 #include "engine/geometry/edge_topology.h"
-#include "engine/geometry/shell_mesh.h"
 #include "engine/geometry/triangle_mesh.h"
 
 namespace shatterbox::body {
@@ -32,17 +31,19 @@ struct Shape {
   double radius = 0.0;              // sphere, m
 
   // Shell and solid: the one surface for contact, pictures, audit and export.
-  geometry::TriangleMesh surface;            // body space
-  geometry::EdgeTopology topology;           // of the surface
-  std::vector<std::uint8_t> crack_edges;     // per edge of the surface: 1 on a crack face
-  std::vector<int> triangle_grains;          // per triangle: number of the grain, -1 without
-  std::vector<int> triangle_cells;           // per triangle: cell of `shell` it belongs to
+  geometry::TriangleMesh surface;         // body space
+  geometry::EdgeTopology topology;        // of the surface
+  std::vector<std::uint8_t> crack_edges;  // shell, per edge of the surface: 1 on a crack face
+  std::vector<std::uint8_t> crack_faces;  // solid, per triangle: 1 on a crack face; empty for none
+  std::vector<int> triangle_grains;       // per triangle: number of the grain, -1 without
+  std::vector<int> triangle_elements;     // per triangle: element of the stress that is behind it; or empty
   std::vector<std::uint8_t> triangle_parts;  // per triangle: number of the look; empty for all 0
   double thickness = 0.0;                    // m; 0 for solids
+  double width = 0.0;                        // m, solid: volume over the two greatest sides of its box
 
-  // What breaks: cells in material space; x_material = x_body + material_from_body.
-  std::shared_ptr<const geometry::ShellMesh> shell;
+  // Material space is that of the unbroken body: x_material = x_body + material_from_body.
   Vec3 material_from_body = Vec3::Zero();  // m
+  double seat = 0.0;  // m: pieces of one body whose common place is so far apart still sit beside each other
 
   double mass = 0.0;             // kg; 0 for planes
   Mat3 inertia = Mat3::Zero();   // about the centre of mass, body space, kg m2

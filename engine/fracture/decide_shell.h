@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "engine/core/vec.h"
+#include "engine/fracture/decision_figures.h"
 #include "engine/fracture/flaws.h"
 #include "engine/fracture/fracture_settings.h"
 #include "engine/fracture/grains.h"
-#include "engine/fracture/impact.h"
 #include "engine/geometry/shell_mesh.h"
 #include "engine/material/material.h"
 #include "engine/stress/shell_system_cache.h"
@@ -60,26 +60,13 @@ struct CrackSegment {
   std::array<Vec3, 2> ends;  // material space, m
 };
 
-struct Decision {
-  Verdict verdict;
+struct Decision : DecisionFigures {
   std::shared_ptr<const geometry::ShellMesh> mesh;  // cracked; null unless it broke
   std::vector<geometry::CellContact> contacts;      // of its cells
   std::vector<CrackTip> tips;                       // that stopped inside the material
   std::vector<CrackSegment> segments;
-  std::vector<double>
-      element_stress;  // |T| of the element mesh: greatest principal stress at the peak, first solve, Pa
-  int cracks = 0;
   int core_cells = 0;
-  double new_area = 0.0;         // m2, crack length x thickness (one face)
-  double grain_area = 0.0;       // m2 of it, along grain boundaries
-  double fracture_energy = 0.0;  // J, used
-  double elastic_energy = 0.0;   // J, that was there to be used; 0 unless the body is overloaded
-  int generations = 0;           // solves
-  int factorisations = 0;
-  double residual = 0.0;  // worst relative residual of the solves
-  bool energy_guard_active = false;
-  bool generation_bound_active = false;  // cracks still grew when the generations were spent
-  double factor_ms = 0.0, solve_ms = 0.0, trace_ms = 0.0;  // wall time; enters no state
+  double factor_ms = 0.0;  // wall time; enters no state
 };
 
 /// Fills in what is kept between impacts where it is null: the systems (nothing is factored yet) and the

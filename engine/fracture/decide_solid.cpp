@@ -202,8 +202,11 @@ void prepare_subject(SolidSubject& subject) {
   if (!subject.stiffness)
     subject.stiffness = stress::make_solid_stiffness(subject.complex->elements,
                                                      {material.young, material.poisson, material.density});
-  if (!subject.model)
+  if (!subject.model && subject.kept_model) subject.model = subject.kept_model->find();
+  if (!subject.model) {
     subject.model = make_solid_model(subject.complex, subject.stiffness, subject.clamped_vertices);
+    if (subject.kept_model) subject.kept_model->keep(subject.model);
+  }
   if (!subject.flaws)
     subject.flaws = std::make_shared<const SolidFlawField>(
         draw_solid_flaws(*subject.complex->elements, material, subject.seed));

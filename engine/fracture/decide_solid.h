@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "engine/fracture/decision_figures.h"
 #include "engine/fracture/fracture_settings.h"
-#include "engine/fracture/impact.h"
 #include "engine/fracture/solid_flaws.h"
 #include "engine/fracture/solid_model.h"
 #include "engine/geometry/solid_complex.h"
@@ -24,6 +24,7 @@ struct SolidSubject {
   /// stiffness and the flaws are the first parent's, for all its pieces.
   std::shared_ptr<const stress::SolidStiffness> stiffness;
   std::shared_ptr<const SolidModel> model;
+  std::shared_ptr<KeptSolidModel> kept_model;  // where the model is kept that `model` is not yet; may be null
   std::shared_ptr<const SolidFlawField> flaws;
   material::Material material;
   std::vector<int> clamped_vertices;  // held, of the element mesh, ascending; empty: a free body
@@ -31,21 +32,9 @@ struct SolidSubject {
   int first_cut_id = 0;  // tag of the first new crack's facets: above those of its earlier ones
 };
 
-struct SolidDecision {
-  Verdict verdict;
+struct SolidDecision : DecisionFigures {
   std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null unless it broke
-  std::vector<double> element_stress;  // |T| of the element mesh: greatest principal stress at the peak,
-                                       // first solve, Pa
-  int cracks = 0;
-  double new_area = 0.0;         // m2, of the cracks (one face)
-  double fracture_energy = 0.0;  // J, used
-  double elastic_energy = 0.0;   // J, that was there to be used; 0 unless the body is overloaded
-  int generations = 0;           // solves
-  int iterations = 0;            // of conjugate gradients, of all solves
-  double residual = 0.0;         // worst of the solves
-  bool energy_guard_active = false;
-  bool generation_bound_active = false;   // cracks still grew when the generations were spent
-  double solve_ms = 0.0, trace_ms = 0.0;  // wall time; enters no state
+  int iterations = 0;                                     // of conjugate gradients, of all solves
 };
 
 /// Fills in what is kept between impacts where it is null.

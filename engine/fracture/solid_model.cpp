@@ -11,6 +11,16 @@ namespace shatterbox::fracture {
 using Size = std::size_t;
 using core::at;
 
+std::shared_ptr<const SolidModel> KeptSolidModel::find() const {
+  const std::lock_guard lock(mutex_);
+  return model_;
+}
+
+void KeptSolidModel::keep(std::shared_ptr<const SolidModel> model) {
+  const std::lock_guard lock(mutex_);
+  if (!model_) model_ = std::move(model);
+}
+
 stress::SolidSkin make_skin(const geometry::SolidComplex& complex) {
   stress::SolidSkin skin;
   std::vector<int> number(complex.vertices.size(), -1);

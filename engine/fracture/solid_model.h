@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,19 @@ struct SolidModel {
 
   /// Whether a cell fills its element.
   bool is_full(const geometry::SolidPart& cell) const;
+};
+
+/// The model of one piece, made at the first impact that asks for it and kept for the next.
+class KeptSolidModel {
+ public:
+  /// Null: not made yet. Any thread.
+  std::shared_ptr<const SolidModel> find() const;
+  /// Any thread; the first one stays.
+  void keep(std::shared_ptr<const SolidModel> model);
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const SolidModel> model_;
 };
 
 /// The skin of a settled complex: what is left of the outer surface, and crack faces behind which nothing is.

@@ -23,11 +23,20 @@ struct ShellDescription {
   bool is_breakable = true;         // scripted ones are not
 };
 
+/// The points p, in the mesh's own frame, with normal . p <= offset (m).
+struct HalfSpace {
+  Vec3 normal = Vec3::UnitY();  // unit, outwards
+  double offset = 0.0;
+};
+
 /// The inside of a closed triangle mesh, wound counter-clockwise seen from outside. The mesh must have passed
 /// geometry::diagnose.
 struct SolidDescription {
   geometry::TriangleMesh mesh;      // in the mesh's own frame, m
   std::vector<std::uint8_t> parts;  // per triangle: number of the look; empty for all 0
+  bool is_breakable = true;         // scripted ones are not
+  double element_size = 0.0;        // m, of the tetrahedra that its stress is told by; 0: about 10000 of them
+  std::vector<HalfSpace> held;      // what lies in all of these is held by the world; empty: a free body
 };
 
 struct BoxDescription {
@@ -53,7 +62,7 @@ struct BodyDescription {
   std::string name;
   std::variant<PlaneDescription, BoxDescription, SphereDescription, ShellDescription, SolidDescription> form;
   int material = 0;                             // from World::add_material
-  body::Motion motion = body::Motion::dynamic;  // a breakable shell that is clamped is always fixed
+  body::Motion motion = body::Motion::dynamic;  // what is clamped or held is always fixed
   Pose pose;                                    // of the mesh's (or the analytic form's) own frame
   std::optional<PathDescription> path;          // of a scripted body; without one it goes on at its velocity
   Vec3 velocity = Vec3::Zero();                 // of the centre of mass, m/s

@@ -5,20 +5,28 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "engine/body/body.h"
 #include "engine/fracture/decide_shell.h"
+#include "engine/fracture/decide_solid.h"
 
 namespace shatterbox::world {
 
 /// Immutable once made; pieces get their own.
 struct Fragile {
-  fracture::ShellSubject subject;
-  double size = 0.0;                        // m, twice the bounding radius of the unbroken body
-  double density = 0.0;                     // kg/m3
-  std::optional<double> contact_duration;   // s
-  std::vector<std::uint8_t> element_parts;  // per element: number of the look; empty for all 0
+  std::variant<fracture::ShellSubject, fracture::SolidSubject> subject;
+  double size = 0.0;                       // m, twice the bounding radius of the unbroken body
+  double density = 0.0;                    // kg/m3
+  std::optional<double> contact_duration;  // s
+  /// Number of the look; empty for all 0. Of a shell per element, of a solid per triangle of its given
+  /// surface.
+  std::vector<std::uint8_t> parts;
+
+  const material::Material& material() const {
+    return std::visit([](const auto& s) -> const material::Material& { return s.material; }, subject);
+  }
 };
 
 /// By body, in the order of their birth.
@@ -28,15 +36,5 @@ using Fragiles = std::map<body::BodyId, std::shared_ptr<const Fragile>>;
 /// width below which a piece joins its neighbour because contact could not resolve it.
 inline constexpr double kKerf = 1e-4;
 inline constexpr double kLeastWidth = 1e-3;
-
-/// The kept factors of a subject's mesh, for `stiffness`; the support is that of its clamped vertices, with
-/// no turning about an edge between two of them.
-std::shared_ptr<stress::ShellSystemCache> make_systems(
-    const fracture::ShellSubject& subject, std::shared_ptr<const stress::ShellStiffness> stiffness);
-
-/// The shape of a shell: the true cut gives mass, centre and inertia, the surface stands back from crack
-/// faces.
-std::shared_ptr<const body::Shape> make_shell_shape(std::shared_ptr<const geometry::ShellMesh> mesh,
-                                                    const Fragile& fragile, double thickness);
 
 }  // namespace shatterbox::world

@@ -55,8 +55,8 @@ bool is_seated(const body::Body& struck, const body::Body& other, const Load& lo
   if (struck.family == 0 || struck.family != other.family) return false;
   const Vec3 here = load.point_body + struck.shape->material_from_body;
   const Vec3 there = load.other_point + other.shape->material_from_body;
-  const double thickness = struck.shape->thickness;
-  return (here - there).squaredNorm() < thickness * thickness;
+  const double seat = struck.shape->seat;
+  return (here - there).squaredNorm() < seat * seat;
 }
 
 void keep_own_share(std::vector<Load>& loads, const Vec3& passed_on) {

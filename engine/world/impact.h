@@ -54,9 +54,9 @@ double contact_average(double step);
 bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemory* other_memory, double time);
 
 /// True if the load comes from a piece of the same body that still sits beside this one: the place where they
-/// press is the same one in their common material space, but for a thickness. Such pieces push with their
-/// whole crack faces, along the shell, where nothing bends; what passes through a piece to its neighbours in
-/// this way does not load it.
+/// press is the same one in their common material space, but for the shape's seat (of shells a thickness).
+/// Such pieces push with their whole crack faces, along the shell, where nothing bends; what passes through a
+/// piece to its neighbours in this way does not load it.
 bool is_seated(const body::Body& struck, const body::Body& other, const Load& load);
 
 /// Takes from `loads` (collisions of a step) what goes on to seated neighbours, which push with `passed_on`

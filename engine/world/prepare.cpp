@@ -20,7 +20,8 @@ constexpr std::array<double, 3> kLikelyMasses{0.01, 0.1, 1.0};
 
 struct Trial {
   const Fragile* fragile = nullptr;
-  fracture::ShellLoad load;
+  const fracture::ShellSubject* subject = nullptr;
+  fracture::ImpactLoad load;
 };
 
 /// What a trial meets; without mass, a floor.
@@ -41,9 +42,9 @@ Vec3 nearest_to_centre(const std::vector<Vec3>& points) {
                            [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
 }
 
-fracture::ShellLoad make_load(const body::Body& struck, const Partner& partner, const Vec3& point,
-                              const Vec3& direction) {
-  fracture::ShellLoad load;
+fracture::ImpactLoad make_load(const body::Body& struck, const Partner& partner, const Vec3& point,
+                               const Vec3& direction) {
+  fracture::ImpactLoad load;
   load.point_material = point + struck.shape->material_from_body;
   load.direction = direction;
   load.other_inverse_mass = partner.mass > 0.0 ? 1.0 / partner.mass : 0.0;
@@ -63,12 +64,13 @@ fracture::ShellLoad make_load(const body::Body& struck, const Partner& partner, 
 /// by what may come.
 void add_trials(const body::Body& struck, const Fragile& fragile, std::span<const body::Body* const> movers,
                 std::vector<Trial>& trials) {
+  const auto* subject = std::get_if<fracture::ShellSubject>(&fragile.subject);
   const std::vector<Vec3>& points = struck.shape->surface.positions;
   if (struck.is_dynamic()) {
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {-1.0, 1.0}) {
         const Vec3 outward = sign * Vec3::Unit(axis);
-        trials.push_back({&fragile, make_load(struck, {}, farthest(points, outward), -outward)});
+        trials.push_back({&fragile, subject, make_load(struck, {}, farthest(points, outward), -outward)});
       }
     return;
   }
@@ -83,7 +85,7 @@ void add_trials(const body::Body& struck, const Fragile& fragile, std::span<cons
   const Eigen::SelfAdjointEigenSolver<Mat3> inertia(struck.shape->inertia);
   const Vec3 across = inertia.eigenvectors().col(2);
   for (const Partner& partner : partners)
-    trials.push_back({&fragile, make_load(struck, partner, nearest_to_centre(points), across)});
+    trials.push_back({&fragile, subject, make_load(struck, partner, nearest_to_centre(points), across)});
 }
 
 }  // namespace
@@ -97,17 +99,19 @@ void World::prepare() {
   std::set<const stress::ShellSystemCache*> seen;
   std::vector<Trial> trials;
   for (const auto& [id, fragile] : s.moving.fragiles) {
-    if (!seen.insert(fragile->subject.systems.get()).second) continue;
+    // Solids keep no factors.
+    const auto* shell = std::get_if<fracture::ShellSubject>(&fragile->subject);
+    if (!shell || !seen.insert(shell->systems.get()).second) continue;
     add_trials(*body::find_body(s.moving.bodies, id), *fragile, movers, trials);
   }
   fracture::FractureSettings once;
   once.most_generations = 1;
   core::parallel_for(trials.size(), 1, [&](std::size_t i) {
-    fracture::ShellImpact impact;
+    fracture::Impact impact;
     impact.loads = {trials[i].load};
     if (s.settings.stress_window) impact.given_duration = s.settings.stress_window;
     if (trials[i].fragile->contact_duration) impact.given_duration = trials[i].fragile->contact_duration;
-    fracture::decide_shell(trials[i].fragile->subject, impact, once);
+    fracture::decide_shell(*trials[i].subject, impact, once);
   });
 }
 

@@ -2,47 +2,11 @@
 
 #include <algorithm>
 
-#include "engine/core/parallel.h"
-#include "engine/fracture/split_shell.h"
 #include "engine/geometry/crossings.h"
-#include "engine/geometry/shell_surface.h"
+#include "engine/world/pieces.h"
 
 namespace shatterbox::world {
 namespace {
-
-struct Piece {
-  std::shared_ptr<const geometry::ShellMesh> mesh;
-  std::shared_ptr<const Fragile> fragile;
-  std::shared_ptr<const body::Shape> shape;
-  bool is_held = false;
-};
-
-/// Tips that stopped in this piece's own material.
-std::vector<fracture::CrackTip> tips_of_piece(const std::vector<fracture::CrackTip>& tips,
-                                              const geometry::ShellMesh& mesh) {
-  std::vector<int> elements;
-  for (const geometry::ShellCell& cell : mesh.cells) elements.push_back(cell.element);
-  std::sort(elements.begin(), elements.end());
-  std::vector<fracture::CrackTip> own;
-  for (const fracture::CrackTip& tip : tips)
-    if (std::binary_search(elements.begin(), elements.end(), tip.element)) own.push_back(tip);
-  return own;
-}
-
-Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture::Decision& decision,
-                 double thickness) {
-  Piece piece;
-  piece.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
-  auto fragile = std::make_shared<Fragile>(parent);
-  fragile->subject.mesh = piece.mesh;
-  fragile->subject.systems = make_systems(fragile->subject, parent.subject.systems->shared_stiffness());
-  fragile->subject.tips = tips_of_piece(decision.tips, *piece.mesh);
-  piece.is_held = !fragile->subject.systems->support().empty();
-  if (!piece.is_held) fragile->subject.clamped_vertices.clear();
-  piece.shape = make_shell_shape(piece.mesh, *fragile, thickness);
-  piece.fragile = std::move(fragile);
-  return piece;
-}
 
 body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
   body::Body born = parent;
@@ -93,7 +57,7 @@ void measure_errors(const body::Body& parent, const std::vector<body::Body>& pie
 }
 
 BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, double thickness) {
-  const fracture::Decision& decision = impact.decision;
+  const fracture::DecisionFigures& decision = impact.figures();
   BreakRow row;
   row.body = parent.name;
   row.id = parent.id;
@@ -106,7 +70,8 @@ BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, doubl
   row.generation_bound_active = decision.generation_bound_active;
   row.place_material = impact.hardest.point_body + parent.shape->material_from_body;
   row.thickness = thickness;
-  for (const fracture::CrackSegment& segment : decision.segments) row.cracks.push_back(segment.ends);
+  if (const auto* shell = std::get_if<fracture::Decision>(&impact.decision))
+    for (const fracture::CrackSegment& segment : shell->segments) row.cracks.push_back(segment.ends);
   return row;
 }
 
@@ -182,17 +147,10 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   row.generation = memory.generation;
   row.place = impact.hardest.point_world;
 
-  fracture::ShellSplit split =
-      fracture::split_shell(*impact.decision.mesh, impact.decision.contacts, {kLeastWidth * fragile->size});
+  Pieces split = make_pieces(*fragile, impact, thickness);
   row.merged = split.merged_count;
-  double area = 0.0;
-  for (const geometry::ShellCell& cell : impact.decision.mesh->cells) area += cell.area;
-  row.merged_mass_share = area > 0.0 ? split.merged_area / area : 0.0;
-
-  std::vector<Piece> pieces(split.pieces.size());
-  core::parallel_for(pieces.size(), 1, [&](std::size_t i) {
-    pieces[i] = make_piece(std::move(split.pieces[i]), *fragile, impact.decision, thickness);
-  });
+  row.merged_mass_share = split.merged_share;
+  const std::vector<Piece>& pieces = split.pieces;
   std::vector<body::Body> born;
   for (std::size_t i = 0; i < pieces.size(); ++i)
     born.push_back(make_body(parent, pieces[i], pieces.size() == 1 ? -1 : static_cast<int>(i)));
@@ -200,7 +158,7 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);
   insert_pieces(moving, parent, memory, pieces, std::move(born), time,
-                impact.first_time + 2.0 * impact.decision.verdict.duration, impact.hardest.other, ancestry,
+                impact.first_time + 2.0 * impact.figures().verdict.duration, impact.hardest.other, ancestry,
                 row);
   return row;
 }

@@ -113,6 +113,7 @@ struct WorldReport {
   long steps = 0;
   int bodies_start = 0;
   long triangles_start = 0, triangles_most = 0;
+  long tetrahedra_start = 0, tetrahedra_end = 0, tetrahedra_most = 0;  // cells of breakable solids
 };
 
 }  // namespace shatterbox::world

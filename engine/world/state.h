@@ -11,6 +11,7 @@
 #include "engine/dynamics/paper_motion.h"
 #include "engine/dynamics/step_motion.h"
 #include "engine/world/acts.h"
+#include "engine/world/forms.h"
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
 #include "engine/world/verdict.h"
@@ -26,13 +27,6 @@ struct MovingState {
   std::map<body::BodyId, ImpactMemory> memories;  // of fragile bodies
   Fragiles fragiles;
   body::BodyId next_id = 1;
-};
-
-/// A form that several bodies share, found again by what it was made from.
-struct SharedForm {
-  std::uint64_t key = 0;
-  std::shared_ptr<const body::Shape> shape;
-  std::shared_ptr<const Fragile> fragile;  // without flaws: those are each body's own
 };
 
 struct World::State {

@@ -23,7 +23,7 @@ std::string format_ratio(const char* word, double ratio) {
 }
 
 ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body, double time) {
-  const fracture::Verdict& verdict = impact.decision.verdict;
+  const fracture::Verdict& verdict = impact.figures().verdict;
   ImpactRow row;
   row.time = time;
   row.body = body.name;
@@ -231,11 +231,11 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
   for (const EvaluatedImpact& impact : impacts) {
     const body::Body& body = *body::find_body(s.moving.bodies, impact.id);
     ImpactMemory& memory = s.moving.memories[impact.id];
-    if (!impact.decision.element_stress.empty())
+    if (!impact.figures().element_stress.empty())
       s.element_stress[impact.id] =
-          std::make_shared<const std::vector<double>>(impact.decision.element_stress);
-    if (impact.decision.verdict.outcome != fracture::Outcome::broke) {
-      if (impact.decision.generations > 0)
+          std::make_shared<const std::vector<double>>(impact.figures().element_stress);
+    if (impact.figures().verdict.outcome != fracture::Outcome::broke) {
+      if (impact.figures().generations > 0)
         s.report.impacts.push_back(describe_impact(impact, body, end_time));
       continue;
     }
@@ -259,7 +259,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     s.moving = std::move(snapshot);
   }
   for (const EvaluatedImpact* impact : broken) {
-    if (goes_back) pay_for_cracks(s.moving, *impact, impact->decision.fracture_energy, s.log);
+    if (goes_back) pay_for_cracks(s.moving, *impact, impact->figures().fracture_energy, s.log);
     const body::Body parent = *body::find_body(s.moving.bodies, impact->id);
     BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
     regrip(s.hands, parent, row.born, s.moving.bodies);
@@ -300,6 +300,13 @@ void World::book_conservation(const std::vector<body::Body>& before, const body:
     triangles += static_cast<long>(body.shape->surface.triangles.size());
   if (s.steps == 0) s.report.triangles_start = triangles;
   s.report.triangles_most = std::max(s.report.triangles_most, triangles);
+  long tetrahedra = 0;
+  for (const auto& [id, fragile] : s.moving.fragiles)
+    if (const auto* solid = std::get_if<fracture::SolidSubject>(&fragile->subject))
+      tetrahedra += static_cast<long>(solid->complex->cells.size());
+  if (s.steps == 0) s.report.tetrahedra_start = tetrahedra;
+  s.report.tetrahedra_end = tetrahedra;
+  s.report.tetrahedra_most = std::max(s.report.tetrahedra_most, tetrahedra);
 }
 
 }  // namespace shatterbox::world

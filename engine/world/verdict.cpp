@@ -31,7 +31,7 @@ struct Candidate {
   double first_time = 0.0;  // s
   bool is_struck = false;   // by a collision
   bool is_piece = false;    // born of a break
-  fracture::ShellImpact impact;
+  fracture::Impact impact;
 };
 
 struct Judge {
@@ -59,8 +59,8 @@ struct Judge {
                                       struck.shape->thickness, size);
   }
 
-  fracture::ShellLoad shell_load(const body::Body& struck, const Load& load, bool is_collision) const {
-    fracture::ShellLoad out;
+  fracture::ImpactLoad impact_load(const body::Body& struck, const Load& load, bool is_collision) const {
+    fracture::ImpactLoad out;
     const body::Body* partner = body::find_body(bodies, load.other);
     out.point_material = load.point_body + struck.shape->material_from_body;
     out.impulse = load.impulse_body.norm();
@@ -103,11 +103,13 @@ double total_force(const std::vector<Load>& loads, double average) {
   return sum / average;
 }
 
-/// A shell no wider than `width` at its narrowest, bent by `force` over its whole size, has at most this
-/// stress.
+/// A shell no wider than `width` at its narrowest, or a solid's bar, bent by `force` over its whole size, has
+/// at most this stress.
 double bending_bound(const body::Body& body, double force) {
   const double thickness = body.shape->thickness;
   const double reach = 2.0 * body.shape->bounding_radius;
+  if (const double width = body.shape->width; width > 0.0)
+    return stress::bending_bound(width, width, reach, force);
   return stress::bending_bound(thickness, std::max(thickness, reach * kLeastWidth), reach, force);
 }
 
@@ -185,19 +187,19 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   bool is_pressed = contact_force > memory.tested_growth * memory.tested_contact;
   // Contact is an average over a time that a newborn piece has not lived yet.
   if (!is_paper && time < memory.born + average) is_pressed = false;
-  if (is_pressed && bending_bound(body, contact_force) < candidate.fragile->subject.material.strength) {
+  if (is_pressed && bending_bound(body, contact_force) < candidate.fragile->material().strength) {
     is_pressed = false;
     if (hits.empty()) ++figures.skipped;
   }
   if (hits.empty() && !is_pressed) return false;
 
   for (const Load& load : memory.event)
-    candidate.impact.loads.push_back(judge.shell_load(body, load, !is_paper));
+    candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
   const std::optional<double> blast = blast_duration_of(memory.event);
   // What presses at rest is nothing beside a blast, whose duration is that of all loads.
   if (!blast)
     for (const Load& load : gather_by_place(memory.contact, radius))
-      candidate.impact.loads.push_back(judge.shell_load(body, load, false));
+      candidate.impact.loads.push_back(judge.impact_load(body, load, false));
   candidate.is_struck = !memory.event.empty();
   const std::vector<Load>& told = candidate.is_struck ? memory.event : memory.contact;
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
@@ -294,21 +296,25 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     evaluated[i].hardest = candidate.hardest;
     evaluated[i].is_struck = candidate.is_struck;
     evaluated[i].first_time = candidate.first_time;
-    evaluated[i].decision = fracture::decide_shell(candidate.fragile->subject, candidate.impact, how);
+    if (const auto* shell = std::get_if<fracture::ShellSubject>(&candidate.fragile->subject))
+      evaluated[i].decision = fracture::decide_shell(*shell, candidate.impact, how);
+    else if (const auto* solid = std::get_if<fracture::SolidSubject>(&candidate.fragile->subject))
+      evaluated[i].decision = fracture::decide_solid(*solid, candidate.impact, how);
   });
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedImpact& impact = evaluated[i];
-    if (impact.decision.verdict.outcome == fracture::Outcome::held)
-      borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(impact.decision.verdict)};
+    const fracture::DecisionFigures& decision = impact.figures();
+    if (decision.verdict.outcome == fracture::Outcome::held)
+      borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict)};
     ImpactMemory& memory = memories[impact.id];
-    const double ratio = impact.decision.verdict.ratio;
+    const double ratio = decision.verdict.ratio;
     memory.tested_growth =
         ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
-    memory.event_duration = std::max(memory.event_duration, impact.decision.verdict.duration);
-    figures.solves += impact.decision.generations;
-    figures.factorisations += impact.decision.factorisations;
-    if (impact.decision.generations == 0) ++figures.skipped;
-    figures.worst_residual = std::max(figures.worst_residual, impact.decision.residual);
+    memory.event_duration = std::max(memory.event_duration, decision.verdict.duration);
+    figures.solves += decision.generations;
+    figures.factorisations += decision.factorisations;
+    if (decision.generations == 0) ++figures.skipped;
+    figures.worst_residual = std::max(figures.worst_residual, decision.residual);
   }
   return evaluated;
 }

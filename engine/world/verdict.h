@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <variant>
 #include <vector>
 
 #include "engine/body/impulse_log.h"
@@ -18,7 +19,11 @@ struct EvaluatedImpact {
   double first_time = 0.0;  // s, of the first impulse of the event
   Load hardest;             // body space
   bool is_struck = false;   // by a collision; otherwise contact alone pressed
-  fracture::Decision decision;
+  std::variant<fracture::Decision, fracture::SolidDecision> decision;
+
+  const fracture::DecisionFigures& figures() const {
+    return std::visit([](const auto& d) -> const fracture::DecisionFigures& { return d; }, decision);
+  }
 };
 
 struct EvaluationFigures {

@@ -134,13 +134,11 @@ StressPicture World::stress_picture(body::BodyId id) const {
   const body::Body* body = body::find_body(state_->moving.bodies, id);
   const auto fragile = state_->moving.fragiles.find(id);
   if (!body || fragile == state_->moving.fragiles.end()) return picture;
-  picture.strength = fragile->second->subject.material.strength;
+  picture.strength = fragile->second->material().strength;
   const auto stress = state_->element_stress.find(id);
   if (stress == state_->element_stress.end() || !stress->second) return picture;
-  for (const int cell : body->shape->triangle_cells) {
-    const int element = body->shape->shell->cells[static_cast<std::size_t>(cell)].element;
+  for (const int element : body->shape->triangle_elements)
     picture.triangle_stress.push_back((*stress->second)[static_cast<std::size_t>(element)]);
-  }
   return picture;
 }
 

@@ -165,6 +165,9 @@ Json make_json(const RunRecord& record) {
   json["merged"] = merged(w);
   json["triangles"] = {
       {"start", w.triangles_start}, {"end", record.triangles_end}, {"max", w.triangles_most}};
+  if (w.tetrahedra_most > 0)
+    json["tetrahedra"] = {
+        {"start", w.tetrahedra_start}, {"end", w.tetrahedra_end}, {"max", w.tetrahedra_most}};
   json["impacts"] = impacts(w);
   json["breaks"] = breaks(w);
   json["audit"] = audit(record);

@@ -30,8 +30,13 @@ std::string find_event_of(const SceneDescription& scene) {
 }
 
 bool can_break(const BodyEntry& body) {
-  const auto* shell = std::get_if<scene::ShellForm>(&body.form);
-  return shell != nullptr && shell->is_breakable;
+  const scene::MeshForm* form = scene::find_mesh_form(body.form);
+  return form != nullptr && form->is_breakable;
+}
+
+template <class Form>
+bool can_break_as(const BodyEntry& body) {
+  return std::holds_alternative<Form>(body.form) && can_break(body);
 }
 
 /// Needed if there is somebody who needs it.
@@ -61,7 +66,7 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
   const bool may_free = !breakable.empty();  // pieces move, even of what is held
   const std::string mover = moving.empty() && may_free ? breakable : moving;
   const std::string grained = find_body_that(scene, [&](const BodyEntry& b) {
-    return can_break(b) && scene.materials[static_cast<std::size_t>(b.material)].material.grain_size > 0.0;
+    return can_break_as<scene::ShellForm>(b) && scene.materials[static_cast<std::size_t>(b.material)].material.grain_size > 0.0;
   });
   const std::string late = find_body_that(scene, [](const BodyEntry& b) { return b.repeat.every > 0.0; });
   const std::string scripted =
@@ -74,9 +79,10 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
            scene.world.has_sleep ? "nothing can move" : "scene.sleep is false"),
       part("scripted_motion", scripted, "follows a path", "no body has keyframes"),
       part("level_sets", "", "", "solids touch by their triangles"),
-      part("shell_stress", breakable, "can break: stiffness of membrane and bending, factors, flaws",
+      part("shell_stress", find_body_that(scene, can_break_as<scene::ShellForm>), "can break: stiffness of membrane and bending, factors, flaws",
            "no shell can break"),
-      part("tetrahedra", "", "", "solids do not break"),
+      part("tetrahedra", find_body_that(scene, can_break_as<scene::SolidForm>),
+           "can break: elements inside its surface, their stress, flaws", "no solid can break"),
       part("grains", grained, "breaks along grains", "no material of what can break has a grain_size"),
       part("fracture", breakable, "can break: cutting with virtual nodes, pieces, going back in the step",
            "nothing can break"),

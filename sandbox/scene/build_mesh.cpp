@@ -176,6 +176,47 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
   return built;
 }
 
+namespace {
+
+/// The height below which a body stands on its foot, in the frame of `turned`.
+double foot_top(const Bounds& turned) {
+  return turned.least.y() + 0.02 * (turned.most.y() - turned.least.y());
+}
+
+Bounds turned_bounds(const geometry::TriangleMesh& mesh, const Quat& rotation) {
+  std::vector<Vec3> turned;
+  for (const Vec3& p : mesh.positions) turned.push_back(rotation * p);
+  return bounds_of(turned);
+}
+
+std::string box_hint(const geometry::TriangleMesh& mesh) {
+  const Bounds bounds = bounds_of(mesh.positions);
+  return fmt::format(
+      "the box is in the mesh's own frame, where the mesh reaches from [{:g}, {:g}, {:g}] to "
+      "[{:g}, {:g}, {:g}]",
+      bounds.least.x(), bounds.least.y(), bounds.least.z(), bounds.most.x(), bounds.most.y(),
+      bounds.most.z());
+}
+
+}  // namespace
+
+std::vector<world::HalfSpace> find_held(const geometry::TriangleMesh& mesh, const Quat& rotation,
+                                        const Support& support, const Place& place, Problems& problems) {
+  std::vector<world::HalfSpace> held;
+  if (std::holds_alternative<FootSupport>(support))
+    held.push_back({rotation.conjugate() * Vec3::UnitY(), foot_top(turned_bounds(mesh, rotation))});
+  if (const auto* box = std::get_if<BoxSupport>(&support)) {
+    const Bounds bounds = bounds_of(mesh.positions);
+    if ((box->least.array() > bounds.most.array()).any() || (box->most.array() < bounds.least.array()).any())
+      book(problems, place, "the support's box is beside the mesh", box_hint(mesh));
+    for (int axis = 0; axis < 3; ++axis) {
+      held.push_back({Vec3::Unit(axis), box->most[axis]});
+      held.push_back({-Vec3::Unit(axis), -box->least[axis]});
+    }
+  }
+  return held;
+}
+
 std::vector<int> find_clamped(const geometry::TriangleMesh& mesh, const Quat& rotation,
                               const Support& support, const Place& place, Problems& problems) {
   std::vector<bool> is_clamped(mesh.positions.size(), false);
@@ -189,23 +230,16 @@ std::vector<int> find_clamped(const geometry::TriangleMesh& mesh, const Quat& ro
     fault = "support = \"edge\", but the mesh has no open border";
     hint = "use \"foot\" or {box = [[x, y, z], [x, y, z]]}";
   } else if (std::holds_alternative<FootSupport>(support)) {
-    std::vector<Vec3> turned;
-    for (const Vec3& p : mesh.positions) turned.push_back(rotation * p);
-    const Bounds bounds = bounds_of(turned);
-    const double top = bounds.least.y() + 0.02 * (bounds.most.y() - bounds.least.y());
-    for (std::size_t v = 0; v < turned.size(); ++v) is_clamped[v] = turned[v].y() <= top;
+    const double top = foot_top(turned_bounds(mesh, rotation));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      is_clamped[v] = (rotation * mesh.positions[v]).y() <= top;
   } else if (const auto* box = std::get_if<BoxSupport>(&support)) {
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const Vec3& p = mesh.positions[v];
       is_clamped[v] = (p.array() >= box->least.array()).all() && (p.array() <= box->most.array()).all();
     }
-    const Bounds bounds = bounds_of(mesh.positions);
     fault = "no vertex of the mesh is in the support's box";
-    hint = fmt::format(
-        "the box is in the mesh's own frame, where the mesh reaches from [{:g}, {:g}, {:g}] to "
-        "[{:g}, {:g}, {:g}]",
-        bounds.least.x(), bounds.least.y(), bounds.least.z(), bounds.most.x(), bounds.most.y(),
-        bounds.most.z());
+    hint = box_hint(mesh);
   }
   std::vector<int> clamped;
   for (std::size_t v = 0; v < is_clamped.size(); ++v) {

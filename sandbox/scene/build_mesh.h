@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/geometry/triangle_mesh.h"
+#include "engine/world/description.h"
 #include "sandbox/scene/scene_description.h"
 
 namespace shatterbox::sandbox::scene {
@@ -26,5 +27,9 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
 /// is lowest there). Empty with a problem if it holds none.
 std::vector<int> find_clamped(const geometry::TriangleMesh& mesh, const Quat& rotation,
                               const Support& support, const Place& place, Problems& problems);
+
+/// The region that `support` holds of a solid, likewise: the points in all of these.
+std::vector<world::HalfSpace> find_held(const geometry::TriangleMesh& mesh, const Quat& rotation,
+                                        const Support& support, const Place& place, Problems& problems);
 
 }  // namespace shatterbox::sandbox::scene

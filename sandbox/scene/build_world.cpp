@@ -46,7 +46,13 @@ std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, con
   }
   for (const Vec3& p : built->mesh.positions) plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
   plan.centre = geometry::solid_mass_properties(built->mesh, 1.0).centre;
-  return world::SolidDescription{std::move(built->mesh), std::move(built->parts)};
+  world::SolidDescription solid;
+  solid.is_breakable = form.is_breakable;
+  solid.element_size = form.element_size.value_or(0.0);
+  solid.held = find_held(built->mesh, body.rotation, body.support, body.place, problems);
+  solid.mesh = std::move(built->mesh);
+  solid.parts = std::move(built->parts);
+  return solid;
 }
 
 int group_number(std::vector<std::string>& groups, const std::string& name) {

@@ -14,8 +14,7 @@ namespace {
 
 const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere"};
 const std::vector<std::string> kLaterKinds{"capsule"};
-const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up"};
-const std::vector<std::string> kShellKeys{"thickness", "breakable", "support"};
+const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up", "breakable", "support"};
 
 Support read_support(TableReader& reader) {
   const TomlValue* value = reader.value("support");
@@ -77,8 +76,9 @@ Quat read_rotation(TableReader& reader) {
 
 decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind,
                                     const SceneDescription& scene) {
+  if (kind != "solid") reader.foreign({"element_size"}, "it is for kind = \"solid\"");
   if (kind == "shell") return read_shell(reader, scene);
-  reader.foreign(kShellKeys, fmt::format("it is for kind = \"shell\"; this is a {}", kind));
+  reader.foreign({"thickness"}, fmt::format("it is for kind = \"shell\"; this is a {}", kind));
   if (kind == "solid") return read_solid(reader, scene);
   reader.foreign(kMeshKeys, fmt::format("it is for kind = \"shell\" or \"solid\"; this is a {}", kind));
   if (kind == "sphere") {
@@ -133,6 +133,15 @@ std::vector<Vec3> read_colours(TableReader& reader) {
   return colours;
 }
 
+/// A solid that stands still without being held is scenery: it breaks only if the scene says so.
+void settle_breaking(TableReader& reader, const BodyEntry& body, SolidForm& solid) {
+  const bool is_held = !std::holds_alternative<std::monostate>(body.support);
+  if (body.motion == body::Motion::fixed && !is_held && !reader.has("breakable")) solid.is_breakable = false;
+  if (solid.element_size && !solid.is_breakable)
+    reader.add_problem_at("element_size", "only a breakable solid is divided into elements",
+                          "remove it, or write breakable = true");
+}
+
 }  // namespace
 
 std::optional<Vec3> read_colour(TableReader& reader, const std::string& key) {
@@ -166,11 +175,14 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   }
   const std::string form_kind = kind.value_or("shell");
   body.form = read_form(reader, form_kind, scene);
-  if (form_kind == "shell") body.support = read_support(reader);
-  if (const auto* shell = std::get_if<ShellForm>(&body.form)) {
-    if (!shell->is_breakable && !std::holds_alternative<std::monostate>(body.support)) {
+  if (const MeshForm* form = find_mesh_form(body.form)) {
+    body.support = read_support(reader);
+    const bool has_support = !std::holds_alternative<std::monostate>(body.support);
+    if (!form->is_breakable && has_support)
       reader.add_problem_at("support", "only a breakable body has a support", "use motion = \"static\"");
-    }
+    if (form_kind == "solid" && std::holds_alternative<EdgeSupport>(body.support))
+      reader.add_problem_at("support", "a solid has no open border to be held by",
+                            "use \"foot\" or {box = [[x, y, z], [x, y, z]]}");
   }
   const bool is_ceramic = form_kind == "plane" || form_kind == "solid";
   const std::string fallback = form_kind == "shell" ? "glass" : is_ceramic ? "ceramic" : "steel";
@@ -182,6 +194,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.position = reader.vector("position", coordinate()).value_or(body.position);
   body.rotation = read_rotation(reader);
   read_motion(reader, form_kind, body);
+  if (auto* solid = std::get_if<SolidForm>(&body.form)) settle_breaking(reader, body, *solid);
   body.group = reader.text("group").value_or("");
   body.contact_duration = reader.number("contact_duration", positive("s"));
   body.repeat = read_repeat(reader);

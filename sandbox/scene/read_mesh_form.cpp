@@ -145,6 +145,7 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
     reader.add_problem_at("size", "a body has either a scale or a size, not both", "remove one of them");
   }
   form.up_is_z = reader.choice("up", {"y", "z"}).value_or("y") == "z";
+  form.is_breakable = reader.truth("breakable").value_or(true);
 }
 
 }  // namespace
@@ -157,13 +158,13 @@ ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
   ShellForm form;
   read_mesh_form(reader, scene, kShellShapes, form);
   form.thickness = reader.number("thickness", positive("m"));
-  form.is_breakable = reader.truth("breakable").value_or(true);
   return form;
 }
 
 SolidForm read_solid(TableReader& reader, const SceneDescription& scene) {
   SolidForm form;
   read_mesh_form(reader, scene, kSolidShapes, form);
+  form.element_size = reader.number("element_size", positive("m"));
   return form;
 }
 

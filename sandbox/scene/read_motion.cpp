@@ -97,10 +97,10 @@ void read_scripted(TableReader& reader, bool is_held, BodyEntry& body) {
   if (body.is_held_back)
     reader.add_problem_at("motion", "a scripted body is there from the start; events cannot bring it in",
                           "let its first keyframe be later");
-  if (auto* shell = std::get_if<ShellForm>(&body.form)) {
-    if (reader.has("breakable") && shell->is_breakable)
+  if (MeshForm* form = find_mesh_form(body.form)) {
+    if (reader.has("breakable") && form->is_breakable)
       reader.add_problem_at("breakable", "a scripted body does not break", "remove breakable");
-    shell->is_breakable = false;
+    form->is_breakable = false;
   }
   read_path(reader, body);
 }

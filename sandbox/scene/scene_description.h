@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -61,12 +62,24 @@ struct MeshForm {
   Vec3 scale = Vec3::Ones();
   std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
   bool up_is_z = false;      // the mesh's z axis points up in the scene
+  bool is_breakable = true;
 };
 struct ShellForm : MeshForm {
   std::optional<double> thickness;  // m; nothing: the material's
-  bool is_breakable = true;
 };
-struct SolidForm : MeshForm {};
+struct SolidForm : MeshForm {
+  std::optional<double> element_size;  // m, of the tetrahedra; nothing: about 10000 of them
+};
+using Form = std::variant<PlaneForm, BoxForm, SphereForm, ShellForm, SolidForm>;
+
+/// The mesh of a shell or a solid; nothing of what has none.
+inline const MeshForm* find_mesh_form(const Form& form) {
+  if (const auto* shell = std::get_if<ShellForm>(&form)) return shell;
+  return std::get_if<SolidForm>(&form);
+}
+inline MeshForm* find_mesh_form(Form& form) {
+  return const_cast<MeshForm*>(find_mesh_form(std::as_const(form)));
+}
 
 // What holds a body to the world. A box is in the mesh's own frame, after scale, size and up.
 struct EdgeSupport {};
@@ -110,7 +123,7 @@ struct LookEntry {
 struct BodyEntry {
   Place place;
   std::string name;
-  std::variant<PlaneForm, BoxForm, SphereForm, ShellForm, SolidForm> form;
+  Form form;
   int material = 0;  // number in SceneDescription::materials
   std::optional<double> density;
   Vec3 position = Vec3::Zero();

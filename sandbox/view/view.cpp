@@ -42,6 +42,8 @@ std::shared_ptr<const render::Mesh> make_surface_mesh(const body::Shape& shape, 
   for (std::size_t t = 0; t < shape.surface.triangles.size(); ++t) {
     const geometry::Triangle& triangle = shape.surface.triangles[t];
     mesh->triangles.emplace_back(triangle[0], triangle[1], triangle[2]);
+    if (!shape.crack_faces.empty())
+      mesh->cracks.push_back(shape.crack_faces[t] != 0 ? render::kCrackFace : std::uint8_t{0});
     if (!has_cracks) continue;
     constexpr std::array<std::uint8_t, 3> kBits{render::kCrackEdge0, render::kCrackEdge1,
                                                 render::kCrackEdge2};

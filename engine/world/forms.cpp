@@ -1,0 +1,296 @@
+#include "engine/world/forms.h"
+
+#include <algorithm>
+
+#include "engine/fracture/shell_subject.h"
+#include "engine/geometry/mass_properties.h"
+#include "engine/geometry/shell_surface.h"
+#include "engine/geometry/solid_kerf.h"
+#include "engine/geometry/solid_surface.h"
+#include "engine/geometry/tetrahedralise.h"
+
+namespace shatterbox::world {
+namespace {
+
+using Size = std::size_t;
+
+/// Of a breakable solid whose element size is not given.
+constexpr int kUsualTetrahedra = 10000;
+/// Share of the body's size within which pieces of a solid still sit beside each other.
+constexpr double kSolidSeat = 0.01;
+
+/// Of the mesh, its looks and density.
+core::Hash hash_mesh(const geometry::TriangleMesh& mesh, const std::vector<std::uint8_t>& parts,
+                     double density) {
+  core::Hash hash;
+  for (const Vec3& p : mesh.positions) hash.add(p);
+  for (const geometry::Triangle& t : mesh.triangles)
+    for (const int v : t) hash.add(static_cast<std::uint64_t>(v));
+  for (const std::uint8_t part : parts) hash.add(std::uint64_t{part});
+  return hash.add(density);
+}
+
+fracture::ShellSubject make_subject(const ShellDescription& shell, const material::Material& material,
+                                    std::shared_ptr<const geometry::ShellMesh> mesh) {
+  fracture::ShellSubject subject;
+  subject.mesh = std::move(mesh);
+  subject.material = material;
+  subject.thickness = shell.thickness;
+  subject.clamped_vertices = shell.clamped;
+  std::sort(subject.clamped_vertices.begin(), subject.clamped_vertices.end());
+  if (material.grain_size > 0.0)
+    subject.grains = std::make_shared<const fracture::GrainField>(fracture::make_grain_field(
+        *subject.mesh->elements,
+        fracture::scatter_grain_seeds(*subject.mesh->elements, material.grain_size, subject.seed)));
+  return subject;
+}
+
+std::string find_mesh_fault(const geometry::TriangleMesh& mesh, const std::vector<std::uint8_t>& parts,
+                            const std::string& what) {
+  if (mesh.triangles.empty()) return "the mesh has no triangles";
+  if (!parts.empty() && parts.size() != mesh.triangles.size())
+    return "a " + what + "'s parts must be one number a triangle";
+  const int count = static_cast<int>(mesh.positions.size());
+  for (const geometry::Triangle& t : mesh.triangles)
+    for (const int v : t)
+      if (v < 0 || v >= count) return "a triangle names a vertex that is not there; mend the mesh first";
+  return {};
+}
+
+std::string find_solid_fault(const SolidDescription& solid) {
+  std::string fault = find_mesh_fault(solid.mesh, solid.parts, "solid");
+  if (!fault.empty()) return fault;
+  const geometry::EdgeTopology topology = geometry::build_edge_topology(solid.mesh.triangles);
+  for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e)
+    if (topology.triangle_count(e) != 2) return "a solid's mesh must be closed: each edge of two triangles";
+  if (!(geometry::enclosed_volume(solid.mesh) > 0.0)) return "the mesh is inside out, or flat";
+  return {};
+}
+
+/// Moves a mesh's centre of mass into the origin; returns the distance of the farthest vertex from there, m.
+double centre_mesh(geometry::TriangleMesh& mesh, const Vec3& centre) {
+  double radius = 0.0;
+  for (Vec3& p : mesh.positions) {
+    p -= centre;
+    radius = std::max(radius, p.norm());
+  }
+  return radius;
+}
+
+/// m: a volume over the two greatest sides of the box about some points.
+double width_of(const std::vector<Vec3>& points, double volume) {
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  Vec3 box = high - low;
+  std::sort(box.data(), box.data() + 3);
+  return volume / (box(1) * box(2));
+}
+
+/// What a solid's verdict needs; `surface` has its centre of mass in the origin.
+core::Result<fracture::SolidSubject> make_subject(const SolidDescription& solid,
+                                                  const material::Material& material,
+                                                  const geometry::TriangleMesh& surface, const Vec3& centre) {
+  geometry::TetrahedraOptions options;
+  options.element_size = solid.element_size;
+  options.count = kUsualTetrahedra;
+  auto embedded = geometry::tetrahedralise(surface, options);
+  if (!embedded) return core::Error{"it cannot be divided into tetrahedra: " + embedded.error()};
+  const auto& elements = embedded.value().elements;
+  auto complex = geometry::build_solid_complex(elements, embedded.value().embedded.material);
+  geometry::settle(complex);
+  fracture::SolidSubject subject;
+  subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(complex));
+  subject.material = material;
+  // Vertices of the elements lie a little beyond the surface.
+  const double slack = 0.5 * embedded.value().element_size;
+  const std::vector<Vec3>& positions = elements->mesh.positions;
+  for (Size v = 0; v < positions.size() && !solid.held.empty(); ++v)
+    if (std::all_of(solid.held.begin(), solid.held.end(), [&](const HalfSpace& half) {
+          return half.normal.dot(positions[v] + centre) <= half.offset + slack;
+        }))
+      subject.clamped_vertices.push_back(static_cast<int>(v));
+  if (!solid.held.empty() && subject.clamped_vertices.empty())
+    return core::Error{"its support holds none of it"};
+  subject.stiffness =
+      stress::make_solid_stiffness(elements, {material.young, material.poisson, material.density});
+  subject.model = fracture::make_solid_model(subject.complex, subject.stiffness, subject.clamped_vertices);
+  if (!subject.model->system) return core::Error{"its stress cannot be told: " + subject.model->fault};
+  return subject;
+}
+
+}  // namespace
+
+std::string find_form_fault(const BodyDescription& description) {
+  if (const auto* box = std::get_if<BoxDescription>(&description.form))
+    if (!(box->half_extent.minCoeff() > 0.0)) return "a box needs an extent above zero along every axis";
+  if (const auto* sphere = std::get_if<SphereDescription>(&description.form))
+    if (!(sphere->radius > 0.0)) return "a sphere needs a radius above zero";
+  if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
+    std::string fault = find_mesh_fault(shell->mesh, shell->parts, "shell");
+    if (!fault.empty()) return fault;
+    if (!(shell->thickness > 0.0)) return "a shell needs a thickness above zero";
+    const int count = static_cast<int>(shell->mesh.positions.size());
+    for (const int v : shell->clamped)
+      if (v < 0 || v >= count) return "the support names a vertex that is not there";
+  }
+  if (const auto* solid = std::get_if<SolidDescription>(&description.form)) return find_solid_fault(*solid);
+  return {};
+}
+
+std::uint64_t form_key(const ShellDescription& shell, const Substance& substance) {
+  core::Hash hash = hash_mesh(shell.mesh, shell.parts, substance.density);
+  for (const int vertex : shell.clamped) hash.add(static_cast<std::uint64_t>(vertex) + 1);
+  hash.add(shell.thickness).add(substance.material.young);
+  return hash.add(static_cast<std::uint64_t>(substance.number)).add(std::uint64_t{substance.breaks}).value();
+}
+
+std::uint64_t form_key(const SolidDescription& solid, const Substance& substance) {
+  core::Hash hash = hash_mesh(solid.mesh, solid.parts, substance.density);
+  hash.add(std::uint64_t{substance.breaks});
+  if (!substance.breaks) return hash.value();
+  for (const HalfSpace& half : solid.held) hash.add(half.normal).add(half.offset);
+  hash.add(solid.element_size).add(substance.material.young);
+  return hash.add(static_cast<std::uint64_t>(substance.number)).value();
+}
+
+std::shared_ptr<const body::Shape> make_analytic_shape(const BodyDescription& description, double density) {
+  auto shape = std::make_shared<body::Shape>();
+  geometry::MassProperties mass;
+  if (const auto* box = std::get_if<BoxDescription>(&description.form)) {
+    shape->kind = body::ShapeKind::box;
+    shape->half_extent = box->half_extent;
+    shape->bounding_radius = box->half_extent.norm();
+    mass = geometry::box_mass_properties(box->half_extent, density);
+  } else if (const auto* sphere = std::get_if<SphereDescription>(&description.form)) {
+    shape->kind = body::ShapeKind::sphere;
+    shape->radius = shape->bounding_radius = sphere->radius;
+    mass = geometry::sphere_mass_properties(sphere->radius, density);
+  } else {
+    shape->kind = body::ShapeKind::plane;
+  }
+  shape->mass = mass.mass;
+  shape->inertia = mass.inertia;
+  return shape;
+}
+
+core::Result<SharedForm> make_form(const ShellDescription& shell, const Substance& substance) {
+  const double density = substance.density;
+  auto elements = std::make_shared<geometry::ShellElements>();
+  const geometry::MassProperties mass = geometry::shell_mass_properties(shell.mesh, shell.thickness, density);
+  elements->mesh = shell.mesh;
+  const double radius = centre_mesh(elements->mesh, mass.centre);
+  elements->topology = geometry::build_edge_topology(elements->mesh.triangles);
+  auto mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
+  Fragile fragile;
+  fragile.size = 2.0 * radius;
+  fragile.density = density;
+  fragile.parts = shell.parts;
+  SharedForm form;
+  form.shape = make_shell_shape(*mesh, fragile, shell.thickness);
+  form.centre = mass.centre;
+  if (!substance.breaks) return form;
+  fracture::ShellSubject subject = make_subject(shell, substance.material, mesh);
+  subject.material.density = density;
+  subject.systems =
+      make_systems(subject, stress::make_shell_stiffness(elements, fracture::properties_of(subject)));
+  fragile.subject = std::move(subject);
+  form.fragile = std::make_shared<const Fragile>(std::move(fragile));
+  return form;
+}
+
+core::Result<SharedForm> make_form(const SolidDescription& solid, const Substance& substance) {
+  const double density = substance.density;
+  auto shape = std::make_shared<body::Shape>();
+  const geometry::MassProperties mass = geometry::solid_mass_properties(solid.mesh, density);
+  shape->kind = body::ShapeKind::solid;
+  shape->surface = solid.mesh;
+  shape->bounding_radius = centre_mesh(shape->surface, mass.centre);
+  shape->topology = geometry::build_edge_topology(shape->surface.triangles);
+  shape->triangle_parts = solid.parts;
+  shape->width = width_of(shape->surface.positions, mass.mass / density);
+  shape->mass = mass.mass;
+  shape->inertia = mass.inertia;
+  SharedForm form;
+  form.centre = mass.centre;
+  if (substance.breaks) {
+    material::Material own = substance.material;
+    own.density = density;
+    auto subject = make_subject(solid, own, shape->surface, mass.centre);
+    if (!subject) return core::Error{subject.error()};
+    Fragile fragile;
+    fragile.size = 2.0 * shape->bounding_radius;
+    fragile.density = density;
+    fragile.parts = solid.parts;
+    fragile.subject = std::move(subject.value());
+    form.fragile = std::make_shared<const Fragile>(std::move(fragile));
+    shape->seat = kSolidSeat * form.fragile->size;
+  }
+  form.shape = std::move(shape);
+  return form;
+}
+
+std::shared_ptr<stress::ShellSystemCache> make_systems(
+    const fracture::ShellSubject& subject, std::shared_ptr<const stress::ShellStiffness> stiffness) {
+  return std::make_shared<stress::ShellSystemCache>(std::move(stiffness), subject.mesh,
+                                                    fracture::support_of(subject, *subject.mesh));
+}
+
+std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& mesh, const Fragile& fragile,
+                                                    double thickness) {
+  auto shape = std::make_shared<body::Shape>();
+  const double kerf = kKerf * fragile.size;
+  geometry::ShellSurface surface = geometry::extract_surface(mesh, kerf);
+  const geometry::MassProperties mass = geometry::shell_mass_properties(mesh, thickness, fragile.density);
+  shape->kind = body::ShapeKind::shell;
+  shape->surface = std::move(surface.mesh);
+  shape->bounding_radius = centre_mesh(shape->surface, mass.centre);
+  shape->topology = geometry::build_edge_topology(shape->surface.triangles);
+  shape->crack_edges.assign(shape->topology.edges.size(), 0);
+  for (std::size_t t = 0; t < shape->surface.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (surface.is_crack_side[3 * t + i])
+        shape->crack_edges[static_cast<std::size_t>(shape->topology.triangle_edges[t][i])] = 1;
+  for (const int cell : surface.triangle_cells) {
+    const int element = mesh.cells[static_cast<Size>(cell)].element;
+    shape->triangle_elements.push_back(element);
+    if (!fragile.parts.empty()) shape->triangle_parts.push_back(fragile.parts[static_cast<Size>(element)]);
+  }
+  shape->triangle_grains = std::move(surface.triangle_grains);
+  shape->thickness = shape->seat = thickness;
+  shape->material_from_body = mass.centre;
+  shape->mass = mass.mass;
+  shape->inertia = mass.inertia;
+  shape->least_gap = surface.least_kerf;
+  return shape;
+}
+
+std::shared_ptr<const body::Shape> make_solid_shape(const geometry::SolidComplex& piece,
+                                                    const Fragile& fragile) {
+  auto shape = std::make_shared<body::Shape>();
+  const geometry::MassProperties mass = geometry::solid_mass_properties(piece, fragile.density);
+  geometry::SolidSurface surface = geometry::extract_surface(piece);
+  shape->least_gap = geometry::stand_back(surface, piece, kKerf * fragile.size);
+  shape->kind = body::ShapeKind::solid;
+  shape->surface = std::move(surface.mesh);
+  shape->bounding_radius = centre_mesh(shape->surface, mass.centre);
+  shape->topology = geometry::build_edge_topology(shape->surface.triangles);
+  shape->crack_faces = std::move(surface.is_crack_face);
+  shape->triangle_grains = std::move(surface.triangle_grains);
+  for (const int cell : surface.triangle_cells)
+    shape->triangle_elements.push_back(piece.cells[static_cast<Size>(cell)].element);
+  if (!fragile.parts.empty())
+    for (const int source : surface.triangle_sources)
+      shape->triangle_parts.push_back(source < 0 ? std::uint8_t{0}
+                                                 : fragile.parts[static_cast<Size>(source)]);
+  shape->width = width_of(shape->surface.positions, mass.mass / fragile.density);
+  shape->seat = kSolidSeat * fragile.size;
+  shape->material_from_body = mass.centre;
+  shape->mass = mass.mass;
+  shape->inertia = mass.inertia;
+  return shape;
+}
+
+}  // namespace shatterbox::world

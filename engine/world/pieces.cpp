@@ -1,0 +1,93 @@
+#include "engine/world/pieces.h"
+
+#include <algorithm>
+
+#include "engine/core/parallel.h"
+#include "engine/fracture/split_shell.h"
+#include "engine/fracture/split_solid.h"
+#include "engine/world/forms.h"
+
+namespace shatterbox::world {
+namespace {
+
+/// Tips that stopped in this piece's own material.
+std::vector<fracture::CrackTip> tips_of_piece(const std::vector<fracture::CrackTip>& tips,
+                                              const geometry::ShellMesh& mesh) {
+  std::vector<int> elements;
+  for (const geometry::ShellCell& cell : mesh.cells) elements.push_back(cell.element);
+  std::sort(elements.begin(), elements.end());
+  std::vector<fracture::CrackTip> own;
+  for (const fracture::CrackTip& tip : tips)
+    if (std::binary_search(elements.begin(), elements.end(), tip.element)) own.push_back(tip);
+  return own;
+}
+
+Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture::Decision& decision,
+                 double thickness) {
+  Piece piece;
+  auto fragile = std::make_shared<Fragile>(parent);
+  auto& subject = std::get<fracture::ShellSubject>(fragile->subject);
+  subject.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
+  subject.systems = make_systems(subject, subject.systems->shared_stiffness());
+  subject.tips = tips_of_piece(decision.tips, *subject.mesh);
+  piece.is_held = !subject.systems->support().empty();
+  if (!piece.is_held) subject.clamped_vertices.clear();
+  piece.shape = make_shell_shape(*subject.mesh, *fragile, thickness);
+  piece.fragile = std::move(fragile);
+  return piece;
+}
+
+Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fracture::SolidDecision& decision) {
+  Piece piece;
+  auto fragile = std::make_shared<Fragile>(parent);
+  auto& subject = std::get<fracture::SolidSubject>(fragile->subject);
+  subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(split.complex));
+  subject.model = nullptr;
+  subject.kept_model = std::make_shared<fracture::KeptSolidModel>();
+  subject.first_cut_id += decision.cracks;
+  piece.is_held = std::any_of(split.mesh.vertex_source.begin(), split.mesh.vertex_source.end(), [&](int v) {
+    return std::binary_search(subject.clamped_vertices.begin(), subject.clamped_vertices.end(), v);
+  });
+  if (!piece.is_held) subject.clamped_vertices.clear();
+  piece.shape = make_solid_shape(*subject.complex, *fragile);
+  piece.fragile = std::move(fragile);
+  return piece;
+}
+
+Pieces split_up(const Fragile& parent, const fracture::Decision& decision, double thickness) {
+  fracture::ShellSplit split =
+      fracture::split_shell(*decision.mesh, decision.contacts, {kLeastWidth * parent.size});
+  Pieces out;
+  out.merged_count = split.merged_count;
+  double area = 0.0;
+  for (const geometry::ShellCell& cell : decision.mesh->cells) area += cell.area;
+  out.merged_share = area > 0.0 ? split.merged_area / area : 0.0;
+  out.pieces.resize(split.pieces.size());
+  core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
+    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, thickness);
+  });
+  return out;
+}
+
+Pieces split_up(const Fragile& parent, const fracture::SolidDecision& decision) {
+  fracture::SolidSplit split = fracture::split_solid(*decision.complex, kLeastWidth * parent.size);
+  Pieces out;
+  out.merged_count = split.merged_count;
+  const double volume = total_volume(*decision.complex);
+  out.merged_share = volume > 0.0 ? split.merged_volume / volume : 0.0;
+  out.pieces.resize(split.pieces.size());
+  core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
+    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision);
+  });
+  return out;
+}
+
+}  // namespace
+
+Pieces make_pieces(const Fragile& parent, const EvaluatedImpact& impact, double thickness) {
+  if (const auto* shell = std::get_if<fracture::Decision>(&impact.decision))
+    return split_up(parent, *shell, thickness);
+  return split_up(parent, std::get<fracture::SolidDecision>(impact.decision));
+}
+
+}  // namespace shatterbox::world
