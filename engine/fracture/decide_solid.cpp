@@ -18,7 +18,7 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kSolidWaveLength = 0.14;  // of the cracks' noise, share of the body's size
-constexpr double kSolidTurnLength = 0.04;  // over which a crack turns, share of the body's size
+constexpr double kToldSize = 1.5;          // of the elements, is the least that they can tell of a crack
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
 
@@ -125,17 +125,17 @@ class SolidDecider {
     return centroid;
   }
 
-  SolidTracerSetup tracer_setup() const {
+  SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) const {
     SolidTracerSetup setup;
+    setup.solved = {&mesh, &force_.displacement()};
     setup.stresses = &stresses_;
     setup.pieces = &pieces_;
     setup.material = &subject_.material;
-    setup.around = &*around_;
     setup.noise_a = &*noise_a_;
     setup.noise_b = &*noise_b_;
     for (const SolidPress& press : force_.presses())
       setup.centres.push_back({press.contact.point, press.contact.radius});
-    setup.turn_length = kSolidTurnLength * model().size;
+    setup.least_size = kToldSize * model().mean_edge_length;
     setup.energy_budget = settings_.has_energy_guard
                               ? std::max(0.0, decision_.elastic_energy - decision_.fracture_energy)
                               : -1.0;
@@ -144,20 +144,20 @@ class SolidDecider {
   }
 
   void run_generations(std::vector<SolidCandidate> candidates) {
-    around_.emplace(subject_.complex->elements->mesh);
     noise_a_.emplace(kSolidWaveLength * model().size, settings_.waviness, subject_.seed);
     noise_b_.emplace(kSolidWaveLength * model().size, settings_.waviness, core::mix(subject_.seed + 1));
     auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
+    geometry::SolidMesh mesh;
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
         const std::vector<geometry::SolidContact> contacts = find_solid_contacts(*complex);
-        const geometry::SolidMesh mesh = make_solid_mesh(*complex, contacts);
+        mesh = make_solid_mesh(*complex, contacts);
         if (!force_.settle_again(mesh, make_skin(*complex), decision_, decision_.verdict.reason)) break;
         solve_stresses(mesh, contacts);
         candidates = find_candidates(*complex, false);
       }
       const auto start = core::Clock::now();
-      SolidTracer tracer(*complex, tracer_setup());
+      SolidTracer tracer(*complex, tracer_setup(generation > 0 ? mesh : model().mesh));
       tracer.resume(cracks_);
       tracer.nucleate(std::move(candidates), cracks_);
       decision_.generation_bound_active = false;
@@ -186,7 +186,6 @@ class SolidDecider {
   const FractureSettings& settings_;
   SolidForce force_;
   SolidDecision decision_;
-  std::optional<NodeElements> around_;
   std::optional<PathNoise> noise_a_, noise_b_;
   std::vector<stress::SolidStress> stresses_;  // of this generation, per cell
   std::vector<double> tensions_;               // their first principal values

@@ -16,6 +16,13 @@ double tension(const stress::SolidStress& stress, const Vec3& normal) {
   return normal.dot(stress::stress_tensor(stress) * normal);
 }
 
+/// How the intensity falls as a crack grows that a force holds open in its middle: as its size to the power
+/// -3/2. `share`: of the area that was solved in what it is now.
+double falling(double share) {
+  const double root = core::sqrt(core::sqrt(share));
+  return root * root * root;
+}
+
 }  // namespace
 
 bool cell_holds(const geometry::SolidComplex& complex, int cell, const Vec3& point) {
@@ -34,10 +41,13 @@ SolidTracer::SolidTracer(geometry::SolidComplex& complex, SolidTracerSetup setup
     : complex_(complex),
       setup_(std::move(setup)),
       cutter_(complex),
-      field_(complex, *setup_.around),
+      field_(complex),
       origin_(complex.cells.size()),
       entered_(complex.cells.size(), 0) {
-  for (Size c = 0; c < origin_.size(); ++c) origin_[c] = static_cast<int>(c);
+  for (Size c = 0; c < origin_.size(); ++c) {
+    origin_[c] = static_cast<int>(c);
+    volumes_.push_back(complex.cells[c].volume);
+  }
   toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
 }
 
@@ -51,31 +61,44 @@ bool SolidTracer::pay(double area) {
   return true;
 }
 
-/// Across the first principal stress of the element's material; where the two greatest are alike, and over
-/// less than the length in which it turns, a crack goes straight on.
-Vec3 SolidTracer::wanted_normal(int element, const Vec3& present) const {
-  const std::vector<int> cells = cutter_.cells_of(element);
-  if (cells.empty()) return present;
-  const stress::PrincipalAxes axes =
-      stress::principal_axes((*setup_.stresses)[at(origin_[at(cells.front())])]);
-  if (!(axes.values(0) > 0.0)) return present;
-  Vec3 across = axes.directions.col(0);
-  if (across.dot(present) < 0.0) across = -across;
-  const double anisotropy = std::clamp((axes.values(0) - axes.values(1)) / axes.values(0), 0.0, 1.0);
+/// Across the first principal stress; where the two greatest are alike, or little pulls, the crack is not
+/// told where to go.
+Mat3 SolidTracer::conduction(int element, const stress::SolidStress& stress) const {
+  const stress::PrincipalAxes axes = stress::principal_axes(stress);
+  if (!(axes.values(0) > 0.0)) return Mat3::Identity();
+  const Vec3 across = axes.directions.col(0);
   const geometry::TetMesh& mesh = complex_.elements->mesh;
-  const geometry::Tetrahedron& t = mesh.tetrahedra[at(element)];
-  const Vec3 middle = 0.25 * (mesh.positions[at(t[0])] + mesh.positions[at(t[1])] + mesh.positions[at(t[2])] +
-                              mesh.positions[at(t[3])]);
-  const double way = (mesh.positions[at(t[0])] - mesh.positions[at(t[1])]).norm();
+  Vec3 middle = Vec3::Zero();
+  for (const int v : mesh.tetrahedra[at(element)]) middle += 0.25 * mesh.positions[at(v)];
   int least = 0;
   across.cwiseAbs().minCoeff(&least);
   const Vec3 u = across.cross(Vec3::Unit(least)).normalized();
   const Vec3 wavy = across + setup_.noise_a->at(middle) * u + setup_.noise_b->at(middle) * across.cross(u);
-  // Where little pulls, as in the pressed half of a bent bar, what drives the crack is elsewhere.
-  const double mean = new_area_ > 0.0 ? crack_force_ / new_area_ : 0.0;
-  const double pull = mean > 0.0 ? std::min(1.0, axes.values(0) / mean) : 1.0;
-  const double share = 1.0 - core::exp(-pull * anisotropy * anisotropy * way / setup_.turn_length);
-  return ((1.0 - share) * present + share * wavy.normalized()).normalized();
+  const double anisotropy = std::clamp((axes.values(0) - axes.values(1)) / axes.values(0), 0.0, 1.0);
+  const double pull = std::min(1.0, axes.values(0) / setup_.material->strength);
+  return guide_conduction(wavy.normalized(), pull * anisotropy);
+}
+
+/// Made at the piece's first crack.
+const CrackGuide& SolidTracer::guide_of(int piece) {
+  if (const auto known = guides_.find(piece); known != guides_.end()) return known->second;
+  std::map<int, GuideElement> elements;
+  std::map<int, stress::SolidStress> stresses;  // times volume
+  for (Size c = 0; c < volumes_.size(); ++c) {
+    if ((*setup_.pieces)[c] != piece) continue;
+    const int element = complex_.cells[c].element;
+    GuideElement& own = elements[element];
+    own.element = element;
+    own.volume += volumes_[c];
+    stresses.try_emplace(element, stress::SolidStress::Zero()).first->second +=
+        volumes_[c] * (*setup_.stresses)[c];
+  }
+  std::vector<GuideElement> list;
+  for (auto& [element, own] : elements) {
+    if (own.volume > 0.0) own.conduction = conduction(element, stresses.at(element) / own.volume);
+    list.push_back(own);
+  }
+  return guides_.try_emplace(piece, complex_.elements->mesh, std::move(list)).first->second;
 }
 
 double SolidTracer::tension_across(int cell, const Vec3& gradient) const {
@@ -85,16 +108,12 @@ double SolidTracer::tension_across(int cell, const Vec3& gradient) const {
 }
 
 /// Takes a cell into the crack; its crossed facets become fronts.
-void SolidTracer::enter(int cell, const CrackCap& cap) {
+void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
   entered_[at(cell)] = present_id_ + 1;
   active_.push_back(cell);
+  middles_.push_back(cap.middle);
   crack_area_ += cap.area;
   new_area_ += cap.area;
-  CrackStretch stretch;
-  stretch.begin = stretch.end = cap.middle;
-  stretch.crack = present_id_;
-  stretch.piece = (*setup_.pieces)[at(origin_[at(cell)])];
-  present_.add(stretch);
   const Vec3 gradient = field_.gradient(complex_.cells[at(cell)].element);
   crack_force_ += cap.area * tension_across(cell, gradient);
   const geometry::SolidPart part = complex_.cells[at(cell)];
@@ -105,7 +124,7 @@ void SolidTracer::enter(int cell, const CrackCap& cap) {
     if (next < 0 || facet.kind == geometry::FacetKind::crack || entered_[at(next)] == present_id_ + 1 ||
         !field_.crosses(facet))
       continue;
-    fronts_.push_back({tension_across(next, gradient), next_order_++, next});
+    fronts_.push_back({tension_across(next, gradient), intensity, next_order_++, next});
     std::push_heap(fronts_.begin(), fronts_.end());
   }
 }
@@ -117,40 +136,94 @@ void SolidTracer::grow() {
   while (!fronts_.empty()) {
     std::pop_heap(fronts_.begin(), fronts_.end());
     const int cell = fronts_.back().cell;
+    const double solved = fronts_.back().intensity;
     fronts_.pop_back();
     if (entered_[at(cell)] == present_id_ + 1) continue;
     const int element = complex_.cells[at(cell)].element;
-    if (!field_.has_all(element))
-      field_.reach(element, [this](int e, const Vec3& normal) { return wanted_normal(e, normal); });
     if (!field_.has_all(element)) continue;
     settle_cell(complex_, cell);
     const CrackCap cap = field_.cap(cell);
     if (!(cap.area > 0.0)) continue;
     const double force = crack_force_ + cap.area * tension_across(cell, field_.gradient(element));
-    const double intensity = std::max(0.0, force / (new_area_ + cap.area)) *
-                             core::sqrt(0.5 * core::kPi * core::sqrt(crack_area_ + cap.area));
+    const double area = crack_area_ + cap.area;
+    const double intensity = std::max(
+        std::max(0.0, force / (new_area_ + cap.area)) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
+        solved * falling(solved_area_ / area));
     if (intensity < toughness_ || !pay(cap.area)) {
       rests_.push_back(element);
       if (is_out_of_energy_) return;
       continue;
     }
-    enter(cell, cap);
+    enter(cell, cap, solved);
   }
+}
+
+/// After it has grown: cuts along the present crack, unless it is so small that the elements cannot tell of
+/// it.
+bool SolidTracer::take() {
+  if (active_.empty()) return false;
+  if (crack_area_ < setup_.least_size * setup_.least_size) {
+    for (const int cell : active_) entered_[at(cell)] = 0;
+    energy_ -= setup_.material->fracture_energy * new_area_;
+    return false;
+  }
+  for (Size i = 0; i < active_.size(); ++i) {
+    CrackStretch stretch;
+    stretch.begin = stretch.end = middles_[i];
+    stretch.crack = present_id_;
+    stretch.piece = (*setup_.pieces)[at(origin_[at(active_[i])])];
+    present_.add(stretch);
+  }
+  cut();
+  return true;
 }
 
 void SolidTracer::begin(int id, double area) {
   active_.clear();
+  middles_.clear();
   fronts_.clear();
   rests_.clear();
   next_order_ = 0;
   present_id_ = id;
-  crack_area_ = area;
+  crack_area_ = solved_area_ = area;
   new_area_ = crack_force_ = 0.0;
   if (lengths_.size() <= at(id)) lengths_.resize(at(id) + 1, 0.0);
 }
 
-/// Whether a settled cell has a neighbour that the present crack has cut, or is going to.
-bool SolidTracer::touches_present(int cell) {
+/// m, of the solved crack: how far its faces have come apart in the middle of a facet; below zero where they
+/// are pressed together.
+double SolidTracer::opening_of(const geometry::SolidFacet& facet) const {
+  const geometry::SolidMesh& mesh = *setup_.solved.mesh;
+  Vec3 apart = Vec3::Zero();
+  for (int i = 0; i < facet.side_count; ++i) {
+    const geometry::SolidVertex& corner =
+        complex_.vertices[at(complex_.side_begin(complex_.sides_of(facet)[i]))];
+    for (Size side = 0; side < 2; ++side) {
+      const geometry::SolidCell& cell = mesh.cells[at(origin_[at(facet.cells[side])])];
+      const geometry::Tetrahedron& t = mesh.elements->mesh.tetrahedra[at(cell.element)];
+      for (Size k = 0; k < 4; ++k) {
+        const auto node = std::find(corner.nodes.begin(), corner.nodes.end(), t[k]);
+        if (node == corner.nodes.end()) continue;
+        const double weight = corner.weights[static_cast<Size>(node - corner.nodes.begin())];
+        const Vec3 moved = setup_.solved.displacement->segment<3>(3 * cell.vertices[k]);
+        apart += (side == 0 ? -weight : weight) * moved;
+      }
+    }
+  }
+  const Vec3 area = facet_area_vector(complex_, facet);
+  const double size = area.norm();
+  return size > 0.0 ? apart.dot(area) / (size * facet.side_count) : 0.0;
+}
+
+/// Of a settled cell that the present crack stopped at: the stress intensity by which it stands open beside
+/// the cell, K = E' / 8 sqrt(2 pi / r) opening, r behind the front ([Law93] ch. 2); nothing if it is not
+/// beside. A thin remainder that is pressed while the crack is bent open shows it here, and not in its
+/// stress.
+std::optional<double> SolidTracer::intensity_beside(int cell) {
+  std::optional<double> greatest;
+  const Vec3 here = field_.cap(cell).middle;
+  const material::Material& material = *setup_.material;
+  const double modulus = material.young / (1.0 - material.poisson * material.poisson);
   const geometry::SolidPart part = complex_.cells[at(cell)];
   for (int f = 0; f < part.facet_count; ++f) {
     const geometry::SolidFacet& facet =
@@ -162,10 +235,19 @@ bool SolidTracer::touches_present(int cell) {
     for (int k = 0; k < neighbour.facet_count; ++k) {
       const geometry::SolidFacet& face =
           complex_.facets[at(complex_.cell_facets[at(neighbour.first_facet + k)] / 2)];
-      if (face.kind == geometry::FacetKind::crack && face.tag == present_id_) return true;
+      if (face.kind != geometry::FacetKind::crack || face.tag != present_id_ || face.cells[0] < 0 ||
+          face.cells[1] < 0)
+        continue;
+      Vec3 middle = Vec3::Zero();
+      for (int i = 0; i < face.side_count; ++i)
+        middle += complex_.position(complex_.side_begin(complex_.sides_of(face)[i])) / face.side_count;
+      const double behind = std::max((middle - here).norm(), 1e-6 * setup_.least_size);
+      const double intensity =
+          0.125 * modulus * core::sqrt(2.0 * core::kPi / behind) * std::max(0.0, opening_of(face));
+      greatest = std::max(greatest.value_or(0.0), intensity);
     }
   }
-  return false;
+  return greatest;
 }
 
 void SolidTracer::resume(std::vector<OpenCrack>& cracks) {
@@ -175,18 +257,19 @@ void SolidTracer::resume(std::vector<OpenCrack>& cracks) {
     crack.rests.erase(std::unique(crack.rests.begin(), crack.rests.end()), crack.rests.end());
     begin(crack.id, crack.area);
     lengths_[at(crack.id)] = core::sqrt(crack.area);
-    field_.restore(crack.values);
+    field_.take(crack.values);
     for (const int element : crack.rests)
       for (const int cell : cutter_.cells_of(element)) {
         settle_cell(complex_, cell);
-        if (!field_.has_all(element) || !(field_.cap(cell).area > 0.0) || !touches_present(cell)) continue;
-        fronts_.push_back({tension_across(cell, field_.gradient(element)), next_order_++, cell});
+        if (!field_.has_all(element) || !(field_.cap(cell).area > 0.0)) continue;
+        const std::optional<double> intensity = intensity_beside(cell);
+        if (!intensity) continue;
+        fronts_.push_back({tension_across(cell, field_.gradient(element)), *intensity, next_order_++, cell});
         std::push_heap(fronts_.begin(), fronts_.end());
       }
     grow();
-    if (!active_.empty()) cut();
+    take();
     crack.area = crack_area_;
-    crack.values = field_.known();
     crack.rests = rests_;
   }
 }
@@ -207,20 +290,22 @@ bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>&
   settle_cell(complex_, cell);
   const stress::PrincipalAxes axes = stress::principal_axes((*setup_.stresses)[at(origin_[at(cell)])]);
   begin(setup_.first_id + crack_count_, 0.0);
-  field_.start(element, candidate.place, axes.directions.col(0));
+  const int piece = (*setup_.pieces)[at(origin_[at(cell)])];
+  field_.take(std::make_shared<const std::vector<double>>(
+      guide_of(piece).potential(element, candidate.place, axes.directions.col(0))));
   const CrackCap cap = field_.cap(cell);
   if (!(cap.area > 0.0) || !pay(cap.area)) return false;
-  enter(cell, cap);
+  enter(cell, cap, 0.0);
   grow();
-  cut();
+  if (!take()) return false;
   ++crack_count_;
-  cracks.push_back({present_id_, crack_area_, field_.known(), rests_});
+  cracks.push_back({present_id_, crack_area_, field_.values(), rests_});
   return true;
 }
 
 void SolidTracer::cut() {
   geometry::SolidCut cut;
-  cut.node_values = field_.values();
+  cut.node_values = *field_.values();
   cut.cells = active_;
   cut.id = present_id_;
   const Size before = complex_.cells.size();
@@ -259,11 +344,12 @@ bool SolidTracer::is_shielded(const SolidCandidate& candidate) const {
   const double spacing = setup_.material->crack_spacing;
   const int piece = (*setup_.pieces)[at(candidate.cell)];
   bool is_near = false;
-  present_.visit_near(candidate.place, spacing * reach,
+  present_.visit_near(candidate.place, std::max(spacing * reach, setup_.least_size),
                       [&](const CrackStretch& s, const Vec3&, double distance) {
                         // A crack unloads nothing beyond another one.
                         if (s.piece != piece) return true;
-                        is_near = distance < spacing * std::min(lengths_[at(s.crack)], reach);
+                        is_near = distance < std::max(spacing * std::min(lengths_[at(s.crack)], reach),
+                                                      setup_.least_size);
                         return !is_near;
                       });
   return is_near;

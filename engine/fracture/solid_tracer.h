@@ -2,9 +2,13 @@
 // stress drives it on, until it arrests, reaches the surface, or meets another cut.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <vector>
 
+#include "engine/fracture/crack_guide.h"
 #include "engine/fracture/crack_set.h"
+#include "engine/fracture/path_noise.h"
 #include "engine/fracture/solid_crack.h"
 #include "engine/geometry/solid_complex.h"
 #include "engine/geometry/solid_cutter.h"
@@ -28,22 +32,28 @@ struct SolidLoadCentre {
 
 /// A crack that may run on in a later generation.
 struct OpenCrack {
-  int id = 0;                 // tag of its facets
-  double area = 0.0;          // m2
-  CrackField::Values values;  // of its field
-  std::vector<int> rests;     // elements that it did not enter
+  int id = 0;              // tag of its facets
+  double area = 0.0;       // m2
+  CrackValues values;      // of its field
+  std::vector<int> rests;  // elements that it did not enter
+};
+
+/// The solved mesh of a generation and its displacement: how far a crack stands open.
+struct SolvedOpening {
+  const geometry::SolidMesh* mesh = nullptr;
+  const VecX* displacement = nullptr;  // |dof|, m
 };
 
 /// What does not change while the cracks of a generation run. All that is pointed to must outlive the tracer.
 struct SolidTracerSetup {
   const std::vector<stress::SolidStress>* stresses = nullptr;  // Pa, per cell at the generation's beginning
   const std::vector<int>* pieces = nullptr;                    // that each of these cells is in
+  SolvedOpening solved;
   const material::Material* material = nullptr;
-  const NodeElements* around = nullptr;
   const PathNoise* noise_a = nullptr;
   const PathNoise* noise_b = nullptr;
   std::vector<SolidLoadCentre> centres;
-  double turn_length = 0.0;    // m, over which a crack turns to the stress
+  double least_size = 0.0;     // m, of a crack, and of what is between two: what the elements can tell
   double energy_budget = 0.0;  // J, for this generation; below zero: no guard
   int first_id = 0;            // tag of the first crack's facets
 };
@@ -67,7 +77,8 @@ class SolidTracer {
  private:
   /// A facet over which a crack may go on.
   struct Front {
-    double drive = 0.0;  // Pa, of the stress across it behind the facet
+    double drive = 0.0;      // Pa, of the stress across it behind the facet
+    double intensity = 0.0;  // Pa sqrt(m), by which the crack stands open there, as it was solved
     int order = 0, cell = 0;
     bool operator<(const Front& other) const {
       return drive != other.drive ? drive < other.drive : order > other.order;
@@ -76,27 +87,34 @@ class SolidTracer {
   bool is_shielded(const SolidCandidate& candidate) const;
   bool start(const SolidCandidate& candidate, std::vector<OpenCrack>& cracks);
   void begin(int id, double area);
-  void enter(int cell, const CrackCap& cap);
+  void enter(int cell, const CrackCap& cap, double intensity);
+  double opening_of(const geometry::SolidFacet& facet) const;
   void grow();
-  Vec3 wanted_normal(int element, const Vec3& present) const;
+  const CrackGuide& guide_of(int piece);
+  Mat3 conduction(int element, const stress::SolidStress& stress) const;
   double tension_across(int cell, const Vec3& gradient) const;
-  bool touches_present(int cell);
+  std::optional<double> intensity_beside(int cell);
   bool pay(double area);
+  bool take();
   void cut();
 
   geometry::SolidComplex& complex_;
   SolidTracerSetup setup_;
   geometry::SolidCutter cutter_;
   CrackField field_;
-  CrackSet present_;             // caps of this generation
-  std::vector<double> lengths_;  // m, square root of each crack's area, by id
-  std::vector<int> origin_;      // |cells|: the cell at the generation's beginning that it is part of
-  std::vector<int> entered_;     // |cells|: id of the last crack in it + 1
-  std::vector<int> active_;      // cells of the present crack
-  std::vector<Front> fronts_;    // heap
-  std::vector<int> rests_;       // elements that the present crack did not enter
+  CrackSet present_;                  // caps of this generation
+  std::vector<double> lengths_;       // m, square root of each crack's area, by id
+  std::map<int, CrackGuide> guides_;  // by piece
+  std::vector<double> volumes_;       // m3, of the cells at the generation's beginning
+  std::vector<int> origin_;           // |cells|: the cell at the generation's beginning that it is part of
+  std::vector<int> entered_;          // |cells|: id of the last crack in it + 1
+  std::vector<int> active_;           // cells of the present crack
+  std::vector<Vec3> middles_;         // m, of its caps in them
+  std::vector<Front> fronts_;         // heap
+  std::vector<int> rests_;            // elements that the present crack did not enter
   int next_order_ = 0, crack_count_ = 0, present_id_ = 0;
   double crack_area_ = 0.0;   // m2, of the present crack
+  double solved_area_ = 0.0;  // m2, of it when it was solved
   double crack_force_ = 0.0;  // N, across what of it is new
   double new_area_ = 0.0;     // m2, of that
   double area_ = 0.0, energy_ = 0.0, toughness_ = 0.0;

@@ -1,0 +1,50 @@
+// Where the cracks of one generation would run through one piece of a solid. A potential flows easily along
+// the planes across the first principal stress and hardly through them; the level set through the place where
+// a crack starts is the crack's surface. Departs from tracing from element to element: a stress field's
+// planes seldom fit together to a surface, and a traced one crumples. As the potential of a source beside a
+// sink has no other extremes, the surface is one sheet that parts the piece, meets free surfaces at right
+// angles and goes straight on where the stress tells nothing. (J. Oliver, A. E. Huespe, E. Samaniego, E. W.
+// V. Chaves track all cracks of a body by such potentials [OHSC04].)
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/geometry/tet_mesh.h"
+
+namespace shatterbox::fracture {
+
+/// An element of the piece, and how it conducts.
+struct GuideElement {
+  int element = 0;                     // of the mesh
+  double volume = 0.0;                 // m3, of the piece's material in it
+  Mat3 conduction = Mat3::Identity();  // symmetric, positive definite
+};
+
+class CrackGuide {
+ public:
+  /// `elements` hang together by faces and come ascending.
+  CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements);
+  ~CrackGuide();
+  CrackGuide(CrackGuide&&) noexcept;
+
+  /// |nodes of the mesh|: zero at `place` (m) in `element`, which is one of the piece's, growing along
+  /// `normal` there; no node has nearly zero. Exactly 0 where it is not known: at nodes of other elements,
+  /// and where so little is left of it that its sign is rounding. Any thread.
+  std::vector<double> potential(int element, const Vec3& place, const Vec3& normal) const;
+
+ private:
+  struct Factor;
+
+  const geometry::TetMesh& mesh_;
+  std::vector<GuideElement> elements_;
+  std::vector<int> number_;  // |nodes|: unknown, -1 for none
+  std::unique_ptr<Factor> factor_;
+};
+
+/// The potential's conduction: across the planes normal to `across` (unit) by as much less as `sureness`
+/// (0 to 1) says.
+Mat3 guide_conduction(const Vec3& across, double sureness);
+
+}  // namespace shatterbox::fracture
