@@ -13,7 +13,7 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kLeastConduction = 0.02;  // through a crack's plane, where the stress is sure
+constexpr double kLeastConduction = 0.005;  // through a crack's plane, where the stress is sure
 constexpr double kLeastShare = 0.02;  // of an element's volume that counts of one with hardly any material
 constexpr double kHold = 1e-9;        // of the diagonal, so that a potential without a border is one
 constexpr double kFaint = 1e-10;      // share of the greatest change below which a potential is but rounding

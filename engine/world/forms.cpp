@@ -272,7 +272,7 @@ std::shared_ptr<const body::Shape> make_solid_shape(const geometry::SolidComplex
   auto shape = std::make_shared<body::Shape>();
   const geometry::MassProperties mass = geometry::solid_mass_properties(piece, fragile.density);
   geometry::SolidSurface surface = geometry::extract_surface(piece);
-  shape->least_gap = geometry::stand_back(surface, piece, kKerf * fragile.size);
+  shape->least_gap = geometry::stand_back(surface, kKerf * fragile.size);
   shape->kind = body::ShapeKind::solid;
   shape->surface = std::move(surface.mesh);
   shape->bounding_radius = centre_mesh(shape->surface, mass.centre);

@@ -30,7 +30,7 @@ std::vector<TriangleMesh> pieces_with_kerf(SolidComplex complex, double kerf, do
   least = kerf;
   for (const auto& piece : fracture::split_solid(std::move(complex)).pieces) {
     SolidSurface surface = extract_surface(piece.complex);
-    least = std::min(least, stand_back(surface, piece.complex, kerf));
+    least = std::min(least, stand_back(surface, kerf));
     meshes.push_back(std::move(surface.mesh));
   }
   return meshes;
