@@ -110,20 +110,25 @@ class Solver {
     }
   }
 
-  /// z = inverse r; returns r . z and r . r.
+  /// z = inverse r, and what the clusters answer; returns r . z and r . r.
   std::array<Lane<kLanes>, 2> precondition() {
-    return sum_chunks<2>([this](Size begin, Size end, std::array<Lane<kLanes>, 2>& sums) {
+    const CoarseModes* const coarse = system_.coarse;
+    Eigen::MatrixXd amounts;
+    if (coarse) amounts = coarse->answer(r_, kLanes);
+    return sum_chunks<2>([&](Size begin, Size end, std::array<Lane<kLanes>, 2>& sums) {
       for (Size row = begin; row < end; ++row) {
         const double* const inverse = &system_.inverse[9 * row];
         const double* const r = &r_[3 * row * kLanes];
         double* const z = &z_[3 * row * kLanes];
         for (Size a = 0; a < 3; ++a)
+          for (Size l = 0; l < kLanes; ++l)
+            z[a * kLanes + l] = (inverse[3 * a] * r[l] + inverse[3 * a + 1] * r[kLanes + l]) +
+                                inverse[3 * a + 2] * r[2 * kLanes + l];
+        if (coarse) coarse->add(amounts, row, kLanes, z);
+        for (Size i = 0; i < 3; ++i)
           for (Size l = 0; l < kLanes; ++l) {
-            const double value = (inverse[3 * a] * r[l] + inverse[3 * a + 1] * r[kLanes + l]) +
-                                 inverse[3 * a + 2] * r[2 * kLanes + l];
-            z[a * kLanes + l] = value;
-            sums[0][l] += r[a * kLanes + l] * value;
-            sums[1][l] += r[a * kLanes + l] * r[a * kLanes + l];
+            sums[0][l] += r[i * kLanes + l] * z[i * kLanes + l];
+            sums[1][l] += r[i * kLanes + l] * r[i * kLanes + l];
           }
       }
     });

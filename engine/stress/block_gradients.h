@@ -1,4 +1,5 @@
-// Conjugate gradients on K + shift M with a block Jacobi preconditioner: the solver of solids. At the
+// Conjugate gradients on K + shift M with a preconditioner of two levels, block Jacobi and rigid
+// clusters: the solver of solids. At the
 // accuracy that a strength asks for it costs what one back-substitution of a ready factor would, and nothing
 // is factored. Sums are made in fixed chunks: the same bits for any number of threads and for any company of
 // loads.
@@ -10,6 +11,7 @@
 
 #include "engine/core/vec.h"
 #include "engine/stress/block_rows.h"
+#include "engine/stress/coarse_modes.h"
 
 namespace shatterbox::stress {
 
@@ -26,6 +28,7 @@ struct BlockSystem {
   std::vector<double> inverse;  // |V| x 9: of the blocks on the diagonal, within what holds allow
   std::vector<int> hold_of;     // |V|: into holds, -1 for free vertices
   std::vector<VertexHold> holds;
+  const CoarseModes* coarse = nullptr;  // second level; null for none
   /// Takes out of a residual (|dof|) what the singular matrix cannot answer; empty for none.
   std::function<void(VecX&)> project;
 };

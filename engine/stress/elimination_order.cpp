@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <numeric>
 
 #include "engine/core/index.h"
+#include "engine/stress/metis_lock.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
 using core::at;
-
-// METIS draws from the C library's one generator: two threads at once would change each other's answer.
-std::mutex metis_mutex;
 
 }  // namespace
 
@@ -38,7 +35,7 @@ std::vector<int> rank_vertices(const geometry::ShellElements& elements) {
   idx_t vertex_count = static_cast<idx_t>(count);
   std::vector<idx_t> order(count);
   std::vector<idx_t> place(count);
-  const std::lock_guard lock(metis_mutex);
+  const std::lock_guard lock(metis_lock());
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_NUMBERING] = 0;

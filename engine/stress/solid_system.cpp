@@ -8,6 +8,7 @@
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/block_gradients.h"
+#include "engine/stress/coarse_modes.h"
 #include "engine/stress/rigid_modes.h"
 #include "engine/stress/solid_period.h"
 
@@ -50,6 +51,7 @@ struct SolidSystem::State {
   BlockRows rows;
   VecX mass;  // |dof|
   RigidModes rigid;
+  CoarseModes coarse;  // not factored
   BlockSystem system;  // without inertia
   NullSpace null_space = NullSpace::balanced;
   mutable std::once_flag has_period;
@@ -93,6 +95,15 @@ void SolidSystem::State::build(const geometry::SolidMesh& mesh, const SolidSyste
   rigid = RigidModes(part_of_dof, positions, {}, mass, is_clamped);
   if (is_relieved()) system.project = [this](VecX& residual) { rigid.balance(residual); };
   invert_diagonal(system);
+  std::vector<Mat3> allowed(positions.size(), Mat3::Identity());
+  std::vector<double> vertex_mass(positions.size());
+  for (Size v = 0; v < positions.size(); ++v) {
+    if (system.hold_of[v] >= 0) allowed[v] = system.holds[at(system.hold_of[v])].allowed;
+    vertex_mass[v] = mass(static_cast<Eigen::Index>(3 * v));
+  }
+  coarse = CoarseModes(rows, positions, allowed, vertex_mass);
+  coarse.factor(0.0);
+  if (!coarse.is_empty()) system.coarse = &coarse;
 }
 
 /// [BHTF07] sec. V: X1 is fixed; X2 keeps its direction from X1; X3 keeps the plane of the three.
@@ -193,6 +204,7 @@ std::vector<SolidSolution> SolidSystem::solve(const std::vector<VecX>& loads,
   const bool is_screened = screening_squared > 0.0;
 
   BlockSystem screened;
+  CoarseModes coarse;
   VecX inertia;
   if (is_screened) {
     inertia = screening_squared * state.mass;
@@ -203,6 +215,9 @@ std::vector<SolidSolution> SolidSystem::solve(const std::vector<VecX>& loads,
     for (Size v = 0; v < state.rows.size(); ++v)
       screened.inertia[v] = inertia(static_cast<Eigen::Index>(3 * v));
     invert_diagonal(screened);
+    coarse = state.coarse;
+    coarse.factor(screening_squared);
+    if (!coarse.is_empty()) screened.coarse = &coarse;
   }
 
   // A screened load's rigid part is answered in closed form, R R^T / s^2: only what bends is left to iterate.
