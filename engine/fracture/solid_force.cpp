@@ -17,7 +17,7 @@ using core::at;
 
 // As for shells (impact_force.cpp).
 constexpr double kSolidPatchElements = 1.5;    // least radius of a load's patch, in element sizes
-constexpr double kSolidPatchShare = 0.075;     // and as a share of the unbroken body's size
+constexpr double kSolidPatchShare = 0.15;      // and as a share of the body's width
 constexpr Size kMostSolidGroups = 8;           // pieces that share one load: each costs a solve
 constexpr int kMostSolidScreenings = 6;        // steps of the search for the duration
 constexpr double kSolidSpinThatCounts = 1e-3;  // least stress of a spin worth a solve, in strengths
@@ -59,7 +59,7 @@ bool SolidForce::prepare(std::string& problem) {
   skin_ = &model.skin;
   system_ = model.system;
   const double least_radius =
-      std::max(kSolidPatchShare * model.size, kSolidPatchElements * model.mean_edge_length);
+      std::max(kSolidPatchShare * model.width, kSolidPatchElements * model.mean_edge_length);
   for (const ImpactLoad& load : impact_.loads) {
     if (!(load.impulse > 0.0) && !(load.closing_speed > 0.0)) continue;
     if (!(load.direction.squaredNorm() > 0.5)) continue;

@@ -14,6 +14,7 @@ world::BodyDescription make_slab(const Vec3& half_extent, const Vec3& offset) {
   world::BodyDescription body;
   body.name = "slab";
   world::SolidDescription solid;
+  solid.is_breakable = false;
   solid.mesh = geometry::make_box_surface(half_extent);
   for (Vec3& p : solid.mesh.positions) p += offset;
   body.form = solid;

@@ -5,6 +5,7 @@
 
 #include "engine/fracture/shell_subject.h"
 #include "engine/geometry/generators.h"
+#include "engine/world/forms.h"
 
 using namespace shatterbox;
 
@@ -26,20 +27,22 @@ struct Hit {
     auto fragile = std::make_shared<world::Fragile>();
     fragile->size = 0.08;
     fragile->density = 2500.0;
-    fragile->subject.mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
-    fragile->subject.material = material::find_preset("glass").value();
-    fragile->subject.material.fracture_energy = fracture_energy;
-    fragile->subject.thickness = 5e-4;
-    fracture::prepare_subject(fragile->subject);
+    fracture::ShellSubject subject;
+    subject.mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
+    subject.material = material::find_preset("glass").value();
+    subject.material.fracture_energy = fracture_energy;
+    subject.thickness = 5e-4;
+    fracture::prepare_subject(subject);
     body::Body struck;
     struck.id = kStruck;
-    struck.shape = world::make_shell_shape(fragile->subject.mesh, *fragile, fragile->subject.thickness);
+    struck.shape = world::make_shell_shape(*subject.mesh, *fragile, subject.thickness);
     struck.motion = body::Motion::dynamic;
     struck.inverse_mass = 1.0 / struck.shape->mass;
     struck.inverse_inertia = struck.shape->inertia.inverse();
     struck.restitution = 0.3;
-    struck.young = fragile->subject.material.young;
-    struck.poisson = fragile->subject.material.poisson;
+    struck.young = subject.material.young;
+    struck.poisson = subject.material.poisson;
+    fragile->subject = std::move(subject);
     bodies = {struck};
     fragiles[kStruck] = fragile;
   }
@@ -68,9 +71,9 @@ TEST_CASE("an impact that was borne is not solved again, however near it came, b
     const double speed = fracture_energy > 100.0 ? 4.0 : 0.4;
     const auto first = hit.judge(speed, side);
     REQUIRE(first.size() == 1);
-    const fracture::Verdict verdict = first[0].decision.verdict;
+    const fracture::Verdict verdict = first[0].figures().verdict;
     REQUIRE(verdict.outcome == fracture::Outcome::held);
-    REQUIRE(first[0].decision.generations > 0);
+    REQUIRE(first[0].figures().generations > 0);
     CAPTURE(verdict.ratio, verdict.reason);
     REQUIRE((verdict.ratio > 1.0) == (fracture_energy > 100.0));
     CHECK(hit.judge(speed, side).empty());

@@ -24,11 +24,13 @@ world::BodyDescription make(const char* kind, const Vec3& position) {
     shell.is_breakable = false;
     description.form = shell;
   }
-  if (word == "solid")
-    description.form = world::SolidDescription{geometry::make_box_surface(Vec3::Constant(0.5)), {}};
+  if (word == "solid" || word == "crumb") {
+    world::SolidDescription solid;
+    solid.mesh = geometry::make_box_surface(Vec3::Constant(word == "solid" ? 0.5 : 0.1));
+    solid.is_breakable = false;
+    description.form = solid;
+  }
   if (word == "marble") description.form = world::SphereDescription{0.1};
-  if (word == "crumb")
-    description.form = world::SolidDescription{geometry::make_box_surface(Vec3::Constant(0.1)), {}};
   return description;
 }
 
