@@ -34,6 +34,7 @@ struct SolidSubject {
 
 struct SolidDecision : DecisionFigures {
   std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null unless it broke
+  int part_count = 1;                                     // that the cut complex falls into
   int iterations = 0;                                     // of conjugate gradients, of all solves
 };
 

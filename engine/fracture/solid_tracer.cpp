@@ -12,7 +12,9 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-double tension(const stress::SolidStress& stress, const Vec3& normal) {
+constexpr double kLeastArea = 0.25;  // of a crack, in squares of the least size
+
+double tension_of(const stress::SolidStress& stress, const Vec3& normal) {
   return normal.dot(stress::stress_tensor(stress) * normal);
 }
 
@@ -104,7 +106,7 @@ const CrackGuide& SolidTracer::guide_of(int piece) {
 double SolidTracer::tension_across(int cell, const Vec3& gradient) const {
   const double steep = gradient.norm();
   if (!(steep > 0.0)) return 0.0;
-  return tension((*setup_.stresses)[at(origin_[at(cell)])], gradient / steep);
+  return tension_of((*setup_.stresses)[at(origin_[at(cell)])], gradient / steep);
 }
 
 /// Takes a cell into the crack; its crossed facets become fronts.
@@ -129,9 +131,10 @@ void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
   }
 }
 
-/// From front to front, the most driven first. What drives a crack is the force across all of it: K = mean
-/// tension sqrt(pi / 2 length), which of a force at the crack's middle falls as its radius^-3/2, as it
-/// should, and takes the crack of a bent bar on into the half that is pressed.
+/// From front to front, the most driven first. What drives a crack is K = tension sqrt(pi / 2 length), of the
+/// tension at its front or of the mean across all of it, whichever is more: the mean takes the crack of a
+/// bent bar on into the half that is pressed, and falls, as it should, as the radius^-3/2 of a crack that a
+/// force opens in its middle.
 void SolidTracer::grow() {
   while (!fronts_.empty()) {
     std::pop_heap(fronts_.begin(), fronts_.end());
@@ -144,11 +147,12 @@ void SolidTracer::grow() {
     settle_cell(complex_, cell);
     const CrackCap cap = field_.cap(cell);
     if (!(cap.area > 0.0)) continue;
-    const double force = crack_force_ + cap.area * tension_across(cell, field_.gradient(element));
+    const double tension = tension_across(cell, field_.gradient(element));
+    const double mean = (crack_force_ + cap.area * tension) / (new_area_ + cap.area);
     const double area = crack_area_ + cap.area;
-    const double intensity = std::max(
-        std::max(0.0, force / (new_area_ + cap.area)) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
-        solved * falling(solved_area_ / area));
+    const double intensity =
+        std::max(std::max({0.0, mean, tension}) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
+                 solved * falling(solved_area_ / area));
     if (intensity < toughness_ || !pay(cap.area)) {
       rests_.push_back(element);
       if (is_out_of_energy_) return;
@@ -162,7 +166,7 @@ void SolidTracer::grow() {
 /// it.
 bool SolidTracer::take() {
   if (active_.empty()) return false;
-  if (crack_area_ < setup_.least_size * setup_.least_size) {
+  if (crack_area_ < kLeastArea * setup_.least_size * setup_.least_size) {
     for (const int cell : active_) entered_[at(cell)] = 0;
     energy_ -= setup_.material->fracture_energy * new_area_;
     return false;

@@ -239,6 +239,15 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
         s.report.impacts.push_back(describe_impact(impact, body, end_time));
       continue;
     }
+    if (impact.is_cracked_only()) {
+      const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
+      const auto fragile = cracked(*s.moving.fragiles.at(impact.id), decision);
+      s.moving.fragiles[impact.id] = snapshot.fragiles[impact.id] = fragile;
+      ImpactRow row = describe_impact(impact, body, end_time);
+      row.verdict = format_ratio("cracked, in one piece: ", decision.verdict.ratio);
+      s.report.impacts.push_back(row);
+      continue;
+    }
     // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
     if (impact.first_time > memory.charged_until) memory.generation = 0;
     ImpactRow row = describe_impact(impact, body, end_time);

@@ -22,6 +22,7 @@ constexpr double kBorneRatio = 0.95;
 constexpr double kBorneAgain = 1.02;
 /// Loads smaller than this share of the hardest one do not decide whether two impacts are alike.
 constexpr double kMinorLoad = 0.05;
+constexpr int kSolidGenerations = 6;  // solves of a cracking solid
 
 struct Candidate {
   const body::Body* body = nullptr;
@@ -289,6 +290,9 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     fracture::FractureSettings how;
     how.most_generations =
         candidate.is_piece ? std::min(2, settings.crack_generations) : settings.crack_generations;
+    // Cracks of solids go on for longer before they part anything, and their solves cost less.
+    if (std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject))
+      how.most_generations = kSolidGenerations;
     how.least_width = kLeastWidth * candidate.fragile->size;
     // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
     if (candidate.is_piece) how.core_spacing = 0.0;
@@ -304,7 +308,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedImpact& impact = evaluated[i];
     const fracture::DecisionFigures& decision = impact.figures();
-    if (decision.verdict.outcome == fracture::Outcome::held)
+    if (decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only())
       borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict)};
     ImpactMemory& memory = memories[impact.id];
     const double ratio = decision.verdict.ratio;

@@ -21,6 +21,12 @@ struct EvaluatedImpact {
   bool is_struck = false;   // by a collision; otherwise contact alone pressed
   std::variant<fracture::Decision, fracture::SolidDecision> decision;
 
+  /// Of a solid: it has cracks, and yet all of it hangs together.
+  bool is_cracked_only() const {
+    const auto* solid = std::get_if<fracture::SolidDecision>(&decision);
+    return solid && solid->verdict.outcome == fracture::Outcome::broke && solid->part_count == 1;
+  }
+
   const fracture::DecisionFigures& figures() const {
     return std::visit([](const auto& d) -> const fracture::DecisionFigures& { return d; }, decision);
   }

@@ -46,6 +46,15 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const geometry::BoatSizes& sizes) const {
     return with_parts(geometry::make_boat(sizes, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const geometry::VaseSizes& sizes) const {
+    return with_parts(geometry::make_vase(sizes, meshing));
+  }
+  core::Result<geometry::PartedMesh> operator()(const geometry::BottleSizes& sizes) const {
+    return with_parts(geometry::make_bottle(sizes, meshing));
+  }
+  core::Result<geometry::PartedMesh> operator()(const geometry::EggSizes& sizes) const {
+    return with_parts(geometry::make_egg(sizes, meshing));
+  }
   core::Result<geometry::PartedMesh> operator()(const SlabShape& slab) const {
     return one_part(geometry::make_box_surface(0.5 * slab.size));
   }
@@ -61,6 +70,9 @@ double coarse_edge(const MeshShape& shape) {
   if (const auto* bowl = std::get_if<geometry::BowlSizes>(&shape)) return 0.2 * bowl->rim_radius;
   if (const auto* boat = std::get_if<geometry::BoatSizes>(&shape)) return boat->length / kStationsOfBoat;
   if (const auto* slab = std::get_if<SlabShape>(&shape)) return slab->size.maxCoeff();
+  if (const auto* vase = std::get_if<geometry::VaseSizes>(&shape)) return 0.2 * vase->neck_radius;
+  if (const auto* bottle = std::get_if<geometry::BottleSizes>(&shape)) return 0.2 * bottle->neck_radius;
+  if (const auto* egg = std::get_if<geometry::EggSizes>(&shape)) return 0.2 * egg->radius;
   const auto& pane = std::get<PaneShape>(shape);
   return 0.1 * std::min(pane.width, pane.height);
 }

@@ -15,10 +15,12 @@ struct Shapes {
   std::vector<std::string> known, later;
 };
 const Shapes kShellShapes{{"ornament", "sphere", "bowl", "pane", "boat"}, {}};
-const Shapes kSolidShapes{{"sphere", "slab"}, {"vase", "bottle", "egg", "bricks"}};
-const std::vector<std::string> kShapeKeys{
-    "radius", "neck_radius", "neck_height", "cap",  "foot_radius", "foot_height", "height",
-    "width",  "edge_length", "length",      "beam", "depth",       "sheer"};
+const Shapes kSolidShapes{{"sphere", "slab", "vase", "bottle", "egg"}, {"bricks"}};
+const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
+                                          "foot_radius", "foot_height",  "height",        "width",
+                                          "edge_length", "length",       "beam",          "depth",
+                                          "sheer",       "belly_radius", "rim_radius",    "wall",
+                                          "neck_length", "blunt_height", "pointed_height"};
 
 /// Where a mesh file named in a scene lies: as it is, or beside the scene.
 std::string find_mesh_file(const std::string& file, const std::string& scene_file) {
@@ -106,6 +108,41 @@ MeshShape read_shape(TableReader& reader, const std::string& shape) {
     set("beam", sizes.beam, positive("m"));
     set("depth", sizes.depth, positive("m"));
     set("sheer", sizes.sheer, not_negative("m"));
+    return sizes;
+  }
+  if (shape == "vase") {
+    geometry::VaseSizes sizes;
+    set("height", sizes.height, positive("m"));
+    const double scale = sizes.height / geometry::VaseSizes{}.height;
+    for (double* size :
+         {&sizes.foot_radius, &sizes.belly_radius, &sizes.neck_radius, &sizes.rim_radius, &sizes.wall})
+      *size *= scale;
+    set("foot_radius", sizes.foot_radius, positive("m"));
+    set("belly_radius", sizes.belly_radius, positive("m"));
+    set("neck_radius", sizes.neck_radius, positive("m"));
+    set("rim_radius", sizes.rim_radius, positive("m"));
+    set("wall", sizes.wall, positive("m"));
+    return sizes;
+  }
+  if (shape == "bottle") {
+    geometry::BottleSizes sizes;
+    set("height", sizes.height, positive("m"));
+    const double scale = sizes.height / geometry::BottleSizes{}.height;
+    for (double* size : {&sizes.radius, &sizes.neck_radius, &sizes.neck_length, &sizes.wall}) *size *= scale;
+    set("radius", sizes.radius, positive("m"));
+    set("neck_radius", sizes.neck_radius, positive("m"));
+    set("neck_length", sizes.neck_length, positive("m"));
+    set("wall", sizes.wall, positive("m"));
+    return sizes;
+  }
+  if (shape == "egg") {
+    geometry::EggSizes sizes;
+    set("radius", sizes.radius, positive("m"));
+    const double scale = sizes.radius / geometry::EggSizes{}.radius;
+    sizes.blunt_height *= scale;
+    sizes.pointed_height *= scale;
+    set("blunt_height", sizes.blunt_height, positive("m"));
+    set("pointed_height", sizes.pointed_height, positive("m"));
     return sizes;
   }
   SphereShape sizes;

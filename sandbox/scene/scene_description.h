@@ -46,7 +46,8 @@ struct SlabShape {
   Vec3 size = Vec3::Ones();  // m
 };
 using MeshShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
-                               PaneShape, geometry::BoatSizes, SlabShape>;
+                               PaneShape, geometry::BoatSizes, SlabShape, geometry::VaseSizes,
+                               geometry::BottleSizes, geometry::EggSizes>;
 
 // Kinds of bodies.
 struct PlaneForm {};

@@ -107,7 +107,7 @@ TEST_CASE("a piece is seated beside another where they press at one place of the
   const auto move_origin = [](body::Body& body, const Vec3& origin) {
     auto shape = std::make_shared<body::Shape>(*body.shape);
     shape->material_from_body = origin;
-    shape->thickness = 0.001;
+    shape->thickness = shape->seat = 0.001;
     body.shape = shape;
   };
   move_origin(a, Vec3(1, 0, 0));

@@ -187,7 +187,7 @@ const Broken kCorpus[] = {
     // The vocabulary of later versions.
     {"[[body]]\nkind = \"capsule\"\n", "t.toml:2:8", "kind = \"capsule\" is not available in this version",
      "\"shell\""},
-    {"[[body]]\nkind = \"solid\"\nshape = \"vase\"\n", "t.toml:3:9", "not available in this version",
+    {"[[body]]\nkind = \"solid\"\nshape = \"bricks\"\n", "t.toml:3:9", "not available in this version",
      "\"sphere\""},
     {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 3, spacing = 1, bond = 0.5}\n", "t.toml:3:42",
      "only courses of a grid", "count = [12, 10, 1]"},
