@@ -1,7 +1,10 @@
 // Solids as bodies: the inside of a closed mesh has mass, its surface meets others.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "engine/audit/audit.h"
+#include "engine/core/parallel.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/world/world.h"
@@ -86,4 +89,118 @@ TEST_CASE("a solid that is open, flat or inside out is refused in words") {
   CHECK(refusal([](TriangleMesh& m) {
           for (Vec3& p : m.positions) p.y() = 0.0;
         }).find("flat") != std::string::npos);
+}
+
+namespace {
+
+/// A plaster slab that falls on its corner from that height, m; half a second after it has met the floor.
+world::World drop_slab(double height, const Vec3& half_extent = Vec3(0.3, 0.03, 0.2)) {
+  world::World w{world::WorldSettings{}};
+  REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+  world::BodyDescription ground;
+  ground.name = "floor";
+  ground.form = world::PlaneDescription{};
+  REQUIRE(w.add_body(ground).ok());
+  world::BodyDescription slab = make_slab(half_extent, Vec3(0.7, 0.0, 0.0));
+  auto& solid = std::get<world::SolidDescription>(slab.form);
+  solid.is_breakable = true;
+  solid.element_size = 0.05;
+  slab.pose.rotation = Quat(Eigen::AngleAxisd(0.5, Vec3(1.0, 0.2, 1.2).normalized()));
+  slab.pose.translation = Vec3(0.0, height + 0.4, 0.0);
+  REQUIRE(w.add_body(slab).ok());
+  const double fall = std::sqrt(2.0 * (height + 0.4) / 9.81);
+  while (w.time() < fall + 0.1) w.step();
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and holds if it falls less far") {
+  const world::World held = drop_slab(0.01);
+  CHECK(held.report().breaks.empty());
+  CHECK(held.bodies().size() == 2);
+  REQUIRE_FALSE(held.report().impacts.empty());
+  CHECK(held.report().impacts[0].ratio < 1.0);
+
+  const world::World broken = drop_slab(2.0);
+  REQUIRE_FALSE(broken.report().breaks.empty());
+  const world::BreakRow& first = broken.report().breaks[0];
+  CHECK(first.pieces >= 2);
+  CHECK(first.new_area > 0.06 * 0.2);
+  for (const world::BreakRow& row : broken.report().breaks) {
+    CHECK(row.mass_error < 1e-10);
+    CHECK(row.momentum_error < 1e-10);
+    CHECK(row.angular_momentum_error < 1e-10);
+    CHECK(row.energy_gain < 1e-10);
+    CHECK(row.fracture_energy <= row.elastic_energy);
+  }
+  double mass = 0.0;
+  for (const body::Body& body : broken.bodies()) {
+    mass += body.shape->mass;
+    if (body.shape->kind != body::ShapeKind::solid) continue;
+    CHECK(body.is_dynamic());
+    CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
+    CHECK(body.shape->crack_faces.size() == body.shape->surface.triangles.size());
+  }
+  CHECK(mass == Approx(0.6 * 0.06 * 0.4 * material::find_preset("plaster")->density).epsilon(1e-10));
+  CHECK(count_overlaps(first) == 0);
+}
+
+TEST_CASE("solids: a break has the same bits for any number of threads") {
+  const auto hash = [](int threads) {
+    core::set_thread_count(threads);
+    const std::uint64_t bits = drop_slab(1.5).state_hash();
+    core::set_thread_count(0);
+    return bits;
+  };
+  CHECK(hash(1) == hash(3));
+}
+
+TEST_CASE("a solid on its foot keeps what holds on to it when it is hit") {
+  world::World w{world::WorldSettings{}};
+  REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+  REQUIRE(w.add_material(*material::find_preset("steel")).ok());
+  world::BodyDescription wall = make_slab(Vec3(0.4, 0.3, 0.03), Vec3::Zero());
+  auto& solid = std::get<world::SolidDescription>(wall.form);
+  solid.is_breakable = true;
+  solid.element_size = 0.05;
+  solid.held = {{Vec3::UnitY(), -0.28}};
+  REQUIRE(w.add_body(wall).ok());
+  REQUIRE_FALSE(w.bodies()[0].is_dynamic());
+  world::BodyDescription ball;
+  ball.name = "ball";
+  ball.form = world::SphereDescription{0.05};
+  ball.material = 1;
+  ball.pose.translation = Vec3(0.02, 0.05, 0.2);
+  ball.velocity = Vec3(0.0, 0.0, -20.0);
+  REQUIRE(w.add_body(ball).ok());
+  for (int step = 0; step < 24; ++step) w.step();
+  REQUIRE_FALSE(w.report().breaks.empty());
+  int held = 0, loose = 0;
+  for (const body::Body& body : w.bodies()) {
+    if (body.shape->kind != body::ShapeKind::solid) continue;
+    double lowest = 1e9;
+    for (const Vec3& p : body.shape->surface.positions)
+      lowest = std::min(lowest, (p + body.shape->material_from_body).y());
+    if (body.is_dynamic())
+      ++loose;
+    else
+      ++held;
+    // Who is held has some of the foot.
+    if (!body.is_dynamic()) CHECK(lowest < -0.25);
+  }
+  CHECK(held >= 1);
+  CHECK(loose >= 2);
+}
+
+TEST_CASE("a support that holds nothing of a solid is told") {
+  world::World w{world::WorldSettings{}};
+  REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+  world::BodyDescription wall = make_slab(Vec3(0.4, 0.3, 0.03), Vec3::Zero());
+  auto& solid = std::get<world::SolidDescription>(wall.form);
+  solid.is_breakable = true;
+  solid.held = {{Vec3::UnitY(), -5.0}};
+  const auto id = w.add_body(wall);
+  REQUIRE(!id.ok());
+  CHECK(id.error().find("support holds none") != std::string::npos);
 }
