@@ -32,7 +32,7 @@ void apply_blast(std::vector<body::Body>& bodies, const dynamics::Blast& blast, 
   {
     const dynamics::LineOfSight sight(bodies);
     core::parallel_for(bodies.size(), 1, [&](std::size_t i) {
-      const bool can_feel = bodies[i].is_dynamic() || bodies[i].shape->shell != nullptr;
+      const bool can_feel = bodies[i].is_dynamic() || body::is_mesh(bodies[i].shape->kind);
       if (can_feel) patches[i] = dynamics::find_blast_patches(blast, bodies[i], sight);
     });
   }

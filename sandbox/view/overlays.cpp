@@ -16,8 +16,8 @@ namespace {
 double greatest_strength(const scene::SceneDescription& scene) {
   double most = 0.0;
   for (const scene::BodyEntry& body : scene.bodies) {
-    const auto* shell = std::get_if<scene::ShellForm>(&body.form);
-    if (shell == nullptr || !shell->is_breakable) continue;
+    const scene::MeshForm* form = scene::find_mesh_form(body.form);
+    if (form == nullptr || !form->is_breakable) continue;
     most = std::max(most, scene.materials[static_cast<std::size_t>(body.material)].material.strength * 1e-6);
   }
   return most;
