@@ -21,8 +21,9 @@ namespace {
 
 constexpr double kWeights = 1000.0;  // of the stiffest coupling, as METIS takes whole numbers
 
-constexpr double kWeak = 0.03;     // share of both ends' stiffness below which an edge joins nothing
-constexpr int kLeastVertices = 4;  // of a cluster
+constexpr double kOffTies = 0.382;  // so that rounding tips no coupling that is a simple fraction
+constexpr double kWeak = 0.03;      // share of both ends' stiffness below which an edge joins nothing
+constexpr int kLeastVertices = 4;   // of a cluster
 constexpr int kRoundsOfJoining = 8;
 
 double block_trace(const BlockRows& rows, int block) {
@@ -48,7 +49,7 @@ std::vector<int> partition(const BlockRows& rows, int count) {
     if (number[v] < 0) continue;
     for (int b = rows.first[v] + 1; b < rows.first[v + 1]; ++b) {
       neighbours.push_back(number[at(rows.column[at(b)])]);
-      weights.push_back(1 + static_cast<idx_t>(kWeights * coupling(rows, v, b)));
+      weights.push_back(1 + static_cast<idx_t>(kWeights * coupling(rows, v, b) + kOffTies));
     }
     first.push_back(static_cast<idx_t>(neighbours.size()));
   }

@@ -200,7 +200,10 @@ Measured arch(const Grain& grain, double thickness) {
   const auto add_stone = [&](double from, double to, bool is_fixed) {
     world::BodyDescription stone;
     stone.name = "stone";
-    stone.form = world::SolidDescription{voussoir(inner, outer, from + joint, to - joint, deep), {}};
+    world::SolidDescription solid;
+    solid.mesh = voussoir(inner, outer, from + joint, to - joint, deep);
+    solid.is_breakable = false;
+    stone.form = std::move(solid);
     if (is_fixed) stone.motion = body::Motion::fixed;
     stone.pose.translation = Vec3(0.0, 1.0, 0.0);
     return add_body(world, stone);
