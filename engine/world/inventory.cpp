@@ -35,8 +35,15 @@ std::vector<PartCount> World::inventory() const {
   std::set<const fracture::GrainField*> grains;
   for (const body::Body& body : s.moving.bodies)
     if (body::is_mesh(body.shape->kind)) surfaces.insert(body.shape.get());
+  std::set<const geometry::SolidComplex*> complexes;
+  std::set<const fracture::SolidFlawField*> solid_flaws;
   for (const auto& [id, fragile] : s.moving.fragiles) {
-    const fracture::ShellSubject& subject = fragile->subject;
+    if (const auto* solid = std::get_if<fracture::SolidSubject>(&fragile->subject)) {
+      complexes.insert(solid->complex.get());
+      solid_flaws.insert(solid->flaws.get());
+      continue;
+    }
+    const auto& subject = std::get<fracture::ShellSubject>(fragile->subject);
     systems.insert(subject.systems.get());
     if (subject.systems) stiffnesses.insert(subject.systems->shared_stiffness().get());
     flaws.insert(subject.flaws.get());
@@ -48,6 +55,14 @@ std::vector<PartCount> World::inventory() const {
     factors.count += cache->count();
     factors.bytes += sizeof(double) * cache->factor_entries();
   }
+  PartCount all_flaws = count_shared("flaws", flaws, [](const fracture::FlawField& f) {
+    return bytes_in(f.flaws) + bytes_in(f.first_of_element);
+  });
+  const PartCount flaws_in_volume = count_shared("flaws", solid_flaws, [](const fracture::SolidFlawField& f) {
+    return bytes_in(f.flaws) + bytes_in(f.first_of_element);
+  });
+  all_flaws.count += flaws_in_volume.count;
+  all_flaws.bytes += flaws_in_volume.bytes;
   const auto memory = static_cast<long>(s.moving.memories.size());
   const auto hands = static_cast<long>(s.hands.size());
   return {
@@ -60,9 +75,12 @@ std::vector<PartCount> World::inventory() const {
           "shell_stiffness", stiffnesses,
           [](const stress::ShellStiffness& k) { return bytes_in(k.matrices) + bytes_in(k.vertex_rank); }),
       factors,
-      count_shared(
-          "flaws", flaws,
-          [](const fracture::FlawField& f) { return bytes_in(f.flaws) + bytes_in(f.first_of_element); }),
+      count_shared("tetrahedra", complexes,
+                   [](const geometry::SolidComplex& c) {
+                     return bytes_in(c.vertices) + bytes_in(c.edges) + bytes_in(c.sides) +
+                            bytes_in(c.facets) + bytes_in(c.cell_facets) + bytes_in(c.cells);
+                   }),
+      all_flaws,
       count_shared("grains", grains,
                    [](const fracture::GrainField& g) {
                      return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);

@@ -66,7 +66,8 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
   const bool may_free = !breakable.empty();  // pieces move, even of what is held
   const std::string mover = moving.empty() && may_free ? breakable : moving;
   const std::string grained = find_body_that(scene, [&](const BodyEntry& b) {
-    return can_break_as<scene::ShellForm>(b) && scene.materials[static_cast<std::size_t>(b.material)].material.grain_size > 0.0;
+    return can_break_as<scene::ShellForm>(b) &&
+           scene.materials[static_cast<std::size_t>(b.material)].material.grain_size > 0.0;
   });
   const std::string late = find_body_that(scene, [](const BodyEntry& b) { return b.repeat.every > 0.0; });
   const std::string scripted =
@@ -79,8 +80,8 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
            scene.world.has_sleep ? "nothing can move" : "scene.sleep is false"),
       part("scripted_motion", scripted, "follows a path", "no body has keyframes"),
       part("level_sets", "", "", "solids touch by their triangles"),
-      part("shell_stress", find_body_that(scene, can_break_as<scene::ShellForm>), "can break: stiffness of membrane and bending, factors, flaws",
-           "no shell can break"),
+      part("shell_stress", find_body_that(scene, can_break_as<scene::ShellForm>),
+           "can break: stiffness of membrane and bending, factors, flaws", "no shell can break"),
       part("tetrahedra", find_body_that(scene, can_break_as<scene::SolidForm>),
            "can break: elements inside its surface, their stress, flaws", "no solid can break"),
       part("grains", grained, "breaks along grains", "no material of what can break has a grain_size"),
