@@ -7,9 +7,12 @@
 #include "engine/stress/stress_bound.h"
 
 namespace shatterbox::fracture {
+namespace {
 
 using Size = std::size_t;
 using core::at;
+
+}  // namespace
 
 std::shared_ptr<const SolidModel> KeptSolidModel::find() const {
   const std::lock_guard lock(mutex_);

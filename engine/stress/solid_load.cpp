@@ -46,7 +46,7 @@ struct TriangleShare {
 
 TriangleShare share_of_triangle(const std::array<Vec3, 3>& corners, const SolidPatch& patch) {
   constexpr double kMostDivisions = 16.0, kPointsPerRadius = 6.0;
-  const auto& [a, b, c] = corners;
+  const Vec3 &a = corners[0], &b = corners[1], &c = corners[2];
   const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
   const int divisions =
       static_cast<int>(std::clamp(std::ceil(longest * kPointsPerRadius / patch.radius), 1.0, kMostDivisions));
