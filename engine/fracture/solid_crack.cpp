@@ -6,8 +6,12 @@
 
 namespace shatterbox::fracture {
 
+namespace {
+
 using Size = std::size_t;
 using core::at;
+
+}  // namespace
 
 bool CrackField::has_all(int element) const {
   const geometry::Tetrahedron& t = complex_.elements->mesh.tetrahedra[at(element)];

@@ -13,11 +13,10 @@
 #include "engine/stress/metis_lock.h"
 
 namespace shatterbox::stress {
+namespace {
 
 using Size = std::size_t;
 using core::at;
-
-namespace {
 
 constexpr double kWeights = 1000.0;  // of the stiffest coupling, as METIS takes whole numbers
 
