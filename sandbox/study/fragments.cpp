@@ -127,7 +127,7 @@ Plan make_fragments_plan(bool is_quick) {
                        "pieces a run"};
   sizes.is_relative = false;
   sizes.is_plotted = false;
-  const int seeds = is_quick ? 1 : 12;
+  const int seeds = is_quick ? 1 : 8;
   const double shell_edge = is_quick ? 0.006 : 0.003, pane_edge = is_quick ? 0.04 : 0.02;  // m
   const auto add = [&](const char* name, const char* text, const Vec3& velocity, double edge, double low,
                        double high) {

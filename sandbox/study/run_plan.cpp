@@ -1,29 +1,38 @@
 #include <algorithm>
+#include <cmath>
 
 #include "engine/world/settings.h"
+#include "sandbox/study/stopwatch.h"
 #include "sandbox/study/study.h"
 
 namespace shatterbox::sandbox::study {
 
 namespace {
 
-/// Repeats of a row whose first call took `seconds`.
+/// A call that takes longer than this (s) costs the same whatever the caches hold.
+constexpr double kLongCall = 5.0;
+
+/// Repeats of a row whose first call took `seconds`, all in all.
 int repeats_of(double seconds, bool is_quick) {
-  if (is_quick || seconds > 5.0) return 1;
+  if (is_quick || seconds > kLongCall) return 1;
   return seconds > 1.0 ? 3 : 5;
 }
 
-Row measure_row(const Job& job, bool is_quick) {
+/// `is_warm`: another row of the table has been measured.
+Row measure_row(const Job& job, bool is_quick, bool is_warm) {
   Row row;
   row.setting = job.setting;
   row.value = job.value;
   row.is_default = job.is_default;
+  const Stopwatch watch;
   Measured measured = job.measure();
+  const double whole = watch.seconds();
   row.errors = measured.errors;
   row.note = measured.note;
-  if (measured.seconds != measured.seconds) return row;  // nothing to time
+  row.seconds = measured.seconds;
+  if (std::isnan(measured.seconds) || (is_warm && whole > kLongCall)) return row;
   std::vector<double> times;
-  const int repeats = repeats_of(measured.seconds, is_quick);
+  const int repeats = repeats_of(whole, is_quick);
   for (int i = 0; i < repeats; ++i) times.push_back(job.measure().seconds);
   std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
   row.seconds = times[static_cast<std::size_t>(repeats / 2)];
@@ -62,7 +71,7 @@ StudyResult run_plan(const Plan& plan, const RunSettings& settings) {
       result.is_whole = false;
       return result;
     }
-    table.rows.push_back(measure_row(job, settings.is_quick));
+    table.rows.push_back(measure_row(job, settings.is_quick, !table.rows.empty()));
   }
   if (settings.go_on) settings.go_on(total, total, "");
   if (plan.conclude) result.conclusions = plan.conclude(result.tables);

@@ -73,8 +73,9 @@ struct StudyResult {
   bool is_whole = true;  // false: stopped before its end
 };
 
-/// Runs all jobs. The first call of each row is not timed: what is cold is not what a setting costs. Then the
-/// median of repeats: five, fewer for what takes long, one if quick.
+/// Runs all jobs. The first call of each row is not timed, for what is cold is not what a setting costs; only
+/// where it takes more than 5 s, in a table that has a row already, it stands for itself. Then the median of
+/// repeats: five, fewer for what takes long, one if quick.
 StudyResult run_plan(const Plan& plan, const RunSettings& settings);
 
 }  // namespace shatterbox::sandbox::study
