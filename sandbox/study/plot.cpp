@@ -55,8 +55,8 @@ std::string to_both(const std::string& curves, const std::string& name) {
     return fmt::format("set terminal {}\nset output {}\n{}\nunset output\n", terminal, quoted(name + ending),
                        curves);
   };
-  return output("pngcairo size 900,520 font \"sans,10\"", ".png") +
-         output("svg size 900,520 font \"sans,12\"", ".svg");
+  return output("pngcairo size 720,430 font \"sans,10\"", ".png") +
+         output("svg size 720,430 font \"sans,12\"", ".svg");
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ std::string to_markdown(const StudyResult& result, const std::string& name, cons
   for (const std::string& sentence : result.conclusions) text += sentence + "\n\n";
   for (const Table& table : result.tables)
     if (!table.rows.empty())
-      text += fmt::format("**{}**\n\n{}\n", describe_table(table), markdown_rows(table));
+      text += fmt::format("### {}\n\n{}\n\n{}\n", table.name, describe_table(table), markdown_rows(table));
   return text;
 }
 
