@@ -55,8 +55,8 @@ std::string to_both(const std::string& curves, const std::string& name) {
     return fmt::format("set terminal {}\nset output {}\n{}\nunset output\n", terminal, quoted(name + ending),
                        curves);
   };
-  return output("pngcairo size 720,430 font \"sans,10\"", ".png") +
-         output("svg size 720,430 font \"sans,12\"", ".svg");
+  return output("pngcairo size 720,540 font \"sans,10\"", ".png") +
+         output("svg size 720,540 font \"sans,12\"", ".svg");
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ std::string plot_commands(const std::vector<Table>& tables, const std::string& t
     ++number;
     const std::string block = fmt::format("t{}", number);
     data += data_block(block, table, false);
-    curves += fmt::format("{}${} using 1:2 with linespoints lt {} pt 7 ps 0.5 lw 1.5 title {}",
+    curves += fmt::format("{}${} using 1:2 with linespoints lt {} ps 0.5 lw 1.5 title {}",
                           curves.empty() ? "plot " : ", ", block, number,
                           quoted(table.name + ": " + table.error_names[0]));
     if (!has_default) continue;
@@ -86,7 +86,7 @@ std::string plot_commands(const std::vector<Table>& tables, const std::string& t
   std::string text = data +
                      "set logscale xy\nset format x \"10^{%L}\"\nset format y \"10^{%L}\"\n"
                      "set xlabel \"processor time, s\"\nset ylabel \"error\"\nset grid lc rgb \"#dddddd\"\n"
-                     "set key outside right noenhanced\nset title noenhanced " +
+                     "set key below maxcols 3 noenhanced\nset title noenhanced " +
                      quoted(title + " (ringed: the default)") + "\n";
   return text + to_both(curves, name);
 }
@@ -111,10 +111,10 @@ std::string draw_figure(const Figure& figure, const std::string& name, const std
   }
   if (curves.empty()) return {};
   commands += fmt::format(
-      "{}set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid lc rgb \"#dddddd\"\n"
-      "set key outside right noenhanced\nset title {} noenhanced\n",
-      figure.is_logarithmic ? "set logscale xy\n" : "", quoted(figure.x_label), quoted(figure.y_label),
-      quoted(figure.title));
+      "{}{}set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid lc rgb \"#dddddd\"\n"
+      "set key below maxcols 3 noenhanced\nset title {} noenhanced\n",
+      figure.is_x_logarithmic ? "set logscale x\n" : "", figure.is_y_logarithmic ? "set logscale y\n" : "",
+      quoted(figure.x_label), quoted(figure.y_label), quoted(figure.title));
   return run_gnuplot(commands + to_both(curves, name + "_" + figure.name), folder);
 }
 

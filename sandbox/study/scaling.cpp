@@ -135,9 +135,13 @@ void add_sizes(Plan& plan, Table table, const std::vector<int>& sizes,
 
 /// Cost against size as a picture, of the tables that have one.
 std::vector<Figure> draw_costs(const std::vector<Table>& tables) {
-  Figure figure{
-      "cost", "cost against size", "bodies, triangles, tetrahedra", "ms a step, ms a factor or solve", true,
-      {}};
+  Figure figure{"cost",
+                "cost against size",
+                "bodies, triangles, tetrahedra",
+                "ms a step, ms a factor or solve",
+                true,
+                true,
+                {}};
   for (const Table& table : tables) {
     if (table.value_name.empty() || table.name == "threads") continue;
     Figure::Curve curve;

@@ -359,7 +359,7 @@ Plan make_stress_plan(bool is_quick) {
   plan.conclude = conclude;
   plan.draw = [pins](const std::vector<Table>&) {
     return std::vector<Figure>{{"pins", "greatest principal stress along a free beam hit at x = 0.4", "x, m",
-                                "stress, Pa (of 1 N)", false, pins->curves}};
+                                "stress, Pa (of 1 N)", false, true, pins->curves}};
   };
   return plan;
 }

@@ -33,7 +33,7 @@ struct Figure {
   };
   std::string name;  // of the file, behind the study's
   std::string title, x_label, y_label;
-  bool is_logarithmic = false;  // both axes
+  bool is_x_logarithmic = false, is_y_logarithmic = false;
   std::vector<Curve> curves;
 };
 
