@@ -66,6 +66,19 @@ SlabShape read_slab(TableReader& reader) {
   return slab;
 }
 
+struct NamedSize {
+  const char* key;
+  double* size;  // m, as it usually is
+};
+
+/// A size and others that follow it in proportion, unless they are given.
+void read_scaled(TableReader& reader, NamedSize lead, std::initializer_list<NamedSize> others) {
+  const double usual = *lead.size;
+  *lead.size = reader.number(lead.key, positive("m")).value_or(usual);
+  for (const NamedSize& other : others)
+    *other.size = reader.number(other.key, positive("m")).value_or(*other.size * (*lead.size / usual));
+}
+
 MeshShape read_shape(TableReader& reader, const std::string& shape) {
   if (shape == "slab") return read_slab(reader);
   const auto set = [&reader](const char* key, double& target, const Range& range) {
@@ -112,37 +125,27 @@ MeshShape read_shape(TableReader& reader, const std::string& shape) {
   }
   if (shape == "vase") {
     geometry::VaseSizes sizes;
-    set("height", sizes.height, positive("m"));
-    const double scale = sizes.height / geometry::VaseSizes{}.height;
-    for (double* size :
-         {&sizes.foot_radius, &sizes.belly_radius, &sizes.neck_radius, &sizes.rim_radius, &sizes.wall})
-      *size *= scale;
-    set("foot_radius", sizes.foot_radius, positive("m"));
-    set("belly_radius", sizes.belly_radius, positive("m"));
-    set("neck_radius", sizes.neck_radius, positive("m"));
-    set("rim_radius", sizes.rim_radius, positive("m"));
-    set("wall", sizes.wall, positive("m"));
+    read_scaled(reader, {"height", &sizes.height},
+                {{"foot_radius", &sizes.foot_radius},
+                 {"belly_radius", &sizes.belly_radius},
+                 {"neck_radius", &sizes.neck_radius},
+                 {"rim_radius", &sizes.rim_radius},
+                 {"wall", &sizes.wall}});
     return sizes;
   }
   if (shape == "bottle") {
     geometry::BottleSizes sizes;
-    set("height", sizes.height, positive("m"));
-    const double scale = sizes.height / geometry::BottleSizes{}.height;
-    for (double* size : {&sizes.radius, &sizes.neck_radius, &sizes.neck_length, &sizes.wall}) *size *= scale;
-    set("radius", sizes.radius, positive("m"));
-    set("neck_radius", sizes.neck_radius, positive("m"));
-    set("neck_length", sizes.neck_length, positive("m"));
-    set("wall", sizes.wall, positive("m"));
+    read_scaled(reader, {"height", &sizes.height},
+                {{"radius", &sizes.radius},
+                 {"neck_radius", &sizes.neck_radius},
+                 {"neck_length", &sizes.neck_length},
+                 {"wall", &sizes.wall}});
     return sizes;
   }
   if (shape == "egg") {
     geometry::EggSizes sizes;
-    set("radius", sizes.radius, positive("m"));
-    const double scale = sizes.radius / geometry::EggSizes{}.radius;
-    sizes.blunt_height *= scale;
-    sizes.pointed_height *= scale;
-    set("blunt_height", sizes.blunt_height, positive("m"));
-    set("pointed_height", sizes.pointed_height, positive("m"));
+    read_scaled(reader, {"radius", &sizes.radius},
+                {{"blunt_height", &sizes.blunt_height}, {"pointed_height", &sizes.pointed_height}});
     return sizes;
   }
   SphereShape sizes;
