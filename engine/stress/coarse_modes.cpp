@@ -80,8 +80,9 @@ void CoarseModes::factor(double shift) {
   Eigen::MatrixXd matrix = stiffness_ + shift * mass_;
   const double hold = kHold * matrix.trace() / static_cast<double>(size());
   matrix.diagonal().array() += hold;
-  factor_.compute(matrix);
-  if (factor_.info() != Eigen::Success) count_ = 0;  // block Jacobi alone
+  const auto made = std::make_shared<const Eigen::LLT<Eigen::MatrixXd>>(matrix);
+  if (made->info() != Eigen::Success) count_ = 0;  // block Jacobi alone
+  factor_ = made;
 }
 
 Eigen::MatrixXd CoarseModes::answer(const std::vector<double>& r, Size lanes) const {
@@ -99,7 +100,7 @@ Eigen::MatrixXd CoarseModes::answer(const std::vector<double>& r, Size lanes) co
       sums.block<6, 1>(static_cast<Eigen::Index>(6 * c), static_cast<Eigen::Index>(l)) = sum;
     }
   });
-  return factor_.solve(sums);
+  return factor_->solve(sums);
 }
 
 void CoarseModes::add(const Eigen::MatrixXd& amounts, Size vertex, Size lanes, double* z) const {

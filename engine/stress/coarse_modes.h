@@ -4,6 +4,7 @@
 // Methods for Sparse Linear Systems, second edition, SIAM, 2003, ch. 14.)
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -44,8 +45,8 @@ class CoarseModes {
   std::vector<int> first_, vertices_;  // of each cluster
   std::vector<Vec3> arms_;             // |V|, from the cluster's middle, in its sizes
   std::vector<Mat3> allowed_;
-  Eigen::MatrixXd stiffness_, mass_;  // |modes| x |modes|
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd stiffness_, mass_;                           // |modes| x |modes|
+  std::shared_ptr<const Eigen::LLT<Eigen::MatrixXd>> factor_;  // null before factor()
 };
 
 }  // namespace shatterbox::stress
