@@ -73,7 +73,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "what can break has stress, shared by copies; grains only if its material has them; factors when "
+    "what can break has stress, shared by copies, grains only if its material has them, factors when "
     "prepared") {
   for (const bool has_grains : {false, true}) {
     world::World w = make_scene(true, has_grains);

@@ -8,6 +8,7 @@
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/world/world.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 
@@ -112,7 +113,7 @@ world::World drop_slab(double height, const Vec3& half_extent = Vec3(0.3, 0.03, 
   slab.pose.translation = Vec3(0.0, height - lowest, 0.0);
   REQUIRE(w.add_body(slab).ok());
   const double fall = std::sqrt(2.0 * height / 9.81);
-  while (w.time() < fall + 0.1) w.step();
+  while (w.time() < fall + (test::kIsSanitized ? 0.013 : 0.1)) w.step();
   return w;
 }
 
