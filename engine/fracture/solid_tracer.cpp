@@ -1,7 +1,6 @@
 #include "engine/fracture/solid_tracer.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"

@@ -1,7 +1,6 @@
 #include "engine/geometry/solid_kerf.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/core/index.h"

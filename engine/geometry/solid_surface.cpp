@@ -380,9 +380,6 @@ class BorderBuilder {
     surface_.vertex_sources.resize(at(count));
     for (Triangle& t : surface_.mesh.triangles)
       for (int& v : t) v = number[at(v)];
-    for (const Border& border : borders_)
-      surface_.border_facets.push_back({border.facet, border.first_corner});
-    for (const int v : vertex_of_corner_) surface_.corner_vertices.push_back(number[at(v)]);
   }
 
   /// Two edges of the surface between the same two vertices (parts that touch along them): all but the first

@@ -12,12 +12,6 @@
 
 namespace shatterbox::geometry {
 
-/// A facet of the border.
-struct BorderFacet {
-  int facet = 0;         // of the complex
-  int first_corner = 0;  // in `corner_vertices`, one for each of its sides
-};
-
 struct SolidSurface {
   TriangleMesh mesh;                  // material space; each edge has two triangles, each vertex one fan
   std::vector<int> triangle_sources;  // per triangle: the given triangle it is part of; -1 on crack faces
@@ -25,8 +19,6 @@ struct SolidSurface {
   std::vector<int> triangle_grains;   // per triangle: that cell's grain, -1 without
   std::vector<std::uint8_t> is_crack_face;  // per triangle
   std::vector<int> vertex_sources;  // per vertex: the vertex of the complex; -1 in the middle of an edge
-  std::vector<BorderFacet> border_facets;
-  std::vector<int> corner_vertices;  // vertex of the surface that a facet's corner is; -1 where it has none
 };
 
 /// The border of all cells of a settled complex, which is one piece's. What is left of a given triangle is

@@ -112,9 +112,9 @@ class Solver {
 
   /// z = inverse r, and what the clusters answer; returns r . z and r . r.
   std::array<Lane<kLanes>, 2> precondition() {
-    const CoarseModes* const coarse = system_.coarse;
+    const CoarseModes* const coarse = system_.coarse_factor ? system_.coarse : nullptr;
     Eigen::MatrixXd amounts;
-    if (coarse) amounts = coarse->answer(r_, kLanes);
+    if (coarse) amounts = coarse->answer(*system_.coarse_factor, r_, kLanes);
     return sum_chunks<2>([&](Size begin, Size end, std::array<Lane<kLanes>, 2>& sums) {
       for (Size row = begin; row < end; ++row) {
         const double* const inverse = &system_.inverse[9 * row];

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct BlockSystem {
   std::vector<double> inverse;  // |V| x 9: of the blocks on the diagonal, within what holds allow
   std::vector<int> hold_of;     // |V|: into holds, -1 for free vertices
   std::vector<VertexHold> holds;
-  const CoarseModes* coarse = nullptr;  // second level; null for none
+  const CoarseModes* coarse = nullptr;               // second level, used where it has a factor
+  std::optional<CoarseModes::Factor> coarse_factor;  // for this shift
   /// Takes out of a residual (|dof|) what the singular matrix cannot answer; empty for none.
   std::function<void(VecX&)> project;
 };

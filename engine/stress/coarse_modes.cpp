@@ -1,10 +1,8 @@
 #include "engine/stress/coarse_modes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/vertex_clusters.h"
@@ -75,17 +73,17 @@ CoarseModes::Motion CoarseModes::motion_of(Size vertex) const {
   return allowed_[vertex] * motion;
 }
 
-void CoarseModes::factor(double shift) {
-  if (is_empty()) return;
+std::optional<CoarseModes::Factor> CoarseModes::factor(double shift) const {
+  if (count_ == 0) return std::nullopt;
   Eigen::MatrixXd matrix = stiffness_ + shift * mass_;
   const double hold = kHold * matrix.trace() / static_cast<double>(size());
   matrix.diagonal().array() += hold;
-  const auto made = std::make_shared<const Eigen::LLT<Eigen::MatrixXd>>(matrix);
-  if (made->info() != Eigen::Success) count_ = 0;  // block Jacobi alone
-  factor_ = made;
+  Factor made(matrix);
+  if (made.info() != Eigen::Success) return std::nullopt;
+  return made;
 }
 
-Eigen::MatrixXd CoarseModes::answer(const std::vector<double>& r, Size lanes) const {
+Eigen::MatrixXd CoarseModes::answer(const Factor& factor, const std::vector<double>& r, Size lanes) const {
   Eigen::MatrixXd sums(size(), static_cast<Eigen::Index>(lanes));
   core::parallel_for(first_.size() - 1, 8, [&](Size c) {
     for (Size l = 0; l < lanes; ++l) {
@@ -100,7 +98,7 @@ Eigen::MatrixXd CoarseModes::answer(const std::vector<double>& r, Size lanes) co
       sums.block<6, 1>(static_cast<Eigen::Index>(6 * c), static_cast<Eigen::Index>(l)) = sum;
     }
   });
-  return factor_->solve(sums);
+  return factor.solve(sums);
 }
 
 void CoarseModes::add(const Eigen::MatrixXd& amounts, Size vertex, Size lanes, double* z) const {

@@ -4,7 +4,7 @@
 // Methods for Sparse Linear Systems, second edition, SIAM, 2003, ch. 14.)
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -23,16 +23,16 @@ class CoarseModes {
   CoarseModes(const BlockRows& rows, const std::vector<Vec3>& positions, const std::vector<Mat3>& allowed,
               const std::vector<double>& mass);
 
-  /// Factors for K + shift M.
-  void factor(double shift);
+  /// Of P^T (K + shift M) P; nothing without clusters, or if it is not positive definite.
+  using Factor = Eigen::LLT<Eigen::MatrixXd>;
+  std::optional<Factor> factor(double shift) const;
 
-  bool is_empty() const { return count_ == 0; }
   /// Modes: six a cluster.
   Eigen::Index size() const { return 6 * count_; }
 
   /// (P (P^T (K + shift M) P)^-1 P^T r) for `lanes` vectors side by side (block_rows.h): first what the
   /// clusters are to do (|modes| x lanes), ...
-  Eigen::MatrixXd answer(const std::vector<double>& r, std::size_t lanes) const;
+  Eigen::MatrixXd answer(const Factor& factor, const std::vector<double>& r, std::size_t lanes) const;
   /// ... then what that is at one vertex: adds it to `z` (three unknowns by lanes).
   void add(const Eigen::MatrixXd& amounts, std::size_t vertex, std::size_t lanes, double* z) const;
 
@@ -45,8 +45,7 @@ class CoarseModes {
   std::vector<int> first_, vertices_;  // of each cluster
   std::vector<Vec3> arms_;             // |V|, from the cluster's middle, in its sizes
   std::vector<Mat3> allowed_;
-  Eigen::MatrixXd stiffness_, mass_;                           // |modes| x |modes|
-  std::shared_ptr<const Eigen::LLT<Eigen::MatrixXd>> factor_;  // null before factor()
+  Eigen::MatrixXd stiffness_, mass_;  // |modes| x |modes|
 };
 
 }  // namespace shatterbox::stress

@@ -51,7 +51,7 @@ struct SolidSystem::State {
   BlockRows rows;
   VecX mass;  // |dof|
   RigidModes rigid;
-  CoarseModes coarse;  // not factored
+  CoarseModes coarse;
   BlockSystem system;  // without inertia
   NullSpace null_space = NullSpace::balanced;
   mutable std::once_flag has_period;
@@ -102,8 +102,8 @@ void SolidSystem::State::build(const geometry::SolidMesh& mesh, const SolidSyste
     vertex_mass[v] = mass(static_cast<Eigen::Index>(3 * v));
   }
   coarse = CoarseModes(rows, positions, allowed, vertex_mass);
-  coarse.factor(0.0);
-  if (!coarse.is_empty()) system.coarse = &coarse;
+  system.coarse = &coarse;
+  system.coarse_factor = coarse.factor(0.0);
 }
 
 /// [BHTF07] sec. V: X1 is fixed; X2 keeps its direction from X1; X3 keeps the plane of the three.
@@ -204,7 +204,6 @@ std::vector<SolidSolution> SolidSystem::solve(const std::vector<VecX>& loads,
   const bool is_screened = screening_squared > 0.0;
 
   BlockSystem screened;
-  CoarseModes coarse;
   VecX inertia;
   if (is_screened) {
     inertia = screening_squared * state.mass;
@@ -215,9 +214,8 @@ std::vector<SolidSolution> SolidSystem::solve(const std::vector<VecX>& loads,
     for (Size v = 0; v < state.rows.size(); ++v)
       screened.inertia[v] = inertia(static_cast<Eigen::Index>(3 * v));
     invert_diagonal(screened);
-    coarse = state.coarse;
-    coarse.factor(screening_squared);
-    if (!coarse.is_empty()) screened.coarse = &coarse;
+    screened.coarse = &state.coarse;
+    screened.coarse_factor = state.coarse.factor(screening_squared);
   }
 
   // A screened load's rigid part is answered in closed form, R R^T / s^2: only what bends is left to iterate.

@@ -37,20 +37,29 @@ Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture
   return piece;
 }
 
-Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fracture::SolidDecision& decision) {
-  Piece piece;
+/// The solid as it is of that material of the parent's, after the decision's cracks.
+std::shared_ptr<Fragile> cut_from(const Fragile& parent, const fracture::SolidDecision& decision,
+                                  std::shared_ptr<const geometry::SolidComplex> complex) {
   auto fragile = std::make_shared<Fragile>(parent);
   auto& subject = std::get<fracture::SolidSubject>(fragile->subject);
-  subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(split.complex));
+  subject.complex = std::move(complex);
   subject.model = nullptr;
   subject.kept_model = std::make_shared<fracture::KeptSolidModel>();
   subject.first_cut_id += decision.cracks;
+  return fragile;
+}
+
+Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fracture::SolidDecision& decision) {
+  Piece piece;
+  const auto fragile =
+      cut_from(parent, decision, std::make_shared<const geometry::SolidComplex>(std::move(split.complex)));
+  auto& subject = std::get<fracture::SolidSubject>(fragile->subject);
   piece.is_held = std::any_of(split.mesh.vertex_source.begin(), split.mesh.vertex_source.end(), [&](int v) {
     return std::binary_search(subject.clamped_vertices.begin(), subject.clamped_vertices.end(), v);
   });
   if (!piece.is_held) subject.clamped_vertices.clear();
   piece.shape = make_solid_shape(*subject.complex, *fragile);
-  piece.fragile = std::move(fragile);
+  piece.fragile = fragile;
   return piece;
 }
 
@@ -83,6 +92,10 @@ Pieces split_up(const Fragile& parent, const fracture::SolidDecision& decision) 
 }
 
 }  // namespace
+
+std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::SolidDecision& decision) {
+  return cut_from(whole, decision, decision.complex);
+}
 
 Pieces make_pieces(const Fragile& parent, const EvaluatedImpact& impact, double thickness) {
   if (const auto* shell = std::get_if<fracture::Decision>(&impact.decision))

@@ -163,16 +163,6 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   return row;
 }
 
-std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::SolidDecision& decision) {
-  auto fragile = std::make_shared<Fragile>(whole);
-  auto& subject = std::get<fracture::SolidSubject>(fragile->subject);
-  subject.complex = decision.complex;
-  subject.model = nullptr;
-  subject.kept_model = std::make_shared<fracture::KeptSolidModel>();
-  subject.first_cut_id += decision.cracks;
-  return fragile;
-}
-
 long count_overlaps(const BreakRow& row) {
   std::vector<geometry::TriangleMesh> meshes;
   for (const auto& shape : row.shapes) {

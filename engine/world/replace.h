@@ -23,9 +23,6 @@ double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double
 BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double time,
                       std::map<body::BodyId, Ancestry>& ancestry);
 
-/// What a solid's cracks that part nothing leave of it: its shape is what it was.
-std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::SolidDecision& decision);
-
 /// Pieces that are born within a step have gone, before that, where their parents in `before` went: adds
 /// their ways. Pieces have higher ids than all bodies before them.
 void inherit_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/dynamics/scripted_motion.h"
+#include "engine/world/pieces.h"
 #include "engine/world/replace.h"
 #include "engine/world/state.h"
 #include "engine/world/verdict.h"
