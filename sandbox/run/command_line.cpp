@@ -45,6 +45,11 @@ void add_run_options(CLI::App& command, Options& options) {
   command.add_option("-o", options.video, "video: .mp4 .mkv .webm .gif")->type_name("FILE");
   command.add_option("--frames", options.frames_folder, "folder for one PNG a frame")->type_name("DIR");
   command.add_option("--meshes", options.meshes_folder, "folder for one OBJ a frame")->type_name("DIR");
+  command.add_option("--export", options.model, "animated model: glTF 2.0, .glb")->type_name("FILE");
+  command
+      .add_option("--tables", options.tables_folder,
+                  "folder for bodies, trajectories, impacts, breaks: CSV, JSON")
+      ->type_name("DIR");
   command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
   add_picture_options(command, options);
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")

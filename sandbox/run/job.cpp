@@ -7,6 +7,7 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
+#include "sandbox/run/exports.h"
 #include "sandbox/scene/find_scene.h"
 
 namespace shatterbox::sandbox::run {
@@ -42,7 +43,7 @@ void describe_job(const Job& job, report::RunRecord& record) {
 }  // namespace
 
 std::string film_of(const Options& options) {
-  const bool has_other_output = !options.frames_folder.empty() || !options.meshes_folder.empty();
+  const bool has_other_output = !options.frames_folder.empty() || !export_outputs(options).empty();
   if (!options.has_pictures || !options.video.empty() || has_other_output) return options.video;
   const std::filesystem::path path =
       std::filesystem::path(options.scene) / "";  // a folder may end in a slash
@@ -78,6 +79,7 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   job.scene = scene::read_scene_file(file, changes_of(options), problems);
   if (job.scene) check_stills(options, job.scene->seconds, problems);
   prepare_outputs(job.options, problems);
+  check_exports(job.options, problems);
   if (!problems.empty()) return job;
   const auto start = Clock::now();
   job.built = scene::build_world(*job.scene, problems);

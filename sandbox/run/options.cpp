@@ -85,7 +85,6 @@ void prepare_outputs(const Options& options, scene::Problems& problems) {
   check_file("-o", options.video, problems);
   check_file("--report", options.report, problems);
   make_folder("--frames", options.frames_folder, problems);
-  make_folder("--meshes", options.meshes_folder, problems);
 }
 
 }  // namespace shatterbox::sandbox::run

@@ -23,6 +23,8 @@ struct Options {
   std::string frames_folder;   // PNG
   std::vector<double> stills;  // s: only these moments are drawn; empty: all
   std::string meshes_folder;   // OBJ
+  std::string model;           // glTF
+  std::string tables_folder;   // CSV and JSON
   std::string report;          // JSON
   std::string size = "640x360";
   int frames_per_second = 60;

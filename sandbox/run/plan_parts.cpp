@@ -96,6 +96,7 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
                   has_pictures ? "light.shadow is false" : "--no-render"),
       part("overlay", has_pictures ? overlay_of(scene) : "", "is laid over", "none is asked for"),
       option_part("video", !options.video.empty(), "a video is asked for", "no video is asked for"),
+      option_part("model", !options.model.empty(), "--export", "--export is not asked for"),
       option_part("audit", options.has_audit, "--audit", "--audit is not asked for"),
   };
 }

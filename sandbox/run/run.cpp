@@ -10,8 +10,8 @@
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
 #include "sandbox/report/json_report.h"
-#include "sandbox/report/obj_frames.h"
 #include "sandbox/report/summary.h"
+#include "sandbox/run/exports.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/plan.h"
@@ -54,6 +54,7 @@ std::string play(Job& job, Recorder& recorder, Painter* painter, int first, int 
   const int fps = job.options.frames_per_second;
   Projector projector(scene, *job.built, recorder, job.options.has_audit, fps);
   view::View view(scene, *job.built, shot);
+  Exports exports(job, view);
   Choice choice(job.options.stills);
   Progress progress(std::max(1, static_cast<int>(scene.seconds * fps + 0.5)), stderr_is_terminal());
   std::vector<int> shown;  // how far the film is with each frame, in frames' lengths of the world's time
@@ -67,11 +68,7 @@ std::string play(Job& job, Recorder& recorder, Painter* painter, int first, int 
     if (painter != nullptr && choice.takes(projector.time_ahead())) picture = view.make_frame(*moment);
     const double audit_time = recorder.record.audit_time - audited;
     recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
-    if (!job.options.meshes_folder.empty()) {
-      std::string fault =
-          report::write_obj_frame(job.options.meshes_folder, first + frame, moment->bodies, moment->time);
-      if (!fault.empty()) return fault;
-    }
+    if (std::string fault = exports.add(*moment, first + frame); !fault.empty()) return fault;
     if (picture && !painter->add(std::move(*picture), first + frame)) return painter->error();
     shown.push_back(static_cast<int>(projector.time_ahead() * fps + 1e-6));
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
@@ -80,7 +77,7 @@ std::string play(Job& job, Recorder& recorder, Painter* painter, int first, int 
                   fmt::format("{:.2f} s, {} bodies", world.time(), world.bodies().size()));
   }
   projector.finish();
-  return {};
+  return exports.close();
 }
 
 void play_shot(Shot& shot, int number, Painter* painter, int first, std::string& fault) {
@@ -104,7 +101,7 @@ int conclude(std::vector<Shot>& shots, const Options& options, std::string fault
   std::vector<std::string> outputs;
   if (fault.empty() && !options.video.empty()) outputs.push_back(options.video);
   if (!options.frames_folder.empty()) outputs.push_back(options.frames_folder);
-  if (!options.meshes_folder.empty()) outputs.push_back(options.meshes_folder);
+  for (std::string& output : export_outputs(options)) outputs.push_back(std::move(output));
   if (!options.report.empty()) {
     const std::string report_fault = report::write_report(options.report, {records.begin(), records.end()});
     if (report_fault.empty()) outputs.push_back(options.report);
@@ -170,6 +167,10 @@ int run_scene(const Options& options) {
   core::set_thread_count(options.threads);
   scene::Problems problems;
   const std::vector<std::string> files = scene::shots_or_scene(options.scene);
+  if (files.size() > 1 && !(options.model.empty() && options.tables_folder.empty()))
+    scene::book(problems, scene::Place{options.model.empty() ? "--tables" : "--export", 0, 0},
+                fmt::format("{} is a film of {} shots, each a world of its own", options.scene, files.size()),
+                fmt::format("take one of them: {}", files.front()));
   std::vector<Shot> shots(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     Options own = options;

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "engine/core/elementary.h"
-#include "engine/core/hash.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/view/looks.h"
 #include "sandbox/view/to_glm.h"
@@ -17,15 +16,6 @@ namespace {
 
 constexpr double kSlabWidth = 40.0;  // m: how much of a tilted plane is drawn
 constexpr double kSlabDepth = 0.4;   // m
-
-bool is_level(const body::Body& body) {
-  const Vec3 normal = body.pose.rotation * Vec3::UnitY();
-  return normal.y() > 1.0 - 1e-9;
-}
-
-bool is_drawn_as_ground(const body::Body& body) {
-  return body.shape->kind == body::ShapeKind::plane && is_level(body);
-}
 
 std::shared_ptr<const render::Mesh> make_surface_mesh(const body::Shape& shape, std::uint64_t id) {
   auto mesh = std::make_shared<render::Mesh>();
@@ -57,14 +47,6 @@ std::shared_ptr<const render::Mesh> make_surface_mesh(const body::Shape& shape, 
   return mesh;
 }
 
-/// The colour of one copy: drawn from the list by the numbers of the body and the copy.
-std::optional<Vec3> colour_of(const scene::LookEntry& look, std::size_t entry, int copy) {
-  if (look.colours.empty()) return std::nullopt;
-  const std::uint64_t draw =
-      core::Hash(std::uint64_t{entry}).add(static_cast<std::uint64_t>(copy)).value() >> 16U;
-  return look.colours[static_cast<std::size_t>(draw % look.colours.size())];
-}
-
 render::Lights make_lights(const scene::LightEntry& entry) {
   render::Lights lights;
   if (entry.sun_direction) lights.sun_direction = to_glm(*entry.sun_direction);
@@ -74,21 +56,6 @@ render::Lights make_lights(const scene::LightEntry& entry) {
   if (entry.sky) lights.sky_strength = static_cast<float>(*entry.sky);
   lights.casts_shadow = entry.casts_shadow;
   return lights;
-}
-
-std::optional<render::Ground> make_ground_of(const scene::SceneDescription& scene,
-                                             const scene::BuiltScene& built) {
-  std::optional<double> height;
-  for (const body::Body& body : built.world.bodies()) {
-    if (!is_drawn_as_ground(body)) continue;
-    height = std::max(height.value_or(body.pose.translation.y()), body.pose.translation.y());
-  }
-  if (!height) return std::nullopt;
-  auto ground = make_ground(scene.render.ground.empty() ? "plain" : scene.render.ground, *height);
-  if (!ground) return ground;
-  if (scene.render.ground_colour) ground->colour = linear_colour(*scene.render.ground_colour);
-  if (scene.render.checker > 0.0) ground->checker = static_cast<float>(scene.render.checker);
-  return ground;
 }
 
 }  // namespace
@@ -108,14 +75,19 @@ std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uin
   return make_surface_mesh(shape, id);
 }
 
+Pose pose_of_slab(const Pose& plane) {
+  return {plane.rotation, plane.apply(Vec3(0.0, -0.5 * kSlabDepth, 0.0))};
+}
+
 View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built, int shot)
     : scene_(scene),
       built_(built),
       camera_(scene.camera, find_subject(scene, built.plan)),
+      wardrobe_(scene, built),
       overlays_(scene),
       next_mesh_((static_cast<std::uint64_t>(shot) << 32U) + 1) {
   stage_.lights = make_lights(scene.light);
-  stage_.ground = make_ground_of(scene, built);
+  stage_.ground = find_ground(scene, built);
   stage_.backdrop = make_backdrop(scene.render.backdrop);
   stage_.exposure = static_cast<float>(scene.render.exposure);
 }
@@ -130,46 +102,17 @@ View::DrawnShape& View::drawn_of(const std::shared_ptr<const body::Shape>& shape
   return drawn;
 }
 
-const std::vector<render::Look>& View::looks_of(body::BodyId original) {
-  auto [place, is_new] = looks_.try_emplace(original);
-  if (!is_new) return place->second;
-  const auto found = built_.origins.find(original);
-  if (found == built_.origins.end()) {
-    place->second = make_looks("matt", std::nullopt, 0.1, Vec3::Zero());
-    return place->second;
-  }
-  const auto number = static_cast<std::size_t>(found->second.entry);
-  const scene::BodyEntry& entry = scene_.bodies[number];
-  const scene::BodyPlan& plan = built_.plan.bodies[number];
-  std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
-  const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
-  if (name.empty()) name = usual_look(material.preset);
-  place->second =
-      make_looks(name, colour_of(entry.look, number, found->second.copy), plan.bounding_radius, -plan.centre);
-  return place->second;
-}
-
-/// A look "hidden" is for walls that would stand before the camera.
-bool View::is_hidden(body::BodyId original) const {
-  const auto found = built_.origins.find(original);
-  return found != built_.origins.end() &&
-         scene_.bodies[static_cast<std::size_t>(found->second.entry)].look.name == "hidden";
-}
-
 void View::add_body(const body::Body& body, render::Frame& frame) {
   if (is_drawn_as_ground(body)) return;
-  const world::Ancestry ancestry = built_.world.ancestry(body.id);
-  if (is_hidden(ancestry.original != 0 ? ancestry.original : body.id)) return;
+  if (wardrobe_.is_hidden(body.id)) return;
   render::Draw draw;
   DrawnShape& drawn = drawn_of(body.shape);
   draw.mesh = drawn.mesh;
-  Pose pose = body.pose;
-  if (body.shape->kind == body::ShapeKind::plane) {
-    pose.translation = pose.apply(Vec3(0.0, -0.5 * kSlabDepth, 0.0));
-  }
+  const bool is_plane = body.shape->kind == body::ShapeKind::plane;
+  const Pose pose = is_plane ? pose_of_slab(body.pose) : body.pose;
   draw.world_from_body = to_glm(pose);
-  draw.looks = looks_of(ancestry.original != 0 ? ancestry.original : body.id);
-  const bool is_piece = ancestry.parent != 0;
+  draw.looks = wardrobe_.looks_of(body.id);
+  const bool is_piece = built_.world.ancestry(body.id).parent != 0;
   draw.colour_index = is_piece ? body.id : render::Draw::kNoColour;
   lay_over(body, drawn, draw);
   frame.draws.push_back(std::move(draw));
@@ -249,10 +192,14 @@ std::string View::standard_caption(const Moment& moment) const {
   return text;
 }
 
+render::Camera View::camera_at(const Moment& moment) {
+  return camera_.at(moment, whereabouts(moment));
+}
+
 render::Frame View::make_frame(const Moment& moment) {
   ++frame_;
   render::Frame frame = stage_;
-  frame.camera = camera_.at(moment, whereabouts(moment));
+  frame.camera = camera_at(moment);
   frame.overlay = overlays_.overlay();
   frame.title = title_at(moment.film);
   for (const body::Body& body : moment.bodies) add_body(body, frame);

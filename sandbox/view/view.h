@@ -16,6 +16,7 @@
 #include "sandbox/view/camera_rig.h"
 #include "sandbox/view/moment.h"
 #include "sandbox/view/overlays.h"
+#include "sandbox/view/wardrobe.h"
 
 namespace shatterbox::sandbox::view {
 
@@ -28,6 +29,8 @@ class View {
   /// What the script asks of the picture, not later than `moment`.
   void begin(const scene::Cue& cue, const Moment& moment);
 
+  /// Where the camera is at a moment, which is now or at most a step ago.
+  render::Camera camera_at(const Moment& moment);
   /// The picture of a moment, which is now or at most a step ago.
   render::Frame make_frame(const Moment& moment);
   /// The picture of the world as it is now.
@@ -44,8 +47,6 @@ class View {
   DrawnShape& drawn_of(const std::shared_ptr<const body::Shape>& shape);
   /// Where body number `entry` is at a moment.
   Whereabouts whereabouts(const Moment& moment) const;
-  const std::vector<render::Look>& looks_of(body::BodyId original);
-  bool is_hidden(body::BodyId original) const;
   /// Time, bodies, pieces, and how fast the film goes where it is not as the world does.
   std::string standard_caption(const Moment& moment) const;
   void add_body(const body::Body& body, render::Frame& frame);
@@ -58,11 +59,11 @@ class View {
   const scene::SceneDescription& scene_;
   const scene::BuiltScene& built_;
   CameraRig camera_;
+  Wardrobe wardrobe_;
   Overlays overlays_;
   render::Frame stage_;  // everything but the bodies
   scene::Cue caption_;   // the last one; its event is null before the first
   std::map<const body::Shape*, DrawnShape> shapes_;
-  std::map<body::BodyId, std::vector<render::Look>> looks_;
   std::shared_ptr<const render::Mesh> marker_;
   std::uint64_t next_mesh_;
   std::uint64_t frame_ = 0;
@@ -70,5 +71,7 @@ class View {
 
 /// The mesh to draw of a shape; `id` as render::Mesh wants it. Planes become a wide slab below their surface.
 std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uint64_t id);
+/// Where that slab is.
+Pose pose_of_slab(const Pose& plane);
 
 }  // namespace shatterbox::sandbox::view

@@ -53,6 +53,10 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("run good.toml --no-render --report no/such/r.json", "there is no folder");
   refused("run good.toml --no-render -o v.mp4", "--no-render");
   refused("run good.toml --no-render --meshes good.toml", "good.toml");
+  refused("run good.toml --no-render --tables good.toml", "good.toml");
+  refused("run good.toml --export film.gltf", ".glb");
+  refused("run good.toml --export no/such/film.glb", "there is no folder");
+  refused("run reel --export film.glb", "shots");
 }
 
 TEST_CASE("check and list say what there is") {
@@ -83,6 +87,19 @@ TEST_CASE("the option --no-render simulates and reports, with no picture and no 
   CHECK(fs::exists(folder / "m/frame_000004.obj"));
   CHECK_FALSE(fs::exists(folder / "good.mp4"));
   CHECK(outcome.out.find("than real time") != std::string::npos);
+}
+
+TEST_CASE("a model and tables are outputs of their own, whole under their names") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const Outcome outcome = program(folder, "run good.toml --export film.glb --tables t");
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.out.find("wrote film.glb") != std::string::npos);
+  CHECK(read_text(folder / "film.glb").substr(0, 4) == "glTF");
+  CHECK(fs::exists(folder / "t/trajectories.csv"));
+  CHECK_FALSE(fs::exists(folder / "film.glb.part"));
+  CHECK_FALSE(fs::exists(folder / "good.mp4"));
 }
 
 TEST_CASE(

@@ -1,0 +1,77 @@
+#include "sandbox/view/wardrobe.h"
+
+#include <algorithm>
+
+#include "engine/core/hash.h"
+#include "sandbox/view/looks.h"
+
+namespace shatterbox::sandbox::view {
+
+namespace {
+
+/// The colour of one copy: drawn from the list by the numbers of the body and the copy.
+std::optional<Vec3> colour_of(const scene::LookEntry& look, std::size_t entry, int copy) {
+  if (look.colours.empty()) return std::nullopt;
+  const std::uint64_t draw =
+      core::Hash(std::uint64_t{entry}).add(static_cast<std::uint64_t>(copy)).value() >> 16U;
+  return look.colours[static_cast<std::size_t>(draw % look.colours.size())];
+}
+
+bool is_level(const body::Body& body) {
+  const Vec3 normal = body.pose.rotation * Vec3::UnitY();
+  return normal.y() > 1.0 - 1e-9;
+}
+
+}  // namespace
+
+body::BodyId Wardrobe::original_of(body::BodyId id) const {
+  const body::BodyId original = built_.world.ancestry(id).original;
+  return original != 0 ? original : id;
+}
+
+const std::vector<render::Look>& Wardrobe::looks_of(body::BodyId id) {
+  const body::BodyId original = original_of(id);
+  auto [place, is_new] = looks_.try_emplace(original);
+  if (!is_new) return place->second;
+  const auto found = built_.origins.find(original);
+  if (found == built_.origins.end()) {
+    place->second = make_looks("matt", std::nullopt, 0.1, Vec3::Zero());
+    return place->second;
+  }
+  const auto number = static_cast<std::size_t>(found->second.entry);
+  const scene::BodyEntry& entry = scene_.bodies[number];
+  const scene::BodyPlan& plan = built_.plan.bodies[number];
+  std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
+  const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
+  if (name.empty()) name = usual_look(material.preset);
+  place->second =
+      make_looks(name, colour_of(entry.look, number, found->second.copy), plan.bounding_radius, -plan.centre);
+  return place->second;
+}
+
+bool Wardrobe::is_hidden(body::BodyId id) const {
+  const auto found = built_.origins.find(original_of(id));
+  return found != built_.origins.end() &&
+         scene_.bodies[static_cast<std::size_t>(found->second.entry)].look.name == "hidden";
+}
+
+bool is_drawn_as_ground(const body::Body& body) {
+  return body.shape->kind == body::ShapeKind::plane && is_level(body);
+}
+
+std::optional<render::Ground> find_ground(const scene::SceneDescription& scene,
+                                          const scene::BuiltScene& built) {
+  std::optional<double> height;
+  for (const body::Body& body : built.world.bodies()) {
+    if (!is_drawn_as_ground(body)) continue;
+    height = std::max(height.value_or(body.pose.translation.y()), body.pose.translation.y());
+  }
+  if (!height) return std::nullopt;
+  auto ground = make_ground(scene.render.ground.empty() ? "plain" : scene.render.ground, *height);
+  if (!ground) return ground;
+  if (scene.render.ground_colour) ground->colour = linear_colour(*scene.render.ground_colour);
+  if (scene.render.checker > 0.0) ground->checker = static_cast<float>(scene.render.checker);
+  return ground;
+}
+
+}  // namespace shatterbox::sandbox::view
