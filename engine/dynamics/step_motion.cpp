@@ -18,9 +18,11 @@ using body::Body;
 using body::ImpulseKind;
 using core::at;
 
-constexpr int kBirthParts = 4;  // of a step with newborn pieces
-constexpr int kSpinParts = 4;   // of one after which, of so many awake bodies, more than one turns far,
-constexpr int kManySpin = 20;   // and, of so many, more than one pair was hit
+// A step with newborn pieces is taken in at least so many parts, none longer than this; and one after which,
+// of so many awake bodies, more than one turns far and, of so many, more than one pair was hit.
+constexpr int kLeastParts = 4;
+constexpr double kPartTime = 1.0 / 960.0;  // s
+constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
 constexpr int kCrowdParts = 2;  // of one after which, of so many awake bodies, more than one pair was hit,
 constexpr int kCrowdHits = 5;   // and at least so many in all
@@ -240,6 +242,11 @@ std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
   return ways;
 }
 
+// Of a step in which pieces part, or many spin and collide.
+int lively_parts(const ContactSettings& settings) {
+  return std::max(kLeastParts, static_cast<int>(std::ceil(settings.time_step / kPartTime - 1e-9)));
+}
+
 // What is hit on its way did not see it coming: over shorter ways more does.
 int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& settings,
                     const ContactReport& report) {
@@ -249,13 +256,13 @@ int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& sett
     spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
   }
   const int awake = report.awake_bodies, hits = report.hits;
-  if (kManySpin * spinning > awake && kManyHits * hits > awake) return kSpinParts;
+  if (kManySpin * spinning > awake && kManyHits * hits > awake) return lively_parts(settings);
   return hits >= kLeastHits && kCrowdHits * hits > awake ? kCrowdParts : 1;
 }
 
 }  // namespace
 
-int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
+int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings, const ContactState& state) {
   std::size_t newborn = 0;
   for (const Body& b : bodies) {
     if (!b.is_dynamic() || !body::is_mesh(b.shape->kind)) continue;
@@ -263,7 +270,8 @@ int count_parts(const std::vector<Body>& bodies, const ContactState& state) {
                                         [](const BodyState& s, body::BodyId id) { return s.id < id; });
     newborn += known == state.bodies.end() || known->id != b.id ? 1 : 0;
   }
-  return newborn >= 2 && !state.bodies.empty() ? std::max(kBirthParts, state.next_parts) : state.next_parts;
+  return newborn >= 2 && !state.bodies.empty() ? std::max(lively_parts(settings), state.next_parts)
+                                               : state.next_parts;
 }
 
 ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settings, const StepPart& part,
@@ -335,7 +343,7 @@ void end_step(const std::vector<Body>& bodies, const ContactSettings& settings, 
 ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
                           body::ImpulseLog& log) {
   ContactReport step;
-  StepPart part{0, count_parts(bodies, state)};
+  StepPart part{0, count_parts(bodies, settings, state)};
   for (; part.number < part.count; ++part.number)
     add_part(move_part(bodies, settings, part, state, log), step);
   end_step(bodies, settings, part.count, step, state);

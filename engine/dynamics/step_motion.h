@@ -54,7 +54,8 @@ struct StepPart {
 /// In how many parts the step that begins here should be taken: several if pieces are newborn, which lie in
 /// each other's way and go far against their own size while they part, and after that while many spin and
 /// collide; or if many were hit on their ways in the step before.
-int count_parts(const std::vector<body::Body>& bodies, const ContactState& state);
+int count_parts(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                const ContactState& state);
 
 /// The motion of one part in the order of the stages below. `settings` are those of the whole step. `bodies`
 /// ascend by id; they may have grown, shrunk or been replaced since the last call. Appends to `log` one entry

@@ -159,7 +159,7 @@ int World::count_parts() const {
   const State& s = *state_;
   return s.settings.contact == ContactScheme::paper
              ? 1
-             : dynamics::count_parts(s.moving.bodies, s.moving.contact);
+             : dynamics::count_parts(s.moving.bodies, s.contact_settings, s.moving.contact);
 }
 
 void World::step() {

@@ -136,6 +136,23 @@ TEST_CASE("how near a hit comes to breaking does not depend on the step") {
   }
 }
 
+TEST_CASE("what breaks after the first break is as much at 60 steps a second as at 240") {
+  const Folder folder;
+  const auto crack_area = [&](const std::string& rate) {
+    double area = 0.0;
+    for (const char* seed : {"1", "2", "14"}) {
+      const auto report = play(folder, "ornament --seconds 0.5 --seed " + std::string(seed) +
+                                           " --set scene.steps_per_second=" + rate);
+      for (const auto& row : report["breaks"]) area += row["new_area_m2"].get<double>();
+    }
+    return area;
+  };
+  const double coarse = crack_area("60"), fine = crack_area("240");
+  INFO(coarse << " and " << fine << " m2");
+  CHECK(coarse < 1.25 * fine);
+  CHECK(fine < 1.25 * coarse);
+}
+
 TEST_CASE("nothing passes through anything while things break") {
   const Folder folder;
   for (const char* scene : {"ornament --seconds 0.5", "window --seconds 0.55", "bowl --seconds 0.5",

@@ -130,7 +130,7 @@ TEST_CASE("who is woken in the midst of a step has stood still until then") {
   check_way(1, {0.25, 0.5, 0.75}, 1.0, 0.0);
 }
 
-TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, spinning ones in four") {
+TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, spinning ones in short ones") {
   test::Scene scene;
   for (int k = 0; k < 300; ++k)
     scene.add(test::make_shell(test::square_mesh(0.05, 1))).pose.translation.x() = 0.2 * k;
@@ -141,13 +141,34 @@ TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, sp
     for (auto& b : scene.bodies) b.angular_velocity = Vec3(0, spin, 0);
     dynamics::end_step(scene.bodies, scene.settings, 1, step, scene.state);
     scene.state.bodies.resize(1);  // no world that only begins
-    return dynamics::count_parts({}, scene.state);
+    return dynamics::count_parts({}, scene.settings, scene.state);
   };
   CHECK(parts_after(0, 0.0) == 1);
   CHECK(parts_after(60, 0.0) == 1);
   CHECK(parts_after(61, 0.0) == 2);
   CHECK(parts_after(0, 200.0) == 1);
   CHECK(parts_after(61, 200.0) == 4);
+  scene.settings.time_step = 1.0 / 60.0;
+  CHECK(parts_after(61, 200.0) == 16);
+}
+
+TEST_CASE(
+    "a step with newborn pieces is taken in at least four parts and none longer than a 960th of a second") {
+  test::Scene scene;
+  for (int k = 0; k < 3; ++k)
+    scene.add(test::make_shell(test::square_mesh(0.05, 1))).pose.translation.x() = 0.2 * k;
+  const auto parts_at = [&](double rate, std::size_t known) {
+    scene.settings.time_step = 1.0 / rate;
+    scene.state.bodies.clear();
+    for (std::size_t k = 0; k < known; ++k) scene.state.bodies.push_back({});
+    for (std::size_t k = 0; k < known; ++k) scene.state.bodies[k].id = scene.bodies[k].id;
+    return dynamics::count_parts(scene.bodies, scene.settings, scene.state);
+  };
+  CHECK(parts_at(60, 1) == 16);
+  CHECK(parts_at(120, 1) == 8);
+  CHECK(parts_at(240, 1) == 4);
+  CHECK(parts_at(960, 1) == 4);
+  CHECK(parts_at(60, 3) == 1);
 }
 
 }  // namespace shatterbox
