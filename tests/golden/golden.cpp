@@ -65,7 +65,7 @@ TEST_CASE("a lost shadow fails") {
 }
 
 TEST_CASE("a shift by one pixel fails, in either direction, of the fallen and of the whole ornament") {
-  for (const char* file : {"frame_000018.png", kBroken}) {
+  for (const char* file : {"frame_000021.png", kBroken}) {
     const render::Image picture = golden_picture(file);
     for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
       render::Image shifted = picture;
@@ -77,7 +77,7 @@ TEST_CASE("a shift by one pixel fails, in either direction, of the fallen and of
 }
 
 TEST_CASE("a colour that is off by three levels fails, by one it passes") {
-  const render::Image picture = golden_picture("frame_000018.png");
+  const render::Image picture = golden_picture("frame_000021.png");
   for (const int levels : {1, 3}) {
     render::Image tinted = picture;
     // The red of the ball alone, some percent of the picture.
