@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "render/output/video_kept.h"
 #include "render/output/video_plain.h"
 #include "render/output/video_stream.h"
 
@@ -38,6 +39,19 @@ struct VideoFile::Encoder {
   Status status;
   long frames = 0;
   std::atomic<double> cpu_ms{0};
+
+  // What is kept is copied first, beside the part that it comes from: a run that is killed meanwhile loses
+  // nothing.
+  Status open(const VideoFormat& format) {
+    if (settings.keep == 0) return stream.open(part, format, settings);
+    const std::filesystem::path next = path.string() + ".next";
+    std::error_code problem;
+    Status opened = stream.open(next, format, settings);
+    if (opened) opened = stream.keep(std::filesystem::exists(part) ? part : path, settings.keep);
+    if (!opened) return opened;
+    std::filesystem::rename(next, part, problem);
+    return problem ? Status{problem.message()} : Status{};
+  }
 
   Status with_name(Status s) const { return s.ok() ? s : Status{path.string() + ": " + s.error}; }
 
@@ -85,6 +99,11 @@ Status can_write_video(const std::filesystem::path& path) {
   return {};
 }
 
+long count_kept_frames(const std::filesystem::path& path) {
+  const std::filesystem::path part = path.string() + ".part";
+  return count_whole_groups(std::filesystem::exists(part) ? part : path);
+}
+
 VideoFile::VideoFile(std::filesystem::path path, const VideoSettings& settings)
     : encoder_(std::make_unique<Encoder>()) {
   Encoder& e = *encoder_;
@@ -96,7 +115,7 @@ VideoFile::VideoFile(std::filesystem::path path, const VideoSettings& settings)
   av_log_set_level(AV_LOG_ERROR);
   const VideoFormat& format = *find_format(e.path);
   e.status = check_settings(settings, format);
-  if (e.status) e.status = e.stream.open(e.part, format, settings);
+  if (e.status) e.status = e.open(format);
   e.status = e.with_name(std::move(e.status));
   if (e.status) e.thread = std::thread([&e] { e.run(); });
 }

@@ -16,6 +16,7 @@ struct VideoSettings {
   double crf = 20;                  // constant quality, lower is better
   std::string preset = "veryfast";  // x264's name for how hard to try
   int queue = 3;                    // frames that may wait; add() blocks beyond
+  long keep = 0;  // first frames that an earlier run of these settings has written: count_kept_frames
 };
 
 class VideoFile {
@@ -39,6 +40,10 @@ class VideoFile {
   struct Encoder;
   std::unique_ptr<Encoder> encoder_;
 };
+
+// Frames of a video, or of its NAME.part, that a run which was cut short has left and another one can go on
+// from.
+long count_kept_frames(const std::filesystem::path& path);
 
 // Whether this build can write such a file; the error names the endings it knows.
 Status can_write_video(const std::filesystem::path& path);

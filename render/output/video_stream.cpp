@@ -5,6 +5,7 @@
 
 #include "render/output/ending.h"
 #include "render/output/palette.h"
+#include "render/output/video_kept.h"
 
 extern "C" {
 #include <libavutil/opt.h>
@@ -62,6 +63,20 @@ Status VideoStream::open(const std::filesystem::path& part, const VideoFormat& f
   code = avio_open(&muxer_->pb, part.c_str(), AVIO_FLAG_WRITE);
   if (code < 0) return {in_words(code)};
   return write_header();
+}
+
+Status VideoStream::keep(const std::filesystem::path& file, long frames) {
+  // The encoder's own time to look ahead: its packets begin that much before their pictures.
+  std::int64_t dts = -encoder_->has_b_frames;
+  Status status = read_packets(file, frames, encoder_->time_base, [&](AVPacket& packet) {
+    packet.dts = dts++;
+    packet.duration = 1;
+    av_packet_rescale_ts(&packet, encoder_->time_base, stream_->time_base);
+    packet.stream_index = stream_->index;
+    return av_write_frame(muxer_.get(), &packet);
+  });
+  next_pts_ = frames;
+  return status;
 }
 
 Status VideoStream::encode(const Image& image) {

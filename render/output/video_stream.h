@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "render/output/image.h"
-#include "render/output/video_libav.h"
 #include "render/output/status.h"
 #include "render/output/video_file.h"
+#include "render/output/video_libav.h"
 
 namespace shatterbox::render {
 
@@ -24,6 +24,9 @@ Status check_settings(const VideoSettings& settings, const VideoFormat& format);
 class VideoStream {
  public:
   Status open(const std::filesystem::path& part, const VideoFormat& format, const VideoSettings& settings);
+  // Takes over the first frames of another file of the same format and settings; encode() goes on behind
+  // them.
+  Status keep(const std::filesystem::path& file, long frames);
   Status encode(const Image& image);
   Status finish();
 

@@ -160,6 +160,7 @@ Json make_json(const RunRecord& record) {
   json["state_hash"] = hex_digits(record.state_hash);
   json["frame_hashes"] = Json::array();
   for (const std::uint64_t hash : record.frame_hashes) json["frame_hashes"].push_back(hex_digits(hash));
+  if (record.kept_frames > 0) json["kept_frames"] = record.kept_frames;
   json["bodies"] = {{"start", w.bodies_start}, {"end", record.bodies_end}};
   json["pieces"] = record.pieces;
   json["merged"] = merged(w);

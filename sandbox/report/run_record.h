@@ -36,6 +36,7 @@ struct RunRecord {
   bool is_interrupted = false;
   std::uint64_t state_hash = 0;
   std::vector<std::uint64_t> frame_hashes;
+  int kept_frames = 0;  // of these: drawn by an earlier run, which was cut short
   int bodies_end = 0, pieces = 0;
   long triangles_end = 0;
   world::WorldReport world;

@@ -176,7 +176,8 @@ std::string audit_line(const RunRecord& record) {
 std::string make_summary(const RunRecord& record) {
   std::string text;
   if (record.is_interrupted) {
-    text += fmt::format("interrupted at {:.2f} of {:g} s\n", record.simulated_seconds, record.asked_seconds);
+    text += fmt::format("interrupted at {:.2f} of {:g} s; with --resume it goes on\n",
+                        record.simulated_seconds, record.asked_seconds);
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
           crossing_line(record) + parted_line(record) + behind_lines(record) + error_line(record) +

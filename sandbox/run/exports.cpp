@@ -8,7 +8,7 @@
 
 namespace shatterbox::sandbox::run {
 
-Exports::Exports(const Job& job, view::View& view) : job_(job), view_(view) {
+Exports::Exports(const Job& job, view::View& view, int first) : job_(job), view_(view), first_(first) {
   const Options& options = job.options;
   const render::Size& size = job.painter.size;
   if (!options.model.empty())
@@ -20,7 +20,7 @@ Exports::Exports(const Job& job, view::View& view) : job_(job), view_(view) {
 std::string Exports::add(const view::Moment& moment, int number) {
   const std::string& meshes = job_.options.meshes_folder;
   if (model_) model_->add(moment, view_.camera_at(moment));
-  if (!meshes.empty())
+  if (!meshes.empty() && number >= first_)
     if (std::string fault = report::write_obj_frame(meshes, number, moment.bodies, moment.time);
         !fault.empty())
       return fault;

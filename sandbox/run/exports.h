@@ -13,8 +13,8 @@ namespace shatterbox::sandbox::run {
 
 class Exports {
  public:
-  /// `job` and `view` must outlive it.
-  Exports(const Job& job, view::View& view);
+  /// `job` and `view` must outlive it. An earlier run has written the meshes of the frames below `first`.
+  Exports(const Job& job, view::View& view, int first);
 
   /// Frame `number` of the film. A sentence if it cannot be written, else empty.
   std::string add(const view::Moment& moment, int number);
@@ -25,6 +25,7 @@ class Exports {
  private:
   const Job& job_;
   view::View& view_;
+  int first_;
   std::optional<model::ModelFilm> model_;
   std::optional<report::RunTables> tables_;
 };

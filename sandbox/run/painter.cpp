@@ -45,6 +45,7 @@ struct Painter::Room {
   std::condition_variable changed;
   std::deque<std::pair<render::Frame, int>> waiting;  // with their numbers
   bool is_ending = false;
+  std::vector<Picture> pictures;  // written
   std::string error;
   std::atomic<int> finished{0};
   std::thread thread;
@@ -86,7 +87,7 @@ struct Painter::Room {
     double encoded = 0.0;
     while (auto waited = next()) {
       const auto& [frame, number] = *waited;
-      if (painted.numbers.empty()) {  // compiles the shaders for this processor; not a frame's cost
+      if (painted.start == 0.0) {  // compiles the shaders for this processor; not a frame's cost
         (void)renderer.render(frame);
         painted.start = milliseconds_since(start);
         last = Clock::now();
@@ -95,7 +96,8 @@ struct Painter::Room {
       render::Image image = renderer.render(frame);
       painted.numbers.push_back(number);
       painted.render.push_back(milliseconds_since(begin));
-      painted.hashes.push_back(hash_image(image));
+      const std::uint64_t hash = hash_image(image);
+      painted.hashes.push_back(hash);
       const auto written = Clock::now();
       if (!write(std::move(image), number)) return;
       const double encoder = video ? video->encode_cpu_ms() : 0.0;
@@ -105,6 +107,8 @@ struct Painter::Room {
       painted.frame.push_back(milliseconds_since(last));
       last = Clock::now();
       finished.store(static_cast<int>(painted.numbers.size()));
+      const std::lock_guard lock(mutex);
+      pictures.push_back({number, hash});
     }
   }
 };
@@ -112,11 +116,21 @@ struct Painter::Room {
 Painter::Painter(PainterSettings settings) : room_(std::make_unique<Room>()) {
   room_->settings = std::move(settings);
   const PainterSettings& s = room_->settings;
+  room_->pictures = s.kept;
+  room_->finished = static_cast<int>(s.kept.size());
+  for (const Picture& picture : s.kept) {
+    Painted& painted = room_->painted;
+    painted.numbers.push_back(picture.number);
+    painted.hashes.push_back(picture.hash);
+    for (std::vector<double>* times : {&painted.frame, &painted.render, &painted.encode})
+      times->push_back(-1.0);
+  }
   if (!s.video.empty()) {
     render::VideoSettings video;
     video.width = s.size.width;
     video.height = s.size.height;
     video.frames_per_second = s.frames_per_second;
+    video.keep = static_cast<long>(s.kept.size());
     room_->video.emplace(s.video, video);
     if (!room_->video->status()) room_->error = room_->video->status().error;
   }
@@ -160,6 +174,11 @@ bool Painter::finish() {
 
 int Painter::finished_frames() const {
   return room_->finished.load();
+}
+
+std::vector<Picture> Painter::pictures() const {
+  const std::lock_guard lock(room_->mutex);
+  return room_->pictures;
 }
 
 std::string Painter::error() const {

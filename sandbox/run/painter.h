@@ -13,15 +13,23 @@
 
 namespace shatterbox::sandbox::run {
 
+/// A picture that is written.
+struct Picture {
+  int number = 0;  // of the frame
+  std::uint64_t hash = 0;
+};
+
 struct PainterSettings {
   render::Size size;
   render::Quality quality = render::Quality::preview;
   int frames_per_second = 60;
   std::string video;          // empty: none
   std::string frames_folder;  // empty: none
+  std::vector<Picture> kept;  // what an earlier run has drawn and written already
 };
 
-/// What became of the frames that were added; times in ms, in the order of the frames.
+/// What became of the frames that were added, after those that were kept; times in ms, in the order of the
+/// frames, negative for what was kept.
 struct Painted {
   std::vector<int> numbers;  // of the frames
   std::vector<std::uint64_t> hashes;
@@ -44,6 +52,8 @@ class Painter {
   bool finish();
 
   int finished_frames() const;
+  /// All that are written so far, those that were kept with them.
+  std::vector<Picture> pictures() const;
   std::string error() const;
   /// After finish().
   const Painted& painted() const;

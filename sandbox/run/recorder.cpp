@@ -45,6 +45,10 @@ void Recorder::note_pictures(const Painted& painted, int first) {
     const auto number = static_cast<std::size_t>(painted.numbers[i] - first);
     if (number >= record.frames.size()) continue;
     record.frame_hashes.push_back(painted.hashes[i]);
+    if (painted.frame[i] < 0.0) {  // an earlier run drew it
+      ++record.kept_frames;
+      continue;
+    }
     report::FrameRecord& frame = record.frames[number];
     frame.frame = std::max(painted.frame[i] - frame.audit, 0.0);
     frame.render = painted.render[i];

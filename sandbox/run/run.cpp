@@ -11,6 +11,7 @@
 #include "engine/core/parallel.h"
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/summary.h"
+#include "sandbox/run/checkpoint.h"
 #include "sandbox/run/exports.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/job.h"
@@ -47,14 +48,22 @@ class Choice {
   bool has_all_;
 };
 
+/// What all shots of a film share.
+struct Film {
+  Painter* painter = nullptr;  // none: no pictures
+  Checkpoint checkpoint;
+  int first_drawn = 0;  // frames below it are kept from an earlier run
+};
+
 /// The loop. A sentence if it failed, else empty. `first`: number of the first frame in the film.
-std::string play(Job& job, Recorder& recorder, Painter* painter, int first, int shot) {
+std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) {
+  Painter* const painter = film.painter;
   const scene::SceneDescription& scene = *job.scene;
   const world::World& world = job.built->world;
   const int fps = job.options.frames_per_second;
   Projector projector(scene, *job.built, recorder, job.options.has_audit, fps);
   view::View view(scene, *job.built, shot);
-  Exports exports(job, view);
+  Exports exports(job, view, film.first_drawn);
   Choice choice(job.options.stills);
   Progress progress(std::max(1, static_cast<int>(scene.seconds * fps + 0.5)), stderr_is_terminal());
   std::vector<int> shown;  // how far the film is with each frame, in frames' lengths of the world's time
@@ -65,10 +74,15 @@ std::string play(Job& job, Recorder& recorder, Painter* painter, int first, int 
     if (!moment) break;
     for (const scene::Cue& cue : projector.take_cues()) view.begin(cue, *moment);
     std::optional<render::Frame> picture;
-    if (painter != nullptr && choice.takes(projector.time_ahead())) picture = view.make_frame(*moment);
+    const bool is_due = choice.takes(projector.time_ahead());
+    if (first + frame < film.first_drawn)
+      (void)view.camera_at(*moment);  // it remembers whom it follows
+    else if (painter != nullptr && is_due)
+      picture = view.make_frame(*moment);
     const double audit_time = recorder.record.audit_time - audited;
     recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
     if (std::string fault = exports.add(*moment, first + frame); !fault.empty()) return fault;
+    if (std::string fault = film.checkpoint.pass(shot, world, painter); !fault.empty()) return fault;
     if (picture && !painter->add(std::move(*picture), first + frame)) return painter->error();
     shown.push_back(static_cast<int>(projector.time_ahead() * fps + 1e-6));
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
@@ -80,11 +94,11 @@ std::string play(Job& job, Recorder& recorder, Painter* painter, int first, int 
   return exports.close();
 }
 
-void play_shot(Shot& shot, int number, Painter* painter, int first, std::string& fault) {
+void play_shot(Shot& shot, int number, Film& film, int first, std::string& fault) {
   const auto start = Clock::now();
   shot.first = first;
   try {
-    fault = play(*shot.job, shot.recorder, painter, first, number);
+    fault = play(*shot.job, shot.recorder, film, first, number);
   } catch (const std::exception& error) {
     fault = error.what();
   }
@@ -126,8 +140,16 @@ int conclude(std::vector<Shot>& shots, const Options& options, std::string fault
 /// Plays the shots one after the other into one film.
 int play_all(std::vector<Shot>& shots) {
   const Options options = shots.front().job->options;
-  const PainterSettings& settings = shots.front().job->painter;
+  PainterSettings settings = shots.front().job->painter;
   scene::Problems problems;
+  std::vector<const Job*> jobs;
+  for (const Shot& shot : shots) jobs.push_back(&*shot.job);
+  Film film{nullptr, Checkpoint(jobs)};
+  if (options.resumes) film.checkpoint.load(problems);
+  if (!problems.empty()) return refuse(problems);
+  if (!options.resumes) film.checkpoint.discard();
+  settings.kept = film.checkpoint.kept();
+  if (!settings.kept.empty()) film.first_drawn = settings.kept.back().number + 1;
   std::optional<Painter> painter;
   if (options.has_pictures && !(settings.video.empty() && settings.frames_folder.empty())) {
     painter.emplace(settings);
@@ -136,19 +158,21 @@ int play_all(std::vector<Shot>& shots) {
       return refuse(problems);
     }
   }
-  Painter* const hand = painter ? &*painter : nullptr;
+  film.painter = painter ? &*painter : nullptr;
   std::string fault;
   int first = 0;
   for (std::size_t i = 0; i < shots.size() && fault.empty() && !is_interrupted(); ++i) {
     if (shots.size() > 1)
       fmt::print(stderr, "shot {} of {}: {}\n", i + 1, shots.size(), shots[i].job->scene->name);
-    play_shot(shots[i], static_cast<int>(i), hand, first, fault);
+    play_shot(shots[i], static_cast<int>(i), film, first, fault);
     first += static_cast<int>(shots[i].recorder.record.frames.size());
   }
-  if (hand != nullptr) {
-    if (!hand->finish() && fault.empty()) fault = hand->error();
-    for (Shot& shot : shots) shot.recorder.note_pictures(hand->painted(), shot.first);
+  if (painter) {
+    if (!painter->finish() && fault.empty()) fault = painter->error();
+    for (Shot& shot : shots) shot.recorder.note_pictures(painter->painted(), shot.first);
   }
+  if (fault.empty() && is_interrupted()) fault = film.checkpoint.save(film.painter);
+  if (fault.empty() && !is_interrupted()) film.checkpoint.discard();
   return conclude(shots, options, std::move(fault));
 }
 
