@@ -21,13 +21,9 @@ struct Source {
   std::unique_ptr<AVBSFContext, FilterCloser> filter;
 
   int open(const std::filesystem::path& path) {
-    AVFormatContext* opened = nullptr;
-    int code = avformat_open_input(&opened, path.c_str(), nullptr, nullptr);
+    const int code = open_input(path, nullptr, file);
     if (code < 0) return code;
-    file.reset(opened);
-    code = avformat_find_stream_info(opened, nullptr);
-    if (code < 0) return code;
-    return opened->nb_streams == 1 ? 0 : AVERROR_INVALIDDATA;
+    return file->nb_streams == 1 ? 0 : AVERROR_INVALIDDATA;
   }
 
   int add_start_codes() {

@@ -36,11 +36,8 @@ int copy_packets(AVFormatContext& from, AVFormatContext& to) {
 }
 
 int copy_stream(const std::filesystem::path& fragmented, const std::filesystem::path& plain) {
-  AVFormatContext* opened = nullptr;
-  int code = avformat_open_input(&opened, fragmented.c_str(), av_find_input_format("mp4"), nullptr);
-  if (code < 0) return code;
-  const Owned<AVFormatContext> from(opened);
-  code = avformat_find_stream_info(from.get(), nullptr);
+  Owned<AVFormatContext> from;
+  int code = open_input(fragmented, "mp4", from);
   if (code < 0) return code;
   if (from->nb_streams != 1) return AVERROR_INVALIDDATA;
   AVFormatContext* made = nullptr;

@@ -24,17 +24,13 @@ struct VideoReader::Decoder {
 };
 
 int VideoReader::Decoder::open(const std::filesystem::path& path) {
-  AVFormatContext* opened = nullptr;
-  int code = avformat_open_input(&opened, path.c_str(), nullptr, nullptr);
-  if (code < 0) return code;
-  file.reset(opened);
-  code = avformat_find_stream_info(opened, nullptr);
+  int code = open_input(path, nullptr, file);
   if (code < 0) return code;
   const AVCodec* kind = nullptr;
-  stream = av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, &kind, 0);
+  stream = av_find_best_stream(file.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &kind, 0);
   if (stream < 0) return stream;
   codec.reset(avcodec_alloc_context3(kind));
-  code = avcodec_parameters_to_context(codec.get(), opened->streams[stream]->codecpar);
+  code = avcodec_parameters_to_context(codec.get(), file->streams[stream]->codecpar);
   if (code < 0) return code;
   codec->thread_count = 1;
   return avcodec_open2(codec.get(), kind, nullptr);

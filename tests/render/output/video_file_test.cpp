@@ -205,3 +205,47 @@ TEST_CASE("the same frames give the same file") {
   }
   CHECK(bytes[0] == bytes[1]);
 }
+
+TEST_CASE("a video goes on behind what a run that was cut short has left") {
+  for (const char* ending : {".mp4", ".mkv", ".webm"}) {
+    const fs::path path = fs::temp_directory_path() / (std::string("shatterbox_kept") + ending);
+    const fs::path part = path.string() + ".part", cut = path.string() + ".cut";
+    constexpr int kFrames = 150;
+    const auto picture = [](int i) { return frame_at(i % 90); };
+    {
+      VideoFile video(path, settings());
+      for (int i = 0; i < kFrames; ++i) REQUIRE(video.add(picture(i)).ok());
+      fs::copy_file(part, cut, fs::copy_options::overwrite_existing);  // as a kill at this moment leaves it
+      REQUIRE(video.close().ok());
+    }
+    fs::remove(path);
+    const std::uintmax_t size = fs::file_size(cut);
+    long last = 1000;
+    for (const std::uintmax_t left : {size, size * 3 / 4, size / 2, size / 3, std::uintmax_t{100}}) {
+      INFO(ending << ", " << left << " of " << size << " bytes");
+      fs::copy_file(cut, part, fs::copy_options::overwrite_existing);
+      fs::resize_file(part, left);
+      VideoSettings s = settings();
+      s.keep = count_kept_frames(path);
+      CHECK(s.keep <= last);
+      CHECK(s.keep % 30 == 0);  // whole groups
+      if (left == size) CHECK(s.keep >= 60);
+      last = s.keep;
+      VideoFile video(path, s);
+      for (int i = static_cast<int>(s.keep); i < kFrames; ++i) REQUIRE(video.add(picture(i)).ok());
+      const Status status = video.close();
+      INFO(status.error);
+      REQUIRE(status.ok());
+      const std::vector<Image> back = decode(path);
+      REQUIRE(back.size() == kFrames);
+      for (int i = 0; i < kFrames; ++i) {
+        INFO("frame " << i);
+        CHECK(compare(picture(i), back[static_cast<std::size_t>(i)]).psnr > 30.0);
+      }
+      fs::remove(path);
+    }
+    CHECK(last == 0);
+    fs::remove(cut);
+  }
+  CHECK(count_kept_frames(fs::temp_directory_path() / "shatterbox_none.mp4") == 0);
+}
