@@ -76,7 +76,11 @@ Status VideoStream::keep(const std::filesystem::path& file, long frames) {
     return av_write_frame(muxer_.get(), &packet);
   });
   next_pts_ = frames;
-  return status;
+  if (!status) return status;
+  // All of them to the disk, the last fragment too: from here on this file is all there is.
+  const int code = av_write_frame(muxer_.get(), nullptr);
+  avio_flush(muxer_->pb);
+  return code < 0 ? Status{in_words(code)} : Status{};
 }
 
 Status VideoStream::encode(const Image& image) {

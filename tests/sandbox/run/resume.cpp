@@ -63,6 +63,7 @@ void kill_runs(int count, unsigned seed) {
     const std::string there = fs::exists(part) ? video + ".part" : video;
     if (fs::exists(folder / there) && fs::file_size(folder / there) > 2000)
       CHECK(count_frames(folder, there) > 0);
+    INFO(i << " " << there);
     CHECK((!fs::exists(folder / "r.json") || read_json(folder / "r.json")["interrupted"] == false));
     const Outcome resumed = program(folder, arguments + " --resume");
     INFO(resumed.out << resumed.err);
