@@ -12,7 +12,7 @@ layout(location = 0) out vec4 colour;
 void main() {
   vec2 pixel = gl_FragCoord.xy;
   vec3 ray = ray_at(pixel);
-  vec4 parts = floor_at(corner, ray);
+  vec4 parts = floor_at(corner, ray, pixel);
 #ifdef EXACT
   float z = min(floor_depth(ray), 1e6);
   vec2 dimming = vec2(sky_seen(pixel, z), sun_seen_by_floor(eye_exposure.xyz + ray * z));

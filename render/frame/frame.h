@@ -46,6 +46,14 @@ struct Lights {
   bool casts_shadow = true;       // false: the shadow pass does not exist
 };
 
+// What the floor is laid with.
+enum class GroundPattern : std::uint8_t {
+  plain,
+  checker,   // squares, `pattern_size` wide
+  planks,    // boards along x, `pattern_size` wide and eight times as long
+  concrete,  // cast and smoothed; again after `pattern_size`
+};
+
 // The floor at a height, without an edge: it fades into the backdrop.
 struct Ground {
   float height = 0.0F;  // m
@@ -53,7 +61,8 @@ struct Ground {
   // Where it fades, m along the ground from the eye, into the picture; both 0: from the target to the
   // horizon.
   float fade_from = 0.0F, fade_to = 0.0F;
-  float checker = 0.0F;  // m a square; 0: plain
+  GroundPattern pattern = GroundPattern::plain;
+  float pattern_size = 0.1F;  // m
 };
 
 // Shown linear behind everything: a vertical gradient with a soft glow in the middle, or a studio's sweep:

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "render/pass/floor_picture.h"
-
 namespace shatterbox::render::pass {
 namespace {
 
@@ -51,11 +49,20 @@ void FloorPass::run(const FrameBlock& block, const gpu::Framebuffer& target, boo
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     find_whole_colour(block);
-    paint_floor(block, whole_bytes_, bytes_);
-    glTextureSubImage2D(picture_.name(), 0, 0, 0, picture_.width(), picture_.height(), GL_RGBA,
-                        GL_UNSIGNED_BYTE, bytes_.data());
+    paint_floor(block, whole_bytes_, made_);
+    const int width = picture_.width(), height = picture_.height();
+    glTextureSubImage2D(picture_.name(), 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE,
+                        made_.rgba.data());
+    if (!made_.shares.empty()) {
+      if (shares_.name() == 0) shares_ = gpu::Texture(width, height, GL_R16, gpu::Filter::nearest);
+      glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
+      glTextureSubImage2D(shares_.name(), 0, 0, 0, width, height, GL_RED, GL_UNSIGNED_SHORT,
+                          made_.shares.data());
+      glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    }
     kept_of_ = wanted;
   }
+  if (!made_.shares.empty()) shares_.bind(13);
   const auto copy = [&](int left, int bottom, int right, int top) {
     glBlitNamedFramebuffer(kept_.name(), target.name(), left, bottom, right, top, left, bottom, right, top,
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);

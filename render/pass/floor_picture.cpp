@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+
+#include "render/pass/floor_pattern.h"
 
 namespace shatterbox::render::pass {
 namespace {
@@ -65,11 +68,14 @@ class Painter {
  public:
   explicit Painter(const FrameBlock& block)
       : block_(block),
+        is_patterned_(block.ground_colour.w > 0.0F),
         width_(static_cast<int>(block.viewport.x)),
         height_(static_cast<int>(block.viewport.y)),
         across_((width_ + kSquare - 1) / kSquare),
         drop_(block.ground_place.x - block.eye_exposure.y),
         floor_(glm::vec3(block.floor_sun + block.floor_sky)) {
+    const auto kind = static_cast<GroundPattern>(static_cast<int>(block.glow_centre.w));
+    if (is_patterned_ && kind != GroundPattern::checker) pattern_ = &FloorPattern::of(kind);
     for (int y = 0; y <= (height_ + kSquare - 1) / kSquare; ++y) {
       for (int x = 0; x <= across_; ++x) {
         corners_.push_back(
@@ -78,9 +84,12 @@ class Painter {
     }
   }
 
-  void paint(const std::array<std::uint8_t, 3>& whole, std::vector<std::uint8_t>& rgba) {
-    rgba.resize(4 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-    std::uint8_t* to = rgba.data();
+  void paint(const std::array<std::uint8_t, 3>& whole, FloorPicture& picture) {
+    const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    picture.rgba.resize(4 * pixels);
+    picture.shares.resize(is_patterned_ ? pixels : 0);
+    std::uint8_t* to = picture.rgba.data();
+    std::uint16_t* shares = picture.shares.data();
     for (int y = 0; y < height_; ++y) {
       const float up = (static_cast<float>(y) + 0.5F) * block_.viewport.w * 2.0F - 1.0F;
       const glm::vec3 side = glm::vec3(block_.view_right) * (2.0F * block_.viewport.z);
@@ -89,8 +98,10 @@ class Painter {
           side};
       for (int x = 0; x < width_; x += kSquare) {
         const int count = std::min(kSquare, width_ - x);
-        paint_run(row, x, y, count, whole, to);
+        if (is_patterned_) find_shares(row, x, count, shares);
+        paint_run(row, x, y, count, whole, shares, to);
         to += 4 * static_cast<std::ptrdiff_t>(count);
+        if (is_patterned_) shares += count;
       }
     }
   }
@@ -114,30 +125,55 @@ class Painter {
     }
   }
 
-  // A checkered floor's share of its colour at a pixel, as floor_at() in common/floor.glsl.
-  float square_at(const Row& row, int x) const {
-    const glm::vec3 ray = row.ray + row.step * (static_cast<float>(x) + 0.5F);
-    if (block_.ground_place.w * ray.y * drop_ <= 0.0F) return 1.0F;
+  // Where a pixel sees a patterned floor, in units of its pattern, and how wide a pixel is there.
+  struct Seen {
+    glm::dvec2 place{0.0};
+    float across = 0.0F, along = 0.0F;
+  };
+
+  // Nothing above the horizon.
+  std::optional<Seen> look(const Row& row, float x) const {
+    const glm::vec3 ray = row.ray + row.step * x;
+    if (block_.ground_place.w * ray.y * drop_ <= 0.0F) return std::nullopt;
     const float z = std::min(drop_ / ray.y, 1e6F), size = block_.ground_colour.w;
-    const float width = std::max(z * block_.view_ray.y * 2.0F * block_.viewport.w / size * z *
-                                     glm::length(ray) / std::max(std::abs(drop_), 1e-6F),
-                                 1e-5F);
-    const auto side = [&](float q) {
-      const float s = (std::abs(q * 0.5F - std::floor(q * 0.5F) - 0.5F) - 0.25F) * 2.0F;
-      return std::clamp(s / width + 0.5F, 0.0F, 1.0F) * 2.0F - 1.0F;
+    Seen seen;
+    seen.place = {(block_.eye_exposure.x + ray.x * z) / size, (block_.eye_exposure.z + ray.z * z) / size};
+    seen.across = z * block_.view_ray.y * 2.0F * block_.viewport.w / size;
+    seen.along = seen.across * z * glm::length(ray) / std::max(std::abs(drop_), 1e-6F);
+    return seen;
+  }
+
+  // The share of its colour that a patterned floor has at the pixels of a run, in FloorPattern::kOne; 1
+  // beyond the horizon.
+  void find_shares(const Row& row, int first, int count, std::uint16_t* shares) const {
+    std::fill_n(shares, count, static_cast<std::uint16_t>(FloorPattern::kOne));
+    const float left = static_cast<float>(first) + 0.5F;
+    if (pattern_ == nullptr) {
+      for (int k = 0; k < count; ++k)
+        if (const auto seen = look(row, left + static_cast<float>(k)))
+          shares[k] = static_cast<std::uint16_t>(
+              checker_at(seen->place, seen->along) * static_cast<float>(FloorPattern::kOne) + 0.5F);
+      return;
+    }
+    // A run is short: its places lie on a line, as they do exactly where the camera is level.
+    const auto from = look(row, left), to = look(row, left + static_cast<float>(count));
+    if (!from || !to) return;
+    const double units = pattern_->units();
+    const auto depth_of = [units](const Seen& seen) {
+      const float drawn_out = std::sqrt(std::clamp(seen.along / seen.across, 1.0F, 16.0F));
+      return FloorPattern::depth_of(seen.across * drawn_out / static_cast<float>(units));
     };
-    return 0.86F + 0.14F * side((block_.eye_exposure.x + ray.x * z) / size) *
-                       side((block_.eye_exposure.z + ray.z * z) / size) *
-                       std::clamp(1.5F - width, 0.0F, 1.0F);
+    const float depth = depth_of(*from), more = (depth_of(*to) - depth) / static_cast<float>(count);
+    pattern_->find_row(from->place / units, (to->place - from->place) / (units * count), depth, more, count,
+                       shares);
   }
 
   // `count` pixels of one square's row.
   void paint_run(const Row& row, int x, int y, int count, const std::array<std::uint8_t, 3>& whole,
-                 std::uint8_t* to) const {
+                 const std::uint16_t* shares, std::uint8_t* to) const {
     float fades[kSquare];
     find_fades(row, x, fades);
-    const bool is_checkered = block_.ground_colour.w > 0.0F;
-    if (!is_checkered && std::max(fades[0], fades[count - 1]) == 0.0F) {  // it is monotonous along a row
+    if (!is_patterned_ && std::max(fades[0], fades[count - 1]) == 0.0F) {  // it is monotonous along a row
       for (int k = 0; k < count; ++k, to += 4) {
         to[0] = whole[0], to[1] = whole[1], to[2] = whole[2], to[3] = 255;
       }
@@ -154,10 +190,13 @@ class Painter {
                            static_cast<float>(count);
     const glm::vec3 floor = exposure * floor_, to_end = from + step * static_cast<float>(count);
     const glm::vec3 most = glm::max(floor, glm::max(from, to_end));
-    if (is_checkered || std::max({most.r, most.g, most.b}) > kShoulder) {
+    float share[kSquare];
+    for (int k = 0; k < kSquare; ++k)
+      share[k] = is_patterned_ && k < count ? static_cast<float>(shares[k]) / FloorPattern::kOne : 1.0F;
+    if (std::max({most.r, most.g, most.b}) > (is_patterned_ ? 0.5F * kShoulder : kShoulder)) {
       for (int k = 0; k < count; ++k) {
         const glm::vec3 behind = from + step * (static_cast<float>(k) + 0.5F);
-        const glm::vec3 ground = is_checkered ? floor * square_at(row, x + k) : floor;
+        const glm::vec3 ground = floor * share[k];
         const glm::vec3 c = press(ground + (behind - ground) * fades[k]);
         for (int i = 0; i < 3; ++i) to[4 * k + i] = codes[step_of(c[i])];
         to[4 * k + 3] = 255;
@@ -166,9 +205,10 @@ class Painter {
     }
     unsigned steps[3][kSquare];  // nothing to press: channel by channel, several pixels at once
     for (int i = 0; i < 3; ++i) {
-      const float start = from[i] - floor[i], more = step[i], ground = floor[i];
+      const float start = from[i], more = step[i];
       for (int k = 0; k < kSquare; ++k) {
-        steps[i][k] = step_of(ground + (start + more * (static_cast<float>(k) + 0.5F)) * fades[k]);
+        const float ground = floor[i] * share[k];
+        steps[i][k] = step_of(ground + (start - ground + more * (static_cast<float>(k) + 0.5F)) * fades[k]);
       }
     }
     for (int k = 0; k < count; ++k) {
@@ -178,6 +218,8 @@ class Painter {
   }
 
   const FrameBlock& block_;
+  bool is_patterned_;
+  const FloorPattern* pattern_ = nullptr;  // none: a checker, or plain
   int width_, height_, across_;
   float drop_;
   glm::vec3 floor_;
@@ -186,9 +228,8 @@ class Painter {
 
 }  // namespace
 
-void paint_floor(const FrameBlock& block, const std::array<std::uint8_t, 3>& whole,
-                 std::vector<std::uint8_t>& rgba) {
-  Painter(block).paint(whole, rgba);
+void paint_floor(const FrameBlock& block, const std::array<std::uint8_t, 3>& whole, FloorPicture& picture) {
+  Painter(block).paint(whole, picture);
 }
 
 }  // namespace shatterbox::render::pass

@@ -10,9 +10,14 @@
 
 namespace shatterbox::render::pass {
 
-// RGBA bytes (sRGB), rows from below, of the block's viewport. whole: what the floor is where it has not
-// begun to fade.
-void paint_floor(const FrameBlock& block, const std::array<std::uint8_t, 3>& whole,
-                 std::vector<std::uint8_t>& rgba);
+// Rows from below, of the block's viewport.
+struct FloorPicture {
+  std::vector<std::uint8_t> rgba;  // sRGB
+  std::vector<std::uint16_t>
+      shares;  // of a patterned floor, of its colour: 32768 (FloorPattern::kOne) is 1; empty if it is plain
+};
+
+// whole: what a plain floor is where it has not begun to fade.
+void paint_floor(const FrameBlock& block, const std::array<std::uint8_t, 3>& whole, FloorPicture& picture);
 
 }  // namespace shatterbox::render::pass

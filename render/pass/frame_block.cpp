@@ -101,7 +101,8 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   block.backdrop_top = glm::vec4(frame.backdrop.top, frame.backdrop.glow);
   block.backdrop_bottom = glm::vec4(frame.backdrop.bottom, frame.backdrop.vignette);
   if (frame.ground) {
-    block.ground_colour = glm::vec4(frame.ground->colour, frame.ground->checker);
+    const bool is_plain = frame.ground->pattern == GroundPattern::plain;
+    block.ground_colour = glm::vec4(frame.ground->colour, is_plain ? 0.0F : frame.ground->pattern_size);
     light_floor(block);
     // Forward, or up where the camera looks down, freed of what is not level.
     const glm::vec3 level =
@@ -109,7 +110,8 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
     fade_floor(frame, {level.x, level.z}, block);
   }
   block.viewport = glm::vec4(w, h, 1.0F / w, 1.0F / h);
-  block.glow_centre = glm::vec4(0.5F * w, 0.58F * h, 1.0F / (0.62F * h), 0.0F);
+  block.glow_centre = glm::vec4(0.5F * w, 0.58F * h, 1.0F / (0.62F * h),
+                                frame.ground ? static_cast<float>(frame.ground->pattern) : 0.0F);
   // A neighbourhood of about an eighth of what the camera sees at its target.
   const float reach = 0.25F * slope * distance;
   block.occlusion_scale = glm::vec4(near, far * near / (far - near), far / (far - near), reach);

@@ -35,10 +35,10 @@ LightPass::LightPass(int width, int height, int shadow_taps, int samples_across,
   const auto floor = [&](std::initializer_list<const char*> more) {
     return gpu::Program("tile.vert", "floor.frag", with(with(defines_, {"IF_NEEDED"}), more));
   };
-  between_ = {floor({"FLOOR SMOOTH"}), floor({"FLOOR FADING"}), floor({"FLOOR CHECKERED"})};
+  between_ = {floor({"FLOOR SMOOTH"}), floor({"FLOOR FADING"}), floor({"FLOOR PATTERNED"})};
   if (samples_across_ == 1) return;
   at_pixels_ = {floor({"EXACT", "FLOOR SMOOTH"}), floor({"EXACT", "FLOOR FADING"}),
-                floor({"EXACT", "FLOOR CHECKERED"})};
+                floor({"EXACT", "FLOOR PATTERNED"})};
   cover_ = gpu::Program("tile.vert", "cover.frag", defines_);
 }
 
@@ -78,7 +78,7 @@ void LightPass::draw_floor(const FloorPrograms& programs, const Tiles::Floor& fl
     Tiles::draw(range);
   };
   draw(programs.smooth, floor.smooth);
-  draw(is_checkered_ ? programs.checkered : programs.fading, floor.uneven);
+  draw(is_patterned_ ? programs.patterned : programs.fading, floor.uneven);
 }
 
 // One sample a pixel: the depth that the geometry left says where bodies are.
@@ -103,8 +103,8 @@ void LightPass::draw_samples(const Tiles& tiles, const gpu::Program& light) cons
 }
 
 void LightPass::run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles,
-                    unsigned pattern_kinds, bool is_checkered) {
-  is_checkered_ = is_checkered;
+                    unsigned pattern_kinds, bool is_patterned) {
+  is_patterned_ = is_patterned;
   if (samples_across_ == 1 && on_opaque_.name() == 0) on_opaque_ = gpu::Framebuffer(drawn, opaque.depth);
   (samples_across_ == 1 ? on_opaque_ : drawn).bind();
   if (samples_across_ == 1) {

@@ -24,11 +24,11 @@ class LightPass {
   // Into `drawn`, which shows the empty floor; with several samples a pixel its depth is used for the cover.
   // `opaque` must be bound.
   void run(const Layer& opaque, const gpu::Framebuffer& drawn, const Tiles& tiles, unsigned pattern_kinds,
-           bool is_checkered);
+           bool is_patterned);
 
  private:
   struct FloorPrograms {
-    gpu::Program smooth, fading, checkered;  // by the ground: common/floor.glsl
+    gpu::Program smooth, fading, patterned;  // by the ground: common/floor.glsl
   };
   const gpu::Program& bodies(unsigned pattern_kinds);  // built when first wanted
   void draw_floor(const FloorPrograms& programs, const Tiles::Floor& floor, int least_need,
@@ -36,7 +36,7 @@ class LightPass {
   void draw_samples(const Tiles& tiles, const gpu::Program& light) const;
 
   int samples_across_;
-  bool is_checkered_ = false;  // the ground
+  bool is_patterned_ = false;  // the ground
   std::vector<std::string> defines_;
   gpu::Texture dimming_, need_;  // of each second pixel; of each tile
   gpu::Framebuffer dimming_target_, need_target_;

@@ -91,7 +91,7 @@ void Tiles::mark_ground(const FrameBlock& block) {
     const char* corner = &corner_marks_[i / across * stride + i % across];
     const auto [least, most] = std::minmax({corner[0], corner[1], corner[stride], corner[stride + 1]});
     ground_marks_[i] = least == most ? least : kFading;
-    if (ground_marks_[i] == kFlat && block.ground_colour.w > 0.0F) ground_marks_[i] = kFading;  // checkered
+    if (ground_marks_[i] == kFlat && block.ground_colour.w > 0.0F) ground_marks_[i] = kFading;  // patterned
   }
 }
 

@@ -85,10 +85,20 @@ std::optional<render::Ground> make_ground(const std::string& name, double height
   if (name == "none") return std::nullopt;
   render::Ground ground;
   ground.height = static_cast<float>(height);
-  if (name == "concrete") ground.colour = hex(0xa5a29c);
-  if (name == "wood") ground.colour = hex(0x8d7357);
+  const auto lay = [&ground](render::GroundPattern pattern, float size) {
+    ground.pattern = pattern;
+    ground.pattern_size = size;
+  };
+  if (name == "concrete") {
+    ground.colour = hex(0xa5a29c);
+    lay(render::GroundPattern::concrete, 1.2F);
+  }
+  if (name == "wood") {
+    ground.colour = hex(0x8d7357);
+    lay(render::GroundPattern::planks, 0.12F);
+  }
   if (name == "dark") ground.colour = hex(0x3a3d42);
-  if (name == "checker") ground.checker = 0.1F;
+  if (name == "checker") lay(render::GroundPattern::checker, 0.1F);
   return ground;
 }
 

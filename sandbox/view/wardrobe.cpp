@@ -70,7 +70,10 @@ std::optional<render::Ground> find_ground(const scene::SceneDescription& scene,
   auto ground = make_ground(scene.render.ground.empty() ? "plain" : scene.render.ground, *height);
   if (!ground) return ground;
   if (scene.render.ground_colour) ground->colour = linear_colour(*scene.render.ground_colour);
-  if (scene.render.checker > 0.0) ground->checker = static_cast<float>(scene.render.checker);
+  if (scene.render.checker > 0.0) {
+    ground->pattern = render::GroundPattern::checker;
+    ground->pattern_size = static_cast<float>(scene.render.checker);
+  }
   return ground;
 }
 

@@ -13,7 +13,11 @@ float floor_depth(vec3 ray) {
 // FLOOR: how much of it a rectangle's corners tell (floor_corner) and how much each pixel works out (floor_at).
 #define SMOOTH 1    // all: the whole floor, or none of it
 #define FADING 2    // the backdrop
-#define CHECKERED 3 // the backdrop
+#define PATTERNED 3 // the backdrop; the share of its colour is a picture
+
+#if FLOOR == PATTERNED
+layout(binding = 13) uniform sampler2D floor_shares;  // half of them
+#endif
 
 float floor_faded(vec3 ray) {
   float drop = ground_place.x - eye_exposure.y;
@@ -34,20 +38,15 @@ vec4 floor_corner(vec2 pixel, vec3 ray) {
 #endif
 }
 
-vec4 floor_at(vec4 corner, vec3 ray) {
+vec4 floor_at(vec4 corner, vec3 ray, vec2 pixel) {
 #if FLOOR == SMOOTH
   return corner;
 #else
   float fade = floor_faded(ray);
-  float square = 1.0;
-#if FLOOR == CHECKERED
-  float z = min(floor_depth(ray), 1e6);
-  vec2 q = (eye_exposure.xz + ray.xz * z) / ground_colour.w;
-  float width = z * view_ray.y * 2.0 * viewport.w / ground_colour.w * z * length(ray) / max(abs(eye_exposure.y - ground_place.x), 1e-6);
-  vec2 s = (abs(fract(q * 0.5) - 0.5) - 0.25) * 2.0;
-  vec2 side = clamp(s / max(width, 1e-5) + 0.5, 0.0, 1.0) * 2.0 - 1.0;
-  square = 0.86 + 0.14 * side.x * side.y * clamp(1.5 - width, 0.0, 1.0);
+  float share = 1.0;
+#if FLOOR == PATTERNED
+  share = 2.0 * texelFetch(floor_shares, ivec2(pixel), 0).r;
 #endif
-  return vec4(corner.rgb * fade, square * (1.0 - fade));
+  return vec4(corner.rgb * fade, share * (1.0 - fade));
 #endif
 }

@@ -15,11 +15,11 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 backdrop_bottom;     // w: vignette
   vec4 floor_sun;           // light that the sun alone makes the floor send to the eye; w unused
   vec4 floor_sky;           // the same of everything else
-  vec4 ground_colour;       // w: metres a checker square, 0 if plain
+  vec4 ground_colour;       // w: metres of its pattern, 0 if plain
   vec4 ground_place;        // x: height, y: fade from, z: fade to (m along ground_way from the eye), w: 1 if there is a ground
   vec4 ground_way;          // x, y: unit, the level way (x, z) into the picture; z: 1/from, w: 1/(1/from - 1/to)
   vec4 viewport;            // width, height, 1/width, 1/height (pixels)
-  vec4 glow_centre;         // x, y in pixels; z: 1/reach; w unused
+  vec4 glow_centre;         // x, y in pixels; z: 1/reach; w: the ground's pattern
   vec4 occlusion_scale;     // view depth = y / (z - depth); w: metres that occlusion reaches
   vec4 view_ray;            // x, y: view-space slope at the picture's edge
   vec4 view_forward;        // world; a pixel's ray is forward + x * right + y * up, x and y in -1..1

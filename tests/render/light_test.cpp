@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "render/output/compare.h"
+#include "render/pass/floor_pattern.h"
 #include "render/renderer.h"
 #include "tests/render/frames.h"
 
@@ -102,7 +103,8 @@ TEST_CASE("a checkered floor's squares lie where their size says, painted or und
   Frame frame = plain_frame();
   frame.camera.position = {0.25F, 4.0F, 4.0F};
   frame.camera.target = {0.25F, 0.0F, 0.0F};
-  frame.ground->checker = 0.5F;
+  frame.ground->pattern = GroundPattern::checker;
+  frame.ground->pattern_size = 0.5F;
   frame.ground->colour = glm::vec3(0.2F);
   frame.lights.sun_direction = {0.0F, 1.0F, 0.0F};
   for (const bool has_shadow : {false, true}) {
@@ -117,6 +119,79 @@ TEST_CASE("a checkered floor's squares lie where their size says, painted or und
       CHECK(std::min(bright, dark) / std::max(bright, dark) == Approx(0.72).epsilon(0.03));
       CHECK(light_at(0.55F, -0.05F) == Approx(bright).epsilon(0.03));
       CHECK(light_at(0.05F, -0.05F) == Approx(dark).epsilon(0.03));
+    }
+  }
+}
+
+TEST_CASE("floors of planks and of concrete keep their colour in the mean, near and far, and repeat") {
+  using pass::FloorPattern;
+  for (const GroundPattern kind : {GroundPattern::planks, GroundPattern::concrete}) {
+    const FloorPattern& pattern = FloorPattern::of(kind);
+    const auto row_at = [&](double y, float depth, double x = 0.0) {
+      std::vector<std::uint16_t> shares(512);
+      pattern.find_row({x, y}, {1.0 / 512.0, 0.0}, depth, 0.0F, 512, shares.data());
+      return shares;
+    };
+    for (const float depth : {0.0F, 2.5F, 6.0F}) {
+      double sum = 0.0;
+      int least = 65535, most = 0;
+      for (int j = 0; j < 512; ++j) {
+        for (const std::uint16_t share : row_at(j / 512.0, depth)) {
+          sum += share;
+          least = std::min<int>(least, share);
+          most = std::max<int>(most, share);
+        }
+      }
+      CHECK(sum / (512.0 * 512.0) == Approx(FloorPattern::kOne).epsilon(0.002));
+      CHECK(most - least > 0.02 * FloorPattern::kOne);
+    }
+    CHECK(row_at(0.31, 0.7F) == row_at(-3.69, 0.7F, 5.0));
+    for (const std::uint16_t share : row_at(0.3, FloorPattern::depth_of(1.0F)))
+      CHECK(share == Approx(FloorPattern::kOne).epsilon(0.002));
+  }
+}
+
+TEST_CASE(
+    "a plank floor shows the same boards painted and under a shadow's edge, darkest where boards meet") {
+  Frame frame = plain_frame();
+  frame.camera.position = {0.25F, 4.0F, 4.0F};
+  frame.camera.target = {0.25F, 0.0F, 0.0F};
+  frame.ground->colour = glm::vec3(0.2F);
+  frame.lights.sun_direction = {0.0F, 1.0F, 0.0F};
+  const Draw slab = at(make_box(1, {0.2F, 0.01F, 0.2F}), {0.25F, 2.0F, 0.25F});
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const auto picture = [&](GroundPattern pattern, bool has_shadow) {
+      frame.ground->pattern = pattern;
+      frame.ground->pattern_size = 0.5F;
+      frame.draws.clear();
+      if (has_shadow) frame.draws = {slab};
+      return renderer.render(frame);
+    };
+    const Image plain = picture(GroundPattern::plain, false), boards = picture(GroundPattern::planks, false);
+    const Image plain_dark = picture(GroundPattern::plain, true),
+                boards_dark = picture(GroundPattern::planks, true);
+    int dark = 0, unlike = 0;
+    for (float z = -0.3F; z <= 0.3F; z += 0.02F) {  // across the shadow, and its edges
+      for (float x = -0.1F; x <= 0.6F; x += 0.02F) {
+        const auto light = [&](const Image& image) {
+          return linear(green(image, pixel_of(frame, {x, 0.0F, z})));
+        };
+        dark += light(plain_dark) < 0.9 * light(plain) ? 1 : 0;
+        const double lit_share = light(boards) / light(plain),
+                     dark_share = light(boards_dark) / light(plain_dark);
+        unlike += std::abs(lit_share - dark_share) > 0.06 ? 1 : 0;
+      }
+    }
+    CHECK(dark > 60);
+    CHECK(unlike <= dark / 20);
+    const auto share_at = [&](float z) {
+      const auto pixel = pixel_of(frame, {0.25F, 0.0F, z});
+      return linear(green(boards, pixel)) / linear(green(plain, pixel));
+    };
+    for (const float seam : {0.5F, 1.0F}) {
+      CHECK(share_at(seam) < share_at(seam - 0.1F));
+      CHECK(share_at(seam) < share_at(seam + 0.1F));
     }
   }
 }
