@@ -23,6 +23,7 @@
 #include "render/pass/surface.h"
 #include "render/pass/tile_reset.h"
 #include "render/pass/tiles.h"
+#include "render/pass/truth.h"
 #include "render/pass/wires.h"
 
 namespace shatterbox::render {
@@ -100,6 +101,8 @@ struct Renderer::Rooms {
   pass::LightPass light;
   pass::GlassPass glass;
   pass::WiresPass wires;
+  pass::TruthPass truth;
+  std::uint32_t ground_id = 0;     // of the last frame
   std::vector<std::uint8_t> rgba;  // as read back; kept, since new pages cost more than the reading
   Image kept;                      // the last picture, without what is written on it
   bool is_kept = false;            // that, and all that the passes keep, is whole
@@ -205,6 +208,7 @@ Image Renderer::render(const Frame& frame) {
   r.context.make_current();
   PassClock clock(r.is_timed, r.times);
   r.prepare(frame);
+  r.ground_id = frame.ground ? frame.ground->id : 0;
   if (!r.changes.is_nothing()) r.lay_floor();
   clock.mark("upload");
   if (!r.changes.is_nothing()) {
@@ -220,6 +224,14 @@ Image Renderer::render(const Frame& frame) {
   }
   r.is_kept = !frame.overlay.has_wires;  // lines over a picture that is kept in part would be drawn twice
   return image;
+}
+
+Truth Renderer::find_truth() {
+  Rooms& r = *rooms_;
+  r.context.make_current();
+  r.block.assign(std::span<const pass::FrameBlock>(&r.values, 1));
+  r.block.bind_uniform(0);
+  return r.truth.run(r.meshes, r.values, r.ground_id);
 }
 
 void Renderer::forget() {

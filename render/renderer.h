@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/frame/frame.h"
+#include "render/frame/truth.h"
 #include "render/output/image.h"
 
 namespace shatterbox::render {
@@ -40,6 +41,9 @@ class Renderer {
 
   // RGB8, row 0 on top. Throws std::invalid_argument for a null mesh or an index out of range.
   Image render(const Frame& frame);
+
+  // The numbers of the picture that was rendered last.
+  Truth find_truth();
 
   void forget();               // the next frame is drawn wholly, as by a renderer that has drawn none
   double drawn_share() const;  // of the last picture: 0 if all of it was kept, 1 if none

@@ -24,6 +24,7 @@ struct Draw {
       scalars;                     // |V| or null; shown by OverlayKind::heat, in Overlay::unit, and by groups
   std::uint32_t colour_index = 0;  // Overlay::pieces: equal index, equal colour
   bool casts_shadow = true;
+  std::uint32_t id = 0;  // in truth images; 0: it is not in them
 };
 
 struct Camera {
@@ -63,6 +64,7 @@ struct Ground {
   float fade_from = 0.0F, fade_to = 0.0F;
   GroundPattern pattern = GroundPattern::plain;
   float pattern_size = 0.1F;  // m
+  std::uint32_t id = 0;       // in truth images
 };
 
 // Shown linear behind everything: a vertical gradient with a soft glow in the middle, or a studio's sweep:

@@ -13,10 +13,12 @@
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
 
-#include <fstream>
+#include <cstdlib>
 #include <mutex>
 #include <string>
-#include <system_error>
+
+#include "render/output/deflate.h"
+#include "render/output/whole_file.h"
 
 namespace shatterbox::render {
 namespace {
@@ -40,23 +42,25 @@ std::string encode_png(const Image& image) {
 
 }  // namespace
 
+std::string deflate(const std::string& bytes) {
+  constexpr int kQuality = 5;  // the least that stb knows
+  int size = 0;
+  std::string in = bytes;  // it is only read, but not said to be const
+  unsigned char* packed = stbi_zlib_compress(reinterpret_cast<unsigned char*>(in.data()),
+                                             static_cast<int>(in.size()), &size, kQuality);
+  // Between zlib's two bytes of head and its four of sum.
+  std::string out(reinterpret_cast<const char*>(packed) + 2, static_cast<std::size_t>(size) - 6);
+  std::free(packed);
+  return out;
+}
+
 Status write_png(const std::filesystem::path& path, const Image& image) {
   if (image.width <= 0 || image.height <= 0 || image.pixels.empty()) {
     return {path.string() + ": the picture is empty"};
   }
   const std::string bytes = encode_png(image);
   if (bytes.empty()) return {path.string() + ": the picture cannot be encoded"};
-  const std::filesystem::path part = path.string() + ".part";
-  {
-    std::ofstream file(part, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) return {path.string() + ": cannot be written"};
-  }
-  std::error_code problem;
-  std::filesystem::rename(part, path, problem);
-  if (problem) return {path.string() + ": " + problem.message()};
-  return {};
+  return write_whole_file(path, bytes);
 }
 
 std::optional<Image> read_image(const std::filesystem::path& path, std::string* error) {

@@ -199,7 +199,7 @@ void MeshStore::upload_rows(const std::vector<Item>& items) {
   std::vector<float> scalars;
   for (const Item& item : items) {
     const auto first_scalar = item.scalars ? static_cast<std::uint32_t>(scalars.size()) : kNone;
-    draws.push_back({item.world_from_body, {item.paints.first, item.paints.count / 3U, first_scalar, 0U}});
+    draws.push_back({item.world_from_body, {item.paints.first, item.paints.count / 3U, first_scalar, item.id}});
     if (item.scalars) scalars.insert(scalars.end(), item.scalars->begin(), item.scalars->end());
   }
   draw_rows_.assign(std::span<const DrawRow>(draws));
@@ -225,6 +225,7 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, fl
   for (const Draw& draw : frame.draws) {
     Item item = make_item(draw, frame, pixel_slope);
     item.row = static_cast<int>(items.size());
+    item.id = draw.id;
     item.is_on_screen &= std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {
       return glm::dot(glm::vec3(side), item.centre_world) + side.w > -item.radius;
     });

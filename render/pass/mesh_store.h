@@ -29,6 +29,7 @@ struct Item {
   const StoredMesh* stored = nullptr;  // never null; the same for as long as it is drawn
   std::uint64_t mesh_id = 0, stored_id = 0;
   int row = 0;  // of the draw rows
+  std::uint32_t id = 0;
   PaintTable::Rows paints;
   std::shared_ptr<const std::vector<float>> scalars;  // null if none are shown
   glm::mat4 world_from_body{1.0F};

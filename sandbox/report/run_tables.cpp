@@ -53,31 +53,20 @@ const char* name_of(body::Motion motion) {
 
 }  // namespace
 
-RunTables::RunTables(const std::string& folder)
-    : bodies_(folder, "bodies", kBodyColumns),
-      trajectories_(folder, "trajectories", kTrajectoryColumns),
-      impacts_(folder, "impacts", kImpactColumns),
-      breaks_(folder, "breaks", kBreakColumns) {}
+BodyTable::BodyTable(const std::string& folder) : file_(folder, "bodies", kBodyColumns) {}
 
-std::string RunTables::add(int frame, double film, double time, std::span<const body::Body> bodies) {
+void BodyTable::add(double time, std::span<const body::Body> bodies) {
   std::set<body::BodyId> present;
   for (const body::Body& body : bodies) {
     present.insert(body.id);
     lives_.try_emplace(body.id, Life{body});
-    if (body.motion == body::Motion::fixed) continue;
-    std::vector<Cell> cells{static_cast<long>(frame), film, time, static_cast<long>(body.id)};
-    append(cells, body.pose);
-    append(cells, body.velocity);
-    append(cells, body.angular_velocity);
-    trajectories_.add_row(cells);
   }
   for (const body::BodyId id : present_)
     if (present.count(id) == 0) lives_[id].gone = time;
   present_ = std::move(present);
-  return trajectories_.fault();
 }
 
-void RunTables::write_bodies(const world::World& world) {
+std::string BodyTable::close(const world::World& world) {
   for (const auto& [id, life] : lives_) {
     const world::Ancestry ancestry = world.ancestry(id);
     const body::Body& body = life.at_birth;
@@ -91,12 +80,31 @@ void RunTables::write_bodies(const world::World& world) {
                             ancestry.birth_time,
                             life.gone < 0.0 ? Cell{} : Cell{life.gone}};
     append(cells, body.pose);
-    bodies_.add_row(cells);
+    file_.add_row(cells);
   }
+  return file_.close();
+}
+
+RunTables::RunTables(const std::string& folder)
+    : bodies_(folder),
+      trajectories_(folder, "trajectories", kTrajectoryColumns),
+      impacts_(folder, "impacts", kImpactColumns),
+      breaks_(folder, "breaks", kBreakColumns) {}
+
+std::string RunTables::add(int frame, double film, double time, std::span<const body::Body> bodies) {
+  bodies_.add(time, bodies);
+  for (const body::Body& body : bodies) {
+    if (body.motion == body::Motion::fixed) continue;
+    std::vector<Cell> cells{static_cast<long>(frame), film, time, static_cast<long>(body.id)};
+    append(cells, body.pose);
+    append(cells, body.velocity);
+    append(cells, body.angular_velocity);
+    trajectories_.add_row(cells);
+  }
+  return trajectories_.fault();
 }
 
 std::string RunTables::close(const world::World& world) {
-  write_bodies(world);
   for (const world::ImpactRow& row : world.report().impacts) {
     std::vector<Cell> cells{row.time,     static_cast<long>(row.id),
                             row.body,     row.impulse,
@@ -120,9 +128,9 @@ std::string RunTables::close(const world::World& world) {
     append(cells, row.place);
     breaks_.add_row(cells);
   }
-  for (TableFile* file : {&bodies_, &trajectories_, &impacts_, &breaks_})
+  for (TableFile* file : {&trajectories_, &impacts_, &breaks_})
     if (std::string fault = file->close(); !fault.empty()) return fault;
-  return {};
+  return bodies_.close(world);
 }
 
 }  // namespace shatterbox::sandbox::report

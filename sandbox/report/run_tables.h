@@ -11,6 +11,27 @@
 
 namespace shatterbox::sandbox::report {
 
+/// Who is who: a row a body or piece that a frame showed.
+class BodyTable {
+ public:
+  explicit BodyTable(const std::string& folder);
+
+  /// A frame shows `bodies` at `time` s of the world.
+  void add(double time, std::span<const body::Body> bodies);
+
+  /// After the last frame. A sentence if it cannot be written, else empty.
+  std::string close(const world::World& world);
+
+ private:
+  struct Life {
+    body::Body at_birth;
+    double gone = -1.0;  // s of the first frame without it; negative: it is there
+  };
+  TableFile file_;
+  std::map<body::BodyId, Life> lives_;
+  std::set<body::BodyId> present_;  // in the last frame
+};
+
 class RunTables {
  public:
   explicit RunTables(const std::string& folder);
@@ -23,15 +44,8 @@ class RunTables {
   std::string close(const world::World& world);
 
  private:
-  struct Life {
-    body::Body at_birth;
-    double gone = -1.0;  // s of the first frame without it; negative: it is there
-  };
-  void write_bodies(const world::World& world);
-
-  TableFile bodies_, trajectories_, impacts_, breaks_;
-  std::map<body::BodyId, Life> lives_;
-  std::set<body::BodyId> present_;  // in the last frame
+  BodyTable bodies_;
+  TableFile trajectories_, impacts_, breaks_;
 };
 
 }  // namespace shatterbox::sandbox::report

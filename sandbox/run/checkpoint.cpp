@@ -62,6 +62,7 @@ Checkpoint::Checkpoint(const std::vector<const Job*>& jobs) : saved_(Clock::now(
   file_ = file_beside(options);
   video_ = options.video;
   frames_folder_ = options.frames_folder;
+  truth_folder_ = options.truth_folder;
   core::Hash scene;
   for (const Job* job : jobs) add_job(scene, *job);
   std::string stills;
@@ -76,7 +77,8 @@ Checkpoint::Checkpoint(const std::vector<const Job*>& jobs) : saved_(Clock::now(
                {"--quality", options.quality},
                {"--stills", stills},
                {"-o", options.video},
-               {"--frames", options.frames_folder}};
+               {"--frames", options.frames_folder},
+               {"--truth", options.truth_folder}};
 }
 
 void Checkpoint::load(scene::Problems& problems) {
@@ -114,9 +116,8 @@ void Checkpoint::keep_pictures(const nlohmann::json& pictures) {
   for (const auto& entry : pictures) {
     const Picture picture{entry.at(0), std::stoull(entry.at(1).get<std::string>(), nullptr, 16)};
     if (!video_.empty() && picture.number >= encoded) return;
-    if (!frames_folder_.empty() &&
-        !fs::exists(fmt::format("{}/frame_{:06}.png", frames_folder_, picture.number)))
-      return;
+    if (!frames_folder_.empty() && !fs::exists(picture_file(frames_folder_, picture.number))) return;
+    if (!truth_folder_.empty() && !fs::exists(truth_file(truth_folder_, picture.number))) return;
     kept_.push_back(picture);
   }
 }

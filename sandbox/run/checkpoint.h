@@ -46,7 +46,7 @@ class Checkpoint {
 
   void keep_pictures(const nlohmann::json& pictures);
 
-  std::string file_, video_, frames_folder_;
+  std::string file_, video_, frames_folder_, truth_folder_;
   std::vector<std::pair<std::string, std::string>> settings_;  // names and values, which must be the same
   State now_, left_;                                           // of this run; of the earlier one
   std::vector<Picture> kept_;

@@ -50,6 +50,10 @@ void add_run_options(CLI::App& command, Options& options) {
       .add_option("--tables", options.tables_folder,
                   "folder for bodies, trajectories, impacts, breaks: CSV, JSON")
       ->type_name("DIR");
+  command
+      .add_option("--truth", options.truth_folder,
+                  "folder for depth, normals, ids and camera of each picture")
+      ->type_name("DIR");
   command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
   add_picture_options(command, options);
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")

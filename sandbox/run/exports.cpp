@@ -14,6 +14,7 @@ Exports::Exports(const Job& job, view::View& view, int first) : job_(job), view_
   if (!options.model.empty())
     model_.emplace(*job.scene, *job.built, options.frames_per_second,
                    static_cast<double>(size.width) / size.height);
+  if (!options.truth_folder.empty()) bodies_.emplace(options.truth_folder);
   if (!options.tables_folder.empty()) tables_.emplace(options.tables_folder);
 }
 
@@ -24,19 +25,22 @@ std::string Exports::add(const view::Moment& moment, int number) {
     if (std::string fault = report::write_obj_frame(meshes, number, moment.bodies, moment.time);
         !fault.empty())
       return fault;
+  if (bodies_) bodies_->add(moment.time, moment.bodies);
   return tables_ ? tables_->add(number, moment.film, moment.time, moment.bodies) : std::string();
 }
 
 std::string Exports::close() {
   std::string fault;
   if (model_) fault = model_->write(job_.options.model);
+  if (bodies_ && fault.empty()) fault = bodies_->close(job_.built->world);
   if (tables_ && fault.empty()) fault = tables_->close(job_.built->world);
   return fault;
 }
 
 std::vector<std::string> export_outputs(const Options& options) {
   std::vector<std::string> outputs;
-  for (const std::string& output : {options.meshes_folder, options.model, options.tables_folder})
+  for (const std::string& output :
+       {options.meshes_folder, options.model, options.tables_folder, options.truth_folder})
     if (!output.empty()) outputs.push_back(output);
   return outputs;
 }
@@ -49,6 +53,7 @@ void check_exports(const Options& options, scene::Problems& problems) {
   check_file("--export", options.model, problems);
   make_folder("--meshes", options.meshes_folder, problems);
   make_folder("--tables", options.tables_folder, problems);
+  make_folder("--truth", options.truth_folder, problems);
 }
 
 }  // namespace shatterbox::sandbox::run

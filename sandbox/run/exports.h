@@ -1,4 +1,5 @@
-// What a run writes for other programs beside its film: an animated model, OBJ meshes, tables.
+// What a run writes for other programs beside its film: an animated model, OBJ meshes, tables, and who
+// is who in the truth images.
 #pragma once
 
 #include <optional>
@@ -28,6 +29,7 @@ class Exports {
   int first_;
   std::optional<model::ModelFilm> model_;
   std::optional<report::RunTables> tables_;
+  std::optional<report::BodyTable> bodies_;  // who the ids of truth images are
 };
 
 /// What is asked for of a run's exports, by the option's names: for the closing words.

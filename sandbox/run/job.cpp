@@ -64,13 +64,15 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   job.painter.frames_per_second = options.frames_per_second;
   job.painter.video = job.options.video;
   job.painter.frames_folder = options.frames_folder;
-  if (!options.has_pictures && (!options.video.empty() || !options.frames_folder.empty())) {
-    scene::book(problems, scene::Place{"--no-render", 0, 0}, "no pictures, but -o or --frames asks for some",
-                "leave one of them out");
+  job.painter.truth_folder = options.truth_folder;
+  const bool has_folder = !options.frames_folder.empty() || !options.truth_folder.empty();
+  if (!options.has_pictures && (!options.video.empty() || has_folder)) {
+    scene::book(problems, scene::Place{"--no-render", 0, 0},
+                "no pictures, but -o, --frames or --truth asks for some", "leave one of them out");
   }
-  if (!options.stills.empty() && options.frames_folder.empty()) {
+  if (!options.stills.empty() && !has_folder) {
     scene::book(problems, scene::Place{"--stills", 0, 0}, "there is no folder for the pictures",
-                "name one: --frames DIR");
+                "name one: --frames DIR or --truth DIR");
   }
   if (!options.stills.empty() && !options.video.empty()) {
     scene::book(problems, scene::Place{"--stills", 0, 0}, "single moments make no video", "leave -o out");

@@ -25,6 +25,7 @@ struct Options {
   std::string meshes_folder;   // OBJ
   std::string model;           // glTF
   std::string tables_folder;   // CSV and JSON
+  std::string truth_folder;    // depth, normals, ids, cameras
   std::string report;          // JSON
   std::string size = "640x360";
   int frames_per_second = 60;

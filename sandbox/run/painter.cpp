@@ -1,5 +1,6 @@
 #include "sandbox/run/painter.h"
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include "engine/core/clock.h"
 #include "engine/core/hash.h"
 #include "render/output/image_file.h"
+#include "render/output/npz_file.h"
 #include "render/output/video_file.h"
 
 namespace shatterbox::sandbox::run {
@@ -34,6 +36,14 @@ std::uint64_t hash_image(const render::Image& image) {
     hash.add(word);
   }
   return hash.value();
+}
+
+std::string picture_file(const std::string& folder, int number) {
+  return fmt::format("{}/frame_{:06}.png", folder, number);
+}
+
+std::string truth_file(const std::string& folder, int number) {
+  return fmt::format("{}/truth_{:06}.npz", folder, number);
 }
 
 struct Painter::Room {
@@ -66,11 +76,29 @@ struct Painter::Room {
     return first;
   }
 
+  /// What the picture shows in numbers, to disk. False if that failed.
+  bool write_truth(render::Renderer& renderer, int number) {
+    const render::Truth truth = renderer.find_truth();
+    const glm::mat4 rows = glm::transpose(truth.world_from_camera);  // GLM's are columns
+    const std::array<float, 9> intrinsics{truth.focal, 0,           0.5F * static_cast<float>(truth.width),
+                                          0,           truth.focal, 0.5F * static_cast<float>(truth.height),
+                                          0,           0,           1};
+    const int width = truth.width, height = truth.height;
+    const std::array arrays{
+        render::make_array<float>("depth", "<f4", {height, width}, truth.depths),
+        render::make_array<glm::vec3>("normal", "<f4", {height, width, 3}, truth.normals),
+        render::make_array<std::uint32_t>("id", "<u4", {height, width}, truth.ids),
+        render::make_array<glm::mat4>("world_from_camera", "<f4", {4, 4}, std::span(&rows, 1)),
+        render::make_array<float>("intrinsics", "<f4", {3, 3}, intrinsics)};
+    const auto status = render::write_npz(truth_file(settings.truth_folder, number), arrays);
+    if (!status) fail(status.error);
+    return status.ok();
+  }
+
   /// Pictures to disk. False if that failed.
   bool write(render::Image image, int number) {
     if (!settings.frames_folder.empty()) {
-      const auto status =
-          render::write_png(fmt::format("{}/frame_{:06}.png", settings.frames_folder, number), image);
+      const auto status = render::write_png(picture_file(settings.frames_folder, number), image);
       if (!status) return fail(status.error), false;
     }
     if (!video) return true;
@@ -85,6 +113,7 @@ struct Painter::Room {
     painted.gl_renderer = renderer.gl_renderer();
     auto last = start;
     double encoded = 0.0;
+    const bool has_files = !settings.frames_folder.empty() || !settings.truth_folder.empty();
     while (auto waited = next()) {
       const auto& [frame, number] = *waited;
       if (painted.start == 0.0) {  // compiles the shaders for this processor; not a frame's cost
@@ -99,10 +128,10 @@ struct Painter::Room {
       const std::uint64_t hash = hash_image(image);
       painted.hashes.push_back(hash);
       const auto written = Clock::now();
+      if (!settings.truth_folder.empty() && !write_truth(renderer, number)) return;
       if (!write(std::move(image), number)) return;
       const double encoder = video ? video->encode_cpu_ms() : 0.0;
-      painted.encode.push_back(encoder - encoded +
-                               (settings.frames_folder.empty() ? 0.0 : milliseconds_since(written)));
+      painted.encode.push_back(encoder - encoded + (has_files ? milliseconds_since(written) : 0.0));
       encoded = encoder;
       painted.frame.push_back(milliseconds_since(last));
       last = Clock::now();

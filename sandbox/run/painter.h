@@ -25,6 +25,7 @@ struct PainterSettings {
   int frames_per_second = 60;
   std::string video;          // empty: none
   std::string frames_folder;  // empty: none
+  std::string truth_folder;   // empty: none
   std::vector<Picture> kept;  // what an earlier run has drawn and written already
 };
 
@@ -62,6 +63,10 @@ class Painter {
   struct Room;
   std::unique_ptr<Room> room_;
 };
+
+/// Where frame `number` lies in the folder of pictures, and in that of truth.
+std::string picture_file(const std::string& folder, int number);
+std::string truth_file(const std::string& folder, int number);
 
 /// A hash of a picture's bytes and size.
 std::uint64_t hash_image(const render::Image& image);

@@ -151,7 +151,7 @@ int play_all(std::vector<Shot>& shots) {
   settings.kept = film.checkpoint.kept();
   if (!settings.kept.empty()) film.first_drawn = settings.kept.back().number + 1;
   std::optional<Painter> painter;
-  if (options.has_pictures && !(settings.video.empty() && settings.frames_folder.empty())) {
+  if (options.has_pictures && !(settings.video + settings.frames_folder + settings.truth_folder).empty()) {
     painter.emplace(settings);
     if (!painter->error().empty()) {
       scene::book(problems, scene::Place{"-o", 0, 0}, painter->error());
@@ -191,8 +191,9 @@ int run_scene(const Options& options) {
   core::set_thread_count(options.threads);
   scene::Problems problems;
   const std::vector<std::string> files = scene::shots_or_scene(options.scene);
-  if (files.size() > 1 && !(options.model.empty() && options.tables_folder.empty()))
-    scene::book(problems, scene::Place{options.model.empty() ? "--tables" : "--export", 0, 0},
+  const std::string one_world = options.model + options.tables_folder + options.truth_folder;
+  if (files.size() > 1 && !one_world.empty())
+    scene::book(problems, scene::Place{"--export, --tables, --truth", 0, 0},
                 fmt::format("{} is a film of {} shots, each a world of its own", options.scene, files.size()),
                 fmt::format("take one of them: {}", files.front()));
   std::vector<Shot> shots(files.size());

@@ -108,6 +108,7 @@ void View::add_body(const body::Body& body, render::Frame& frame) {
   render::Draw draw;
   DrawnShape& drawn = drawn_of(body.shape);
   draw.mesh = drawn.mesh;
+  draw.id = body.id;
   const bool is_plane = body.shape->kind == body::ShapeKind::plane;
   const Pose pose = is_plane ? pose_of_slab(body.pose) : body.pose;
   draw.world_from_body = to_glm(pose);

@@ -62,13 +62,17 @@ bool is_drawn_as_ground(const body::Body& body) {
 std::optional<render::Ground> find_ground(const scene::SceneDescription& scene,
                                           const scene::BuiltScene& built) {
   std::optional<double> height;
+  body::BodyId id = 0;
   for (const body::Body& body : built.world.bodies()) {
     if (!is_drawn_as_ground(body)) continue;
-    height = std::max(height.value_or(body.pose.translation.y()), body.pose.translation.y());
+    if (height && *height >= body.pose.translation.y()) continue;
+    height = body.pose.translation.y();
+    id = body.id;
   }
   if (!height) return std::nullopt;
   auto ground = make_ground(scene.render.ground.empty() ? "plain" : scene.render.ground, *height);
   if (!ground) return ground;
+  ground->id = id;
   if (scene.render.ground_colour) ground->colour = linear_colour(*scene.render.ground_colour);
   if (scene.render.checker > 0.0) {
     ground->pattern = render::GroundPattern::checker;

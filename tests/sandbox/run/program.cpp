@@ -54,6 +54,7 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("run good.toml --no-render -o v.mp4", "--no-render");
   refused("run good.toml --no-render --meshes good.toml", "good.toml");
   refused("run good.toml --no-render --tables good.toml", "good.toml");
+  refused("run good.toml --no-render --truth t", "--no-render");
   refused("run good.toml --export film.gltf", ".glb");
   refused("run good.toml --export no/such/film.glb", "there is no folder");
   refused("run reel --export film.glb", "shots");
@@ -100,6 +101,23 @@ TEST_CASE("a model and tables are outputs of their own, whole under their names"
   CHECK(fs::exists(folder / "t/trajectories.csv"));
   CHECK_FALSE(fs::exists(folder / "film.glb.part"));
   CHECK_FALSE(fs::exists(folder / "good.mp4"));
+}
+
+TEST_CASE("truth beside the film: a file a picture, which numpy reads, and who is who") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string run = "run good.toml --size 64x48 --fps 20 --seconds 0.3 ";
+  const Outcome outcome = program(folder, run + "--frames f --truth t --report r.json");
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  REQUIRE(program(folder, run + "--frames g --report plain.json").status == 0);
+  CHECK(read_json(folder / "r.json")["frame_hashes"] == read_json(folder / "plain.json")["frame_hashes"]);
+  CHECK(fs::exists(folder / "t/truth_000005.npz"));
+  CHECK_FALSE(fs::exists(folder / "t/truth_000006.npz"));
+  CHECK(read_json(folder / "t/bodies.json")["rows"].size() == 10);
+  CHECK(shell(folder, "python3 -m zipfile -t t/truth_000003.npz").status == 0);
+  REQUIRE(program(folder, run + "--stills 0.15 --truth s").status == 0);
+  CHECK(read_text(folder / "s/truth_000003.npz") == read_text(folder / "t/truth_000003.npz"));
 }
 
 TEST_CASE(

@@ -35,6 +35,8 @@ TEST_CASE("a body's pose, mesh and look arrive in the frame") {
   CHECK(x.y == Approx(2));
   CHECK(x.z == Approx(2));  // x turned about y by 90 degrees points to -z
   CHECK(frame.draws[1].mesh->surface == render::Surface::shell);
+  CHECK(frame.ground->id == built->world.bodies()[0].id);  // what truth images call them
+  CHECK(frame.draws[0].id == built->world.bodies()[1].id);
   CHECK(frame.draws[1].looks[0].outside.r == Approx(1.0F));
   CHECK(frame.draws[1].looks[0].outside.g == Approx(0.0F));
   CHECK(frame.draws[0].mesh->id != frame.draws[1].mesh->id);
