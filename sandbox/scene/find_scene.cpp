@@ -15,8 +15,10 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> scene_folders() {
   std::vector<fs::path> folders;
-  for (const fs::path& folder : {fs::path("scenes"), fs::path(SHATTERBOX_SCENES_DIR)}) {
-    std::error_code code;
+  std::error_code code;
+  const fs::path program = fs::read_symlink("/proc/self/exe", code).parent_path();
+  const fs::path installed = program.parent_path() / "share/shatterbox/scenes";
+  for (const fs::path& folder : {fs::path("scenes"), fs::path(SHATTERBOX_SCENES_DIR), installed}) {
     if (fs::is_directory(folder, code)) folders.push_back(folder);
   }
   return folders;

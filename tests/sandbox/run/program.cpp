@@ -74,6 +74,16 @@ TEST_CASE("check and list say what there is") {
   }
 }
 
+TEST_CASE("an installed program finds the scenes that were installed with it") {
+  const Folder folder;
+  fs::create_directories(folder / "bin");
+  fs::create_directories(folder / "share/shatterbox/scenes");
+  fs::copy_file(SHATTERBOX_PROGRAM, folder / "bin/shatterbox");
+  folder.write("share/shatterbox/scenes/lonely.toml", kSmallScene);
+  CHECK(shell(folder, "bin/shatterbox list").out.find("lonely") != std::string::npos);
+  CHECK(shell(folder, "bin/shatterbox check lonely").status == 0);
+}
+
 TEST_CASE("the option --no-render simulates and reports, with no picture and no bar") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
