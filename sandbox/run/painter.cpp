@@ -14,6 +14,7 @@
 #include "engine/core/clock.h"
 #include "engine/core/hash.h"
 #include "render/output/image_file.h"
+#include "render/output/light_sum.h"
 #include "render/output/npz_file.h"
 #include "render/output/video_file.h"
 
@@ -24,6 +25,19 @@ namespace {
 using core::Clock;
 using core::milliseconds_since;
 constexpr std::size_t kMostWaiting = 2;
+
+struct Waiting {
+  std::vector<render::Frame> samples;
+  int number = 0;
+};
+
+render::Image expose(render::Renderer& renderer, const std::vector<render::Frame>& samples) {
+  if (samples.size() == 1) return renderer.render(samples.front());
+  render::LightSum sum;
+  // Backwards: the truth is of what was drawn last, and its moment is the first.
+  for (std::size_t i = samples.size(); i-- > 0;) sum.add(renderer.render(samples[i]));
+  return sum.mean();
+}
 
 }  // namespace
 
@@ -53,7 +67,7 @@ struct Painter::Room {
 
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::deque<std::pair<render::Frame, int>> waiting;  // with their numbers
+  std::deque<Waiting> waiting;
   bool is_ending = false;
   std::vector<Picture> pictures;  // written
   std::string error;
@@ -66,7 +80,7 @@ struct Painter::Room {
     changed.notify_all();
   }
 
-  std::optional<std::pair<render::Frame, int>> next() {
+  std::optional<Waiting> next() {
     std::unique_lock lock(mutex);
     changed.wait(lock, [this] { return !waiting.empty() || is_ending; });
     if (waiting.empty()) return std::nullopt;
@@ -115,14 +129,14 @@ struct Painter::Room {
     double encoded = 0.0;
     const bool has_files = !settings.frames_folder.empty() || !settings.truth_folder.empty();
     while (auto waited = next()) {
-      const auto& [frame, number] = *waited;
+      const auto& [samples, number] = *waited;
       if (painted.start == 0.0) {  // compiles the shaders for this processor; not a frame's cost
-        (void)renderer.render(frame);
+        (void)renderer.render(samples.front());
         painted.start = milliseconds_since(start);
         last = Clock::now();
       }
       const auto begin = Clock::now();
-      render::Image image = renderer.render(frame);
+      render::Image image = expose(renderer, samples);
       painted.numbers.push_back(number);
       painted.render.push_back(milliseconds_since(begin));
       const std::uint64_t hash = hash_image(image);
@@ -176,11 +190,11 @@ Painter::~Painter() {
   (void)finish();
 }
 
-bool Painter::add(render::Frame frame, int number) {
+bool Painter::add(std::vector<render::Frame> samples, int number) {
   std::unique_lock lock(room_->mutex);
   room_->changed.wait(lock, [this] { return room_->waiting.size() < kMostWaiting || !room_->error.empty(); });
   if (!room_->error.empty()) return false;
-  room_->waiting.emplace_back(std::move(frame), number);
+  room_->waiting.push_back({std::move(samples), number});
   room_->changed.notify_all();
   return true;
 }

@@ -46,9 +46,9 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// Hands frame `number` of the film over; waits while two are waiting. False once something failed: see
-  /// error().
-  bool add(render::Frame frame, int number);
+  /// Hands frame `number` of the film over, the mean of the light of `samples`; waits while two are waiting.
+  /// False once something failed: see error().
+  bool add(std::vector<render::Frame> samples, int number);
   /// Waits for the last frame, closes the video. False if something failed.
   bool finish();
 

@@ -9,6 +9,7 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
+#include "sandbox/run/exposure.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/projector.h"
 #include "sandbox/scene/find_scene.h"
@@ -98,8 +99,10 @@ void tell_expectation(const Job& job, const Measured& measured) {
   if (job.options.has_pictures)
     fmt::print("    a picture         {:.1f} ms, drawn wholly; what does not change is kept\n",
                measured.picture);
+  const int samples = Exposure(job.scene->camera).samples();
+  if (job.options.has_pictures && samples > 1) fmt::print("    a frame           {} pictures\n", samples);
   // Steps and pictures have a thread each.
-  const double a_frame = std::max(simulate, measured.picture);
+  const double a_frame = std::max(simulate, samples * measured.picture);
   fmt::print("    in all            {:.0f} frames at true speed: {:.1f} s, if it goes on as it begins\n",
              frames, 1e-3 * (measured.load + frames * a_frame));
 }

@@ -10,14 +10,15 @@
 namespace shatterbox::sandbox::run {
 
 Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& built, Recorder& recorder,
-                     bool has_audit, int frames_per_second)
+                     bool has_audit, int frames_per_second, int slots)
     : scene_(scene),
       built_(built),
       recorder_(recorder),
       script_(scene),
       rig_(scene.camera, view::find_subject(scene, built.plan)),
       inspector_(has_audit, recorder.record),
-      frames_per_second_(frames_per_second) {
+      frames_per_second_(frames_per_second),
+      slots_(slots) {
   if (has_audit) built_.world.keep_ways();
 }
 
@@ -65,16 +66,16 @@ void Projector::step(double film) {
 }
 
 double Projector::time_ahead() const {
-  return script_.clock().simulated_at(static_cast<double>(frame_ + 1) / frames_per_second_);
+  return script_.clock().simulated_at(static_cast<double>(slot_ / slots_ + 1) / frames_per_second_);
 }
 
 std::optional<view::Moment> Projector::next() {
-  const double length = 1.0 / frames_per_second_;
-  const double film = static_cast<double>(++frame_) / frames_per_second_;
+  const int frame = ++slot_ / slots_;
+  const double rate = frames_per_second_, film = slot_ / (rate * slots_), middle = (frame + 0.5) / rate;
   world::World& world = built_.world;
   // A frame whose first half is beyond the end is none.
   const auto is_over = [&] {
-    return frame_ > 0 && script_.clock().simulated_at(film + 0.5 * length) > scene_.seconds * (1.0 + 1e-12);
+    return frame > 0 && script_.clock().simulated_at(middle) > scene_.seconds * (1.0 + 1e-12);
   };
   while (!is_over() && static_cast<double>(world.steps()) < steps_at(film) && !is_interrupted()) {
     step(film);

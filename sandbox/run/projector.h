@@ -16,17 +16,17 @@ namespace shatterbox::sandbox::run {
 
 class Projector {
  public:
-  /// All must outlive it.
+  /// All must outlive it. Shows `slots` moments of each frame, evenly over its time.
   Projector(const scene::SceneDescription& scene, scene::BuiltScene& built, Recorder& recorder,
-            bool has_audit, int frames_per_second);
+            bool has_audit, int frames_per_second, int slots = 1);
 
-  /// Steps to the next frame's moment, which is good until the next call; nothing when the film is over.
+  /// Steps to the next moment, which is good until the next call; nothing when the film is over.
   std::optional<view::Moment> next();
 
   /// What the script asked of the picture up to that moment.
   std::vector<scene::Cue> take_cues() { return std::exchange(cues_, {}); }
 
-  /// The world's time that the frame after the last one will show, s, unless the script changes that.
+  /// The world's time that the frame after the last one will show first, s, unless the script changes that.
   double time_ahead() const;
 
   /// Steps on to the end of the scene: the last frame's picture shows its begin.
@@ -48,8 +48,8 @@ class Projector {
   script::Script script_;
   view::CameraRig rig_;  // as the script sees it: at step borders, whatever frames there are
   Inspector inspector_;
-  int frames_per_second_;
-  int frame_ = -1;
+  int frames_per_second_, slots_;
+  int slot_ = -1;                   // of the last moment, counted through all frames
   std::vector<body::Body> before_;  // before the last step, if a frame shows a moment within it
   long steps_before_ = -1;
   std::vector<body::Body> between_;

@@ -13,6 +13,7 @@
 #include "sandbox/report/summary.h"
 #include "sandbox/run/checkpoint.h"
 #include "sandbox/run/exports.h"
+#include "sandbox/run/exposure.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/plan.h"
@@ -55,13 +56,36 @@ struct Film {
   int first_drawn = 0;  // frames below it are kept from an earlier run
 };
 
+/// The pictures of one frame, of which `moment` is the first, if it is drawn; steps to its last moment.
+std::vector<render::Frame> expose(const view::Moment& moment, const Exposure& exposure, bool is_drawn,
+                                  Projector& projector, view::View& view) {
+  std::vector<render::Frame> samples;
+  std::optional<view::Moment> now = moment;
+  const int samples_a_slot = exposure.slots() == 1 ? exposure.samples() : 1;
+  for (int slot = 0; now && slot < exposure.slots(); ++slot) {
+    if (slot > 0) {
+      now = projector.next();
+      if (!now) break;
+      for (const scene::Cue& cue : projector.take_cues()) view.begin(cue, *now);
+    }
+    for (int i = 0; is_drawn && i < samples_a_slot && slot < exposure.samples(); ++i) {
+      const auto number = static_cast<int>(samples.size());
+      samples.push_back(view.make_frame(*now, exposure.lens_point(number)));
+      samples.back().caption = samples.front().caption;  // numbers are not blurred
+      samples.back().title = samples.front().title;
+    }
+  }
+  return samples;
+}
+
 /// The loop. A sentence if it failed, else empty. `first`: number of the first frame in the film.
 std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) {
   Painter* const painter = film.painter;
   const scene::SceneDescription& scene = *job.scene;
   const world::World& world = job.built->world;
   const int fps = job.options.frames_per_second;
-  Projector projector(scene, *job.built, recorder, job.options.has_audit, fps);
+  const Exposure exposure(scene.camera);
+  Projector projector(scene, *job.built, recorder, job.options.has_audit, fps, exposure.slots());
   view::View view(scene, *job.built, shot);
   Exports exports(job, view, film.first_drawn);
   Choice choice(job.options.stills);
@@ -73,17 +97,16 @@ std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) 
     const std::optional<view::Moment> moment = projector.next();
     if (!moment) break;
     for (const scene::Cue& cue : projector.take_cues()) view.begin(cue, *moment);
-    std::optional<render::Frame> picture;
-    const bool is_due = choice.takes(projector.time_ahead());
-    if (first + frame < film.first_drawn)
-      (void)view.camera_at(*moment);  // it remembers whom it follows
-    else if (painter != nullptr && is_due)
-      picture = view.make_frame(*moment);
-    const double audit_time = recorder.record.audit_time - audited;
-    recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
+    const bool is_due = choice.takes(projector.time_ahead()), is_kept = first + frame < film.first_drawn;
+    const bool is_drawn = painter != nullptr && is_due && !is_kept;
+    if (is_kept) (void)view.camera_at(*moment);  // it remembers whom it follows
     if (std::string fault = exports.add(*moment, first + frame); !fault.empty()) return fault;
     if (std::string fault = film.checkpoint.pass(shot, world, painter); !fault.empty()) return fault;
-    if (picture && !painter->add(std::move(*picture), first + frame)) return painter->error();
+    std::vector<render::Frame> samples =
+        expose(*moment, exposure, is_drawn, projector, view);  // steps on while the shutter is open
+    const double audit_time = recorder.record.audit_time - audited;
+    recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
+    if (is_drawn && !painter->add(std::move(samples), first + frame)) return painter->error();
     shown.push_back(static_cast<int>(projector.time_ahead() * fps + 1e-6));
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
     const int finished = is_whole_film ? painter->finished_frames() - first : frame + 1;

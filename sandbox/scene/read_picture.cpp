@@ -48,6 +48,23 @@ void read_path(TableReader& reader, CameraEntry& camera, Problems& problems) {
   }
 }
 
+void read_lens(TableReader& reader, SceneDescription& scene) {
+  CameraEntry& camera = scene.camera;
+  camera.shutter = reader.number("shutter", between(0.0, 1.0, "of a frame's time")).value_or(0.0);
+  camera.aperture = reader.number("aperture", between(0.0, 1e3, "m")).value_or(0.0);
+  if (camera.aperture <= 0.0) {
+    reader.foreign({"focus"}, "without a lens everything is sharp: add aperture = 0.01");
+  } else if (const TomlValue* focus = reader.value("focus"); focus != nullptr && focus->is_text()) {
+    camera.focus = read_named_body(reader, "focus", scene);
+  } else if (focus != nullptr) {
+    if (const auto distance = reader.as_number(*focus, "focus", positive("m"))) camera.focus = *distance;
+  }
+  if (camera.aperture <= 0.0 && camera.shutter <= 0.0)
+    reader.foreign({"samples"}, "one picture a frame is enough without shutter and aperture");
+  else
+    camera.samples = static_cast<int>(reader.whole_number("samples", 2, 256).value_or(camera.samples));
+}
+
 }  // namespace
 
 void read_camera(const TomlValue& table, SceneDescription& scene, Problems& problems) {
@@ -68,6 +85,7 @@ void read_camera(const TomlValue& table, SceneDescription& scene, Problems& prob
   } else {
     reader.foreign({"offset"}, "it is from the body that the camera follows: add follow = \"name\"");
   }
+  read_lens(reader, scene);
   reader.finish();
   if (camera.up.norm() < 1e-9)
     reader.add_problem_at("up", "up is zero and points nowhere", "up is usually [0, 1, 0]");

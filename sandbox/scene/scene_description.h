@@ -153,6 +153,10 @@ struct CameraEntry {
   std::vector<CameraKey> path;  // ascending in time; overrides the above
   int follow = -1;              // number of the body that is kept in the middle; -1: none
   std::optional<Vec3> offset;   // m, from that body; nothing: the camera stays where it is and turns
+  double shutter = 0.0;         // share of a frame's time that it is open; 0: no time at all
+  double aperture = 0.0;        // m, width of the lens; 0: everything is sharp
+  std::variant<std::monostate, double, int> focus;  // m from the eye, or number of a body; else the target
+  int samples = 16;  // pictures a frame, where shutter or aperture want several
 };
 
 struct LightEntry {

@@ -197,10 +197,24 @@ render::Camera View::camera_at(const Moment& moment) {
   return camera_.at(moment, whereabouts(moment));
 }
 
-render::Frame View::make_frame(const Moment& moment) {
+void View::look_through(glm::vec2 lens, const Moment& moment, render::Camera& camera) const {
+  const scene::CameraEntry& entry = scene_.camera;
+  const glm::vec3 way = camera.target - camera.position, forward = glm::normalize(way);
+  float distance = glm::length(way);
+  if (const double* metres = std::get_if<double>(&entry.focus)) distance = static_cast<float>(*metres);
+  if (const int* body = std::get_if<int>(&entry.focus))
+    if (const auto centre = whereabouts(moment)(*body))
+      distance = std::max(glm::dot(to_glm(*centre) - camera.position, forward), 1e-3F * distance);
+  const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+  camera.target = camera.position + distance * forward;
+  camera.position += static_cast<float>(0.5 * entry.aperture) * (lens.x * right + lens.y * up);
+}
+
+render::Frame View::make_frame(const Moment& moment, glm::vec2 lens) {
   ++frame_;
   render::Frame frame = stage_;
   frame.camera = camera_at(moment);
+  if (scene_.camera.aperture > 0.0) look_through(lens, moment, frame.camera);
   frame.overlay = overlays_.overlay();
   frame.title = title_at(moment.film);
   for (const body::Body& body : moment.bodies) add_body(body, frame);

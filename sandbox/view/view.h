@@ -32,7 +32,8 @@ class View {
   /// Where the camera is at a moment, which is now or at most a step ago.
   render::Camera camera_at(const Moment& moment);
   /// The picture of a moment, which is now or at most a step ago.
-  render::Frame make_frame(const Moment& moment);
+  /// `lens`: through which point of the lens, whose radius is 1 (only where [camera] has an aperture).
+  render::Frame make_frame(const Moment& moment, glm::vec2 lens = {0.0F, 0.0F});
   /// The picture of the world as it is now.
   render::Frame make_frame();
 
@@ -55,6 +56,8 @@ class View {
   /// Balls where impacts were evaluated a moment ago.
   void mark_impacts(const Moment& moment, render::Frame& frame);
   render::Title title_at(double film) const;
+  /// Moves the eye across the lens and turns it so that what is in focus stays where it is in the picture.
+  void look_through(glm::vec2 lens, const Moment& moment, render::Camera& camera) const;
 
   const scene::SceneDescription& scene_;
   const scene::BuiltScene& built_;
