@@ -1,9 +1,11 @@
 #include "sandbox/run/again.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #include "sandbox/run/options.h"
@@ -13,6 +15,28 @@ namespace shatterbox::sandbox::run {
 namespace {
 
 namespace fs = std::filesystem;
+
+void say_to(const fs::path& log) {
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file < 0) return;
+  dup2(file, STDOUT_FILENO);
+  dup2(file, STDERR_FILENO);
+}
+
+/// This program with these arguments, after `prepare` in the new process.
+template <class Prepare>
+pid_t start(const std::vector<std::string>& arguments, const Prepare& prepare) {
+  std::vector<std::string> words{"shatterbox"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  const pid_t child = fork();
+  if (child != 0) return child;
+  prepare();
+  execv("/proc/self/exe", pointers.data());
+  _exit(127);
+}
 
 }  // namespace
 
@@ -26,22 +50,17 @@ WorkFolder::~WorkFolder() {
   if (!path_.empty()) fs::remove_all(path_, code);
 }
 
+pid_t start_again(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& log) {
+  return start(arguments, [&] {
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // who started it may be killed; nobody would wait for it then
+    if (chdir(folder.c_str()) != 0) _exit(127);
+    say_to(log);
+  });
+}
+
 int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
-  std::vector<std::string> words{"shatterbox"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    if (file >= 0) {
-      dup2(file, STDOUT_FILENO);
-      dup2(file, STDERR_FILENO);
-    }
-    execv("/proc/self/exe", pointers.data());
-    _exit(127);
-  }
+  const pid_t child = start(arguments, [&log] { say_to(log); });
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) < 0) return kFailed;
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;

@@ -1,6 +1,8 @@
 // The program run again, as a process of its own: its memory, its caches and its end are its own.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,6 +22,11 @@ class WorkFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// Starts this program in a folder; what it says goes to `log`. Its process, negative if there is none.
+/// Ctrl-C at the terminal does not reach it; when who started it is killed, it ends in order.
+pid_t start_again(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                  const std::filesystem::path& log);
 
 /// Runs this program with these arguments. Its exit status; what it says goes to `log`.
 int run_again(const std::vector<std::string>& arguments, const std::filesystem::path& log);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sandbox/run/batch.h"
 #include "sandbox/run/bench.h"
 #include "sandbox/run/diff.h"
 #include "sandbox/run/golden.h"
@@ -77,6 +78,22 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
   command.add_flag("--brief", options.is_brief, "a tenth of a second each: does everything run?");
 }
 
+void add_batch_options(CLI::App& command, BatchOptions& options) {
+  command.add_option("SCENE", options.scenes, "files, names, or folders of scenes")->required();
+  command.add_option("-o", options.folder, "folder for the runs and the table")
+      ->capture_default_str()
+      ->type_name("DIR");
+  command.add_option("--jobs", options.jobs, "runs at a time; 0: one a core")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 256));
+  command.add_option("--sweep", options.sweeps, "values to run with in turn; several: all combinations")
+      ->type_name("NAME.key=a,b,..")
+      ->allow_extra_args(false);
+  command.add_flag("--resume", options.resumes, "what is done is not done again, what was cut short goes on");
+  command.footer(
+      "What stands behind -- are options of every run: batch scenes --jobs 2 -- --no-render --seconds 1");
+}
+
 void add_finding_options(CLI::App& command, FindingOptions& options) {
   command
       .add_option("--tolerance", options.tolerance,
@@ -117,7 +134,8 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 
 /// A mistyped verb gets the nearest one named.
 bool is_known_verb(const std::string& verb) {
-  const std::vector<std::string> verbs{"run", "check", "plan", "diff", "golden", "study", "bench", "list"};
+  const std::vector<std::string> verbs{"run",    "batch", "check", "plan", "diff",
+                                       "golden", "study", "bench", "list"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
   std::fprintf(stderr, "there is no verb \"%s\"\n    %s\n", verb.c_str(),
@@ -143,6 +161,8 @@ int run_command_line(int argc, char** argv) {
   BenchOptions bench;
   CLI::App* bench_command = app.add_subcommand("bench", "time the benchmark scenes, one after the other");
   add_bench_options(*bench_command, bench);
+  BatchOptions batch;
+  add_batch_options(*app.add_subcommand("batch", "run many scenes, or one with many values"), batch);
   DiffOptions diff;
   CLI::App* diff_command = app.add_subcommand("diff", "compare pictures, folders of pictures or videos");
   add_diff_options(*diff_command, diff);
@@ -161,13 +181,20 @@ int run_command_line(int argc, char** argv) {
   plan_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
   for (CLI::App* command : {run_command, check_command, plan_command}) add_scene_options(*command, options);
   for (CLI::App* command : {run_command, plan_command}) add_run_options(*command, options);
+  // What stands behind -- is for the runs of a batch.
+  int own = argc;
+  if (argc > 1 && std::string(argv[1]) == "batch") {
+    own = static_cast<int>(std::find(argv, argv + argc, std::string("--")) - argv);
+    if (own < argc) batch.run_words.assign(argv + own + 1, argv + argc);
+  }
   try {
-    app.parse(argc, argv);
+    app.parse(own, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
   if (app.got_subcommand("run")) return run_scene(options);
   if (app.got_subcommand("plan")) return plan_scene(options, is_lean);
+  if (app.got_subcommand("batch")) return run_batch(batch);
   if (app.got_subcommand("bench")) return run_bench(bench);
   if (app.got_subcommand("diff")) return run_diff(diff);
   if (app.got_subcommand("study")) return run_study(study);

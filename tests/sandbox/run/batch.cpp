@@ -1,0 +1,101 @@
+// Batches: what they run, and what they tell of it.
+#include <catch2/catch.hpp>
+
+#include "sandbox/run/batch_plan.h"
+#include "tests/sandbox/run/running.h"
+
+using namespace shatterbox::sandbox;
+using namespace shatterbox::sandbox::run;
+
+TEST_CASE("values of a sweep are parted by commas, but not within brackets and quotes") {
+  scene::Problems problems;
+  const Sweep plain = parse_sweep("ball.speed=5,1e1,-3", problems);
+  CHECK(plain.key == "ball.speed");
+  CHECK(plain.values == std::vector<std::string>{"5", "1e1", "-3"});
+  const Sweep nested = parse_sweep("a.b=[1, 2],{x = [3,4]},\"c,d\"", problems);
+  CHECK(nested.values == std::vector<std::string>{"[1, 2]", "{x = [3,4]}", "\"c,d\""});
+  CHECK(problems.empty());
+  for (const char* wrong : {"", "ball.speed", "speed=1,2", "a.b=1,,2", "a.b=[1,2", "a.b=\"x"}) {
+    scene::Problems told;
+    (void)parse_sweep(wrong, told);
+    INFO(wrong);
+    CHECK(told.size() == 1);
+  }
+}
+
+TEST_CASE("a batch runs all scenes with all combinations, each in a folder of its own") {
+  const Folder folder;
+  fs::create_directories(folder / "scenes");
+  folder.write("scenes/b.toml", kSmallScene);
+  folder.write("scenes/a.toml", kSmallScene);
+  folder.write("scenes/notes.txt", "no scene");
+  scene::Problems problems;
+  const Sweep sweep = parse_sweep("scene.gravity=[0, -1, 0],[0, -2, 0]", problems);
+  const Sweep seeds = parse_sweep("scene.seed=1,2", problems);
+  const std::string where = (folder / "scenes").string();
+  const auto runs = plan_batch({where, where + "/a.toml"}, {sweep, seeds}, problems);
+  CHECK(problems.empty());
+  REQUIRE(runs.size() == 12);
+  CHECK(runs[0].name == "a_scene.gravity=0--1-0_scene.seed=1");
+  CHECK(runs[1].values[1].second == "2");
+  CHECK(runs[4].name.rfind("b_", 0) == 0);
+  CHECK(runs[8].name == runs[0].name + "_2");  // the same scene once more
+}
+
+TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  folder.write("bad.toml", "[scene]\nsecond = 1\n");
+  const std::string batch = "batch good.toml -o out --jobs 2 --sweep balls.radius=0.05,0.04 ";
+  const std::string rest = " -- --no-render --seconds 0.2";
+  const Outcome outcome = program(folder, batch + rest);
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.status == 0);
+  const auto table = read_json(folder / "out/summary.json");
+  REQUIRE(table["rows"].size() == 2);
+  CHECK(table["columns"][1]["name"] == "balls.radius");
+  CHECK(table["rows"][1][1] == "0.04");
+  // A run of the batch is the run by itself.
+  REQUIRE(program(folder, "run good.toml --set balls.radius=0.04 --no-render --seconds 0.2 --report r.json")
+              .status == 0);
+  CHECK(table["rows"][1].back() == read_json(folder / "r.json")["state_hash"]);
+  CHECK(outcome.out.find(table["rows"][1].back().get<std::string>()) != std::string::npos);
+
+  // What is done is not done again; what is not, is.
+  const fs::path first = folder / "out/good_balls.radius=0.05",
+                 second = folder / "out/good_balls.radius=0.04";
+  fs::remove(second / "done.json");
+  const auto before = fs::last_write_time(first / "report.json"),
+             later = fs::last_write_time(second / "report.json");
+  REQUIRE(program(folder, batch + "--resume" + rest).status == 0);
+  CHECK(fs::last_write_time(first / "report.json") == before);
+  CHECK(fs::last_write_time(second / "report.json") != later);
+  CHECK(read_json(folder / "out/summary.json")["rows"][1].back() == table["rows"][1].back());
+
+  const Outcome failed = program(folder, "batch bad.toml good.toml -o mixed -- --no-render --seconds 0.1");
+  CHECK(failed.status == 2);
+  CHECK(failed.err.find("mixed/bad/log.txt") != std::string::npos);
+  CHECK(read_text(folder / "mixed/bad/log.txt").find("did you mean") != std::string::npos);
+  CHECK(read_json(folder / "mixed/summary.json")["rows"][1][1] == 0);
+  CHECK(program(folder, "batch none.toml").status == 2);
+  CHECK(program(folder, "batch good.toml --sweep radius=1").status == 2);
+  CHECK(program(folder, "batch good.toml -o good.toml").status == 2);
+}
+
+TEST_CASE("Ctrl-C ends a batch in order, and it goes on where it was") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string batch = "batch good.toml -o out --jobs 2 --sweep scene.seed=1,2,3 ";
+  const std::string rest = " -- --seconds 5 --size 64x48";
+  const Outcome cut =
+      shell(folder, std::string(SHATTERBOX_PROGRAM " ") + batch + rest +
+                        " & p=$!; for i in $(seq 300); do [ -s out/good_scene.seed=1/film.mp4.part ] "
+                        "&& break; sleep 0.05; done; kill -INT $p; wait $p");
+  INFO(cut.out << cut.err);
+  CHECK(cut.status == 3);
+  CHECK(read_json(folder / "out/good_scene.seed=1/report.json")["interrupted"] == true);
+  CHECK_FALSE(fs::exists(folder / "out/good_scene.seed=3/report.json"));
+  REQUIRE(program(folder, batch + "--resume" + rest).status == 0);
+  for (const char* seed : {"1", "2", "3"})
+    CHECK(count_frames(folder, std::string("out/good_scene.seed=") + seed + "/film.mp4") == 300);
+}
