@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <Eigen/SparseCholesky>
 
@@ -17,7 +18,8 @@ constexpr double kLeastConduction = 0.005;  // through a crack's plane, where th
 constexpr double kLeastShare = 0.02;  // of an element's volume that counts of one with hardly any material
 constexpr double kHold = 1e-9;        // of the diagonal, so that a potential without a border is one
 constexpr double kFaint = 1e-10;      // share of the greatest change below which a potential is but rounding
-constexpr double kOffNodes = 0.05;    // least distance of a crack from a node, share of the element's size
+constexpr double kToNode = 0.15;      // of the change over the elements about: a node as near is on the crack
+constexpr double kOnNode = 1e-6;      // likewise: what it then has, for nodes on the crack are positive
 
 /// Gradients of the four corners' shape functions, 1/m.
 std::array<Vec3, 4> shape_gradients(const geometry::TetMesh& mesh, int element) {
@@ -111,8 +113,8 @@ std::vector<double> CrackGuide::potential(int element, const Vec3& place, const 
   const double faintest = kFaint * *std::max_element(change.begin(), change.end());
   for (Size v = 0; v < values.size(); ++v) {
     if (number_[v] < 0 || !(change[v] > faintest)) continue;
-    const double value = flow(number_[v]) - here, least = kOffNodes * change[v];
-    values[v] = value >= 0.0 ? std::max(value, least) : std::min(value, -least);
+    const double value = flow(number_[v]) - here;
+    values[v] = std::abs(value) < kToNode * change[v] ? kOnNode * change[v] : value;
   }
   return values;
 }

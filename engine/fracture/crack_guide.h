@@ -30,7 +30,8 @@ class CrackGuide {
   CrackGuide(CrackGuide&&) noexcept;
 
   /// |nodes of the mesh|: zero at `place` (m) in `element`, which is one of the piece's, growing along
-  /// `normal` there; no node has nearly zero. Exactly 0 where it is not known: at nodes of other elements,
+  /// `normal` there. Nodes near the surface are on it, so that cracks have fewer and wider faces: they have a
+  /// positive value that is next to nothing. Exactly 0 where it is not known: at nodes of other elements,
   /// and where so little is left of it that its sign is rounding. Any thread.
   std::vector<double> potential(int element, const Vec3& place, const Vec3& normal) const;
 

@@ -1,6 +1,7 @@
 #include "engine/fracture/solid_crack.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/index.h"
 
@@ -10,6 +11,8 @@ namespace {
 
 using Size = std::size_t;
 using core::at;
+
+constexpr double kOnSurface = 1e-4;  // of the field's greatest value about: nearer is on the surface
 
 }  // namespace
 
@@ -45,6 +48,17 @@ bool CrackField::crosses(const geometry::SolidFacet& facet) const {
     (v >= 0.0 ? has_plus : has_minus) = true;
   }
   return has_plus && has_minus;
+}
+
+bool CrackField::holds(const geometry::SolidFacet& facet, int element) const {
+  double greatest = 0.0;
+  for (const int node : complex_.elements->mesh.tetrahedra[at(element)])
+    greatest = std::max(greatest, std::abs((*values_)[at(node)]));
+  for (int i = 0; i < facet.side_count; ++i)
+    if (!(std::abs(value(complex_.vertices[at(complex_.side_begin(complex_.sides_of(facet)[i]))])) <
+          kOnSurface * greatest))
+      return false;
+  return true;
 }
 
 CrackCap CrackField::cap(int cell) const {

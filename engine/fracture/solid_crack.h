@@ -32,6 +32,8 @@ class CrackField {
   double value(const geometry::SolidVertex& vertex) const;
   /// Whether the field has both signs on a settled facet.
   bool crosses(const geometry::SolidFacet& facet) const;
+  /// Whether all of a settled facet of an element is on the surface.
+  bool holds(const geometry::SolidFacet& facet, int element) const;
   CrackCap cap(int cell) const;  // settled
 
  private:

@@ -306,11 +306,28 @@ bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>&
   return true;
 }
 
+/// A facet that lies in the crack opens between active cells only. The one beyond it is on the positive side
+/// with all its nodes, so that the crack does not enter it, and yet takes part.
+void SolidTracer::add_cells_beyond(std::vector<int>& cells) {
+  for (const int cell : active_) {
+    settle_cell(complex_, cell);
+    const geometry::SolidPart& part = complex_.cells[at(cell)];
+    for (int f = 0; f < part.facet_count; ++f) {
+      const geometry::SolidFacet& facet =
+          complex_.facets[at(complex_.cell_facets[at(part.first_facet + f)] / 2)];
+      const int next = facet.cells[0] == cell ? facet.cells[1] : facet.cells[0];
+      if (next >= 0 && entered_[at(next)] != present_id_ + 1 && field_.holds(facet, part.element))
+        cells.push_back(next);
+    }
+  }
+}
+
 void SolidTracer::cut() {
   geometry::SolidCut cut;
   cut.node_values = *field_.values();
   cut.cells = active_;
   cut.id = present_id_;
+  add_cells_beyond(cut.cells);
   const Size before = complex_.cells.size();
   cutter_.cut(cut);
   // A new part lies behind a face of this crack; beyond it, or beyond further new parts, is the old cell.

@@ -96,6 +96,7 @@ class SolidTracer {
   std::optional<double> intensity_beside(int cell);
   bool pay(double area);
   bool take();
+  void add_cells_beyond(std::vector<int>& cells);
   void cut();
 
   geometry::SolidComplex& complex_;

@@ -204,6 +204,27 @@ SolidComplex build_solid_complex(std::shared_ptr<const SolidElements> elements,
   return complex;
 }
 
+std::array<int, 2> divide_facet(SolidComplex& complex, int number, int begin, int end) {
+  const SolidFacet facet = complex.facets[at(number)];
+  const int n = facet.side_count;
+  const auto corner = [&](int i) { return complex.side_begin(complex.sides[at(facet.first_side + i % n)]); };
+  const int chord = static_cast<int>(complex.edges.size());
+  complex.edges.push_back({{corner(begin), corner(end)}, {-1, -1}});
+  std::array<int, 2> parts{};
+  for (Size p = 0; p < 2; ++p) {
+    SolidFacet part = facet;
+    part.first_side = static_cast<int>(complex.sides.size());
+    for (int i = p == 0 ? begin : end; i < (p == 0 ? end : begin + n); ++i)
+      complex.sides.push_back(int(complex.sides[at(facet.first_side + i % n)]));
+    complex.sides.push_back(2 * chord + (p == 0 ? 1 : 0));
+    part.side_count = static_cast<int>(complex.sides.size()) - part.first_side;
+    parts[p] = static_cast<int>(complex.facets.size());
+    complex.facets.push_back(part);
+  }
+  complex.facets[at(number)].parts = parts;
+  return parts;
+}
+
 void settle_facet(SolidComplex& complex, int number) {
   SolidFacet& facet = complex.facets[at(number)];
   const int old = facet.first_side;

@@ -18,6 +18,7 @@ enum class FacetKind : std::uint8_t {
   element_face,  // on the face between two elements: material goes on
   outer,         // the surface of the uncut solid
   crack,         // open: material is parted
+  old_crack,     // a crack face of the border, from which the surface has stood back (keep_kerf)
   grain,         // a boundary that holds: between grains, or between parts that were merged again
 };
 
@@ -26,6 +27,8 @@ struct SolidVertex {
   Vec3 position = Vec3::Zero();               // m, material space
   std::array<int, 4> nodes{-1, -1, -1, -1};   // ascending, then -1; vertices of the element mesh
   std::array<double, 4> weights{0, 0, 0, 0};  // positive, sum 1; 0 where there is no node
+  Vec3 kerf = Vec3::Zero();                   // m: from here to where the piece's surface has it (keep_kerf)
+  bool has_kerf = false;
 };
 
 struct SolidEdge {
@@ -96,6 +99,11 @@ SolidComplex make_solid_complex(std::shared_ptr<const SolidElements> elements);
 /// The complex of material that fills its elements in part.
 SolidComplex build_solid_complex(std::shared_ptr<const SolidElements> elements,
                                  const SolidMaterial& material);
+
+/// Parts a settled facet along a new edge between two of its corners (places `begin` < `end` in its list of
+/// sides, which goes round): its first part has the sides from `begin` on, its second the others. Returns the
+/// parts.
+std::array<int, 2> divide_facet(SolidComplex& complex, int facet, int begin, int end);
 
 /// Puts the parts of divided edges in a facet's list of sides.
 void settle_facet(SolidComplex& complex, int facet);

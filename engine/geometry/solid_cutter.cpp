@@ -21,6 +21,7 @@ constexpr double kPlane = 1e-12;    // of its size: a cap that deviates less is 
 SolidVertex between(const SolidVertex& a, const SolidVertex& b, double t) {
   SolidVertex c;
   c.position = a.position + t * (b.position - a.position);
+  c.kerf = a.kerf + t * (b.kerf - a.kerf);
   Size i = 0, j = 0, k = 0;
   while ((i < 4 && a.nodes[i] >= 0) || (j < 4 && b.nodes[j] >= 0)) {
     const bool has_a = i < 4 && a.nodes[i] >= 0;
@@ -96,7 +97,15 @@ void SolidCutter::cut(const SolidCut& cut) {
       touched_.push_back(facet);
     }
   }
-  for (const int facet : touched_) split_edges(facet, cut);
+  // What lies on an edge of the border keeps to where the surface has that; so the border comes first.
+  const auto is_border = [this](int facet) {
+    const auto& cells = complex_.facets[at(facet)].cells;
+    return cells[0] < 0 || cells[1] < 0;
+  };
+  for (const int facet : touched_)
+    if (is_border(facet)) split_edges(facet, cut, true);
+  for (const int facet : touched_)
+    if (!is_border(facet)) split_edges(facet, cut, false);
   for (Size i = 0; i < touched_.size(); ++i) split_facet(touched_[i]);  // grows by their parts
   const int count = static_cast<int>(complex_.cells.size());
   for (const int c : cut.cells)
@@ -143,7 +152,7 @@ int SolidCutter::sign_of(int v, const SolidCut& cut) {
   return mark.sign;
 }
 
-void SolidCutter::split_edges(int number, const SolidCut& cut) {
+void SolidCutter::split_edges(int number, const SolidCut& cut, bool is_border) {
   const SolidFacet facet = complex_.facets[at(number)];
   for (int i = 0; i < facet.side_count; ++i) {
     const int e = complex_.sides[at(facet.first_side + i)] / 2;
@@ -152,8 +161,10 @@ void SolidCutter::split_edges(int number, const SolidCut& cut) {
     const double a = vertex_marks_[at(edge.ends[0])].value;
     const double b = vertex_marks_[at(edge.ends[1])].value;
     const int middle = static_cast<int>(complex_.vertices.size());
-    complex_.vertices.push_back(
-        between(complex_.vertices[at(edge.ends[0])], complex_.vertices[at(edge.ends[1])], a / (a - b)));
+    const SolidVertex &from = complex_.vertices[at(edge.ends[0])], &to = complex_.vertices[at(edge.ends[1])];
+    SolidVertex vertex = between(from, to, a / (a - b));
+    vertex.has_kerf = is_border && from.has_kerf && to.has_kerf;
+    complex_.vertices.push_back(vertex);
     vertex_marks_.push_back({stamp_, 0, 0.0});
     const int first = new_edge(edge.ends[0], middle);
     const int second = new_edge(middle, edge.ends[1]);
@@ -202,19 +213,11 @@ void SolidCutter::split_facet(int number) {
   if (begin < 0) return set_facet_sign(number);
   const int end = find_change(second, third);
   assert(end > begin && end - begin < n);
-  const int chord = new_edge(vertex(begin), vertex(end));
-  for (Size p = 0; p < 2; ++p) {
-    SolidFacet part = facet;
-    part.first_side = static_cast<int>(complex_.sides.size());
-    for (int i = p == 0 ? begin : end; i < (p == 0 ? end : begin + n); ++i)
-      complex_.sides.push_back(int(complex_.sides[at(facet.first_side + i % n)]));
-    complex_.sides.push_back(2 * chord + (p == 0 ? 1 : 0));
-    part.side_count = static_cast<int>(complex_.sides.size()) - part.first_side;
-    complex_.facets[at(number)].parts[p] = static_cast<int>(complex_.facets.size());
-    touched_.push_back(static_cast<int>(complex_.facets.size()));
-    complex_.facets.push_back(part);
+  for (const int part : divide_facet(complex_, number, begin, end)) {
     facet_marks_.push_back({stamp_, 0, 0.0});
+    touched_.push_back(part);
   }
+  edge_marks_.emplace_back();
 }
 
 void SolidCutter::set_facet_sign(int number) {

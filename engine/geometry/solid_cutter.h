@@ -62,7 +62,7 @@ class SolidCutter {
   void grow();
   void measure_reach(const SolidCut& cut);
   int sign_of(int vertex, const SolidCut& cut);
-  void split_edges(int facet, const SolidCut& cut);
+  void split_edges(int facet, const SolidCut& cut, bool is_border);
   void split_facet(int facet);
   void set_facet_sign(int facet);
   void divide_cell(int cell, const SolidCut& cut);

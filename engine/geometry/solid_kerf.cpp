@@ -1,11 +1,15 @@
 #include "engine/geometry/solid_kerf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "engine/core/index.h"
 #include "engine/geometry/bvh.h"
 #include "engine/geometry/crossings.h"
+#include "engine/geometry/solid_parting.h"
+#include "engine/geometry/solid_retreat.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -13,100 +17,8 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kSamePlane = 0.9999;    // cosine: crack faces that turn by less are one
-constexpr double kSameFace = 0.87;       // cosine: outer faces that turn by less are one curved one
-constexpr double kLongestRetreat = 4.0;  // kerfs: how far a sharp corner retreats along its bisector
-constexpr double kShareOfWidth = 0.25;   // of the material's width: the most that a vertex retreats
-constexpr int kHalvings = 24;            // rounds in which a kerf that is still too wide is halved
-constexpr int kSweeps = 200;
-
-/// normal . shift <= bound, or equal to it.
-struct Plane {
-  Vec3 normal;  // unit, outward
-  double bound;
-  bool is_equality;
-};
-
-/// The shortest shift that keeps to all planes, by Hildreth's method; the last one where there is none.
-Vec3 shortest_shift(const std::vector<Plane>& planes, double tolerance) {
-  Vec3 shift = Vec3::Zero();
-  std::vector<double> multipliers(planes.size(), 0.0);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    double change = 0.0;
-    for (Size i = 0; i < planes.size(); ++i) {
-      double step = planes[i].normal.dot(shift) - planes[i].bound;
-      if (!planes[i].is_equality) step = std::max(step, -multipliers[i]);
-      multipliers[i] += step;
-      shift -= step * planes[i].normal;
-      change = std::max(change, std::abs(step));
-    }
-    if (change <= tolerance) break;
-  }
-  return shift;
-}
-
-/// What the faces about each vertex ask of its shift: planes of crack faces, and of outer ones.
-struct VertexFaces {
-  std::vector<std::vector<Vec3>> cracks, outers;
-};
-
-void add_normal(std::vector<Vec3>& normals, const Vec3& normal) {
-  for (const Vec3& n : normals)
-    if (n.dot(normal) > kSamePlane) return;
-  normals.push_back(normal);
-}
-
-VertexFaces collect_faces(const SolidSurface& surface) {
-  const TriangleMesh& mesh = surface.mesh;
-  VertexFaces faces{std::vector<std::vector<Vec3>>(mesh.positions.size()),
-                    std::vector<std::vector<Vec3>>(mesh.positions.size())};
-  std::vector<char> is_at_crack(mesh.positions.size(), 0);
-  for (Size t = 0; t < mesh.triangles.size(); ++t)
-    if (surface.is_crack_face[t])
-      for (const int v : mesh.triangles[t]) is_at_crack[at(v)] = 1;
-  for (Size t = 0; t < mesh.triangles.size(); ++t) {
-    const auto [a, b, c] = mesh.triangles[t];
-    if (!is_at_crack[at(a)] && !is_at_crack[at(b)] && !is_at_crack[at(c)]) continue;
-    const Vec3 ab = mesh.positions[at(b)] - mesh.positions[at(a)];
-    const Vec3 ac = mesh.positions[at(c)] - mesh.positions[at(a)];
-    const Vec3 normal = ab.cross(ac);
-    const double size = normal.norm();
-    if (!(size > 1e-14 * (ab.squaredNorm() + ac.squaredNorm()))) continue;
-    for (const int v : mesh.triangles[t])
-      if (is_at_crack[at(v)])
-        add_normal((surface.is_crack_face[t] ? faces.cracks : faces.outers)[at(v)], normal / size);
-  }
-  return faces;
-}
-
-/// How far, and where to, a vertex retreats from crack faces; zero where no way leads inwards.
-Vec3 retreat(const std::vector<Vec3>& cracks, const std::vector<Vec3>& outers, double kerf) {
-  std::vector<Plane> planes, outer_faces;
-  for (const Vec3& normal : cracks) planes.push_back({normal, -kerf, false});
-  for (const Vec3& normal : outers) {
-    planes.push_back({normal, 0.0, false});
-    const bool is_known = std::any_of(outer_faces.begin(), outer_faces.end(),
-                                      [&](const Plane& face) { return face.normal.dot(normal) > kSameFace; });
-    if (!is_known) outer_faces.push_back({normal, 0.0, true});
-  }
-  const double tolerance = 1e-7 * kerf;
-  const auto bounded = [&](Vec3 shift) {
-    const double length = shift.norm();
-    if (length > kLongestRetreat * kerf) shift *= kLongestRetreat * kerf / length;
-    return shift;
-  };
-  const auto leads_in = [&](const Vec3& shift) {
-    return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-      return plane.normal.dot(shift) <= (plane.bound < 0.0 ? -1e-3 * kerf : tolerance * 2.0);
-    });
-  };
-  std::vector<Plane> all = planes;
-  all.insert(all.end(), outer_faces.begin(), outer_faces.end());
-  const Vec3 along = bounded(shortest_shift(all, tolerance));
-  if (leads_in(along)) return along;
-  const Vec3 inward = bounded(shortest_shift(planes, tolerance));  // a corner of the outer surface gives way
-  return leads_in(inward) ? inward : Vec3::Zero();
-}
+constexpr double kShareOfWidth = 0.25;  // of the material's width: the most that a vertex retreats
+constexpr int kHalvings = 24;           // rounds in which a kerf that is still too wide is halved
 
 /// Triangles, with boxes about them for one state of their vertices.
 struct BoxedMesh {
@@ -210,7 +122,7 @@ void limit(const SolidSurface& surface, std::vector<Vec3>& shift) {
       for (const int v : mesh.triangles[at(triangle)]) is_marked[at(v)] = 1;
     };
     for_crossing(
-        moved, still, [&](int, int b) { return !surface.is_crack_face[at(b)]; },
+        moved, still, [&](int, int b) { return !surface.is_crack_face[at(b)] || surface.is_old_face[at(b)]; },
         [&](int a, int) { mark(a); });
     for_crossing(
         moved, moved, [](int a, int b) { return a >= b; },
@@ -228,20 +140,119 @@ void limit(const SolidSurface& surface, std::vector<Vec3>& shift) {
   }
 }
 
+/// 1 for vertices that touch others of the same surface.
+std::vector<char> find_shared_vertices(const SolidSurface& surface) {
+  std::map<int, int> count;  // by vertex of the complex
+  for (const int source : surface.vertex_sources) ++count[source];
+  std::vector<char> is_shared;
+  for (const int source : surface.vertex_sources) is_shared.push_back(source >= 0 && count.at(source) > 1);
+  return is_shared;
+}
+
+/// Where the tips of two hollows in the material touch, neither has room to go back, and what fills them goes
+/// back into itself: they stay. Sets their shifts to zero and says which they are.
+std::vector<char> find_tips_of_hollows(const SolidSurface& surface, const std::vector<char>& is_shared,
+                                       std::vector<Vec3>& shift) {
+  const TriangleMesh& mesh = surface.mesh;
+  std::vector<Vec3> ahead(shift.size(), Vec3::Zero());  // where a vertex' faces are, seen from it
+  for (const Triangle& t : mesh.triangles)
+    for (Size i = 0; i < 3; ++i) {
+      const Vec3 way = mesh.positions[at(t[(i + 1) % 3])] - mesh.positions[at(t[i])];
+      const double length = way.norm();
+      if (length > 0.0) ahead[at(t[i])] += way / length;
+    }
+  std::vector<char> stays(shift.size(), 0);
+  for (Size v = 0; v < is_shared.size(); ++v) {
+    if (is_shared[v] == 0 || !(ahead[v].dot(shift[v]) < 0.0)) continue;
+    stays[v] = 1;
+    shift[v].setZero();
+  }
+  return stays;
+}
+
+/// Parts the border's crack facets along the edges of the surface's triangles, which no longer lie in one
+/// plane.
+void divide_crack_facets(SolidComplex& piece, const SolidSurface& surface) {
+  std::map<int, std::vector<std::array<int, 2>>> sides;  // by facet: its triangles' sides, ends ascending
+  for (Size t = 0; t < surface.mesh.triangles.size(); ++t) {
+    if (!surface.is_crack_face[t] || surface.triangle_facets[t] < 0) continue;
+    for (Size i = 0; i < 3; ++i) {
+      const Triangle& triangle = surface.mesh.triangles[t];
+      const auto [low, high] = std::minmax(surface.vertex_sources[at(triangle[i])],
+                                           surface.vertex_sources[at(triangle[(i + 1) % 3])]);
+      sides[surface.triangle_facets[t]].push_back({low, high});
+    }
+  }
+  for (auto& [facet, own] : sides) {
+    piece.facets[at(facet)].kind = FacetKind::old_crack;
+    std::sort(own.begin(), own.end());
+    std::vector<int> parts{facet};
+    for (Size i = 0; i + 1 < own.size(); ++i) {
+      if (own[i] != own[i + 1] || own[i][0] < 0) continue;
+      for (Size p = 0; p < parts.size(); ++p) {
+        std::array<int, 2> places{-1, -1};
+        const SolidFacet& part = piece.facets[at(parts[p])];
+        for (int k = 0; k < part.side_count; ++k)
+          for (Size end = 0; end < 2; ++end)
+            if (piece.side_begin(piece.sides_of(part)[k]) == own[i][end]) places[end] = k;
+        const auto [begin, end] = std::minmax(places[0], places[1]);
+        if (begin < 0 || end - begin < 2 || end - begin > part.side_count - 2) continue;
+        const std::array<int, 2> halves = divide_facet(piece, parts[p], begin, end);
+        parts[p] = halves[0];
+        parts.push_back(halves[1]);
+        break;
+      }
+    }
+  }
+  settle(piece);
+}
+
 }  // namespace
 
 double stand_back(SolidSurface& surface, double kerf) {
+  const std::vector<char> is_shared = find_shared_vertices(surface);
+  part_vertices(surface, kerf);
   const VertexFaces faces = collect_faces(surface);
   std::vector<Vec3> shift(surface.mesh.positions.size(), Vec3::Zero());
   for (Size v = 0; v < faces.cracks.size(); ++v)
     if (!faces.cracks[v].empty()) shift[v] = retreat(faces.cracks[v], faces.outers[v], kerf);
+  const std::vector<char> stays = find_tips_of_hollows(surface, is_shared, shift);
   limit(surface, shift);
   double least = kerf;
   for (Size v = 0; v < faces.cracks.size(); ++v) {
     surface.mesh.positions[v] += shift[v];
-    for (const Vec3& normal : faces.cracks[v]) least = std::min(least, -normal.dot(shift[v]));
+    if (stays[v] == 0)
+      for (const Vec3& normal : faces.cracks[v]) least = std::min(least, -normal.dot(shift[v]));
   }
   return least > 0.0 ? least : 0.0;
+}
+
+void keep_kerf(SolidComplex& piece, const SolidSurface& surface) {
+  const std::vector<Vec3>& positions = surface.mesh.positions;
+  std::vector<int> own(piece.vertices.size(), -1);  // of the complex's vertices: the surface's, -2: several
+  for (Size v = 0; v < positions.size(); ++v) {
+    const int source = surface.vertex_sources[v];
+    if (source >= 0) own[at(source)] = own[at(source)] == -1 ? static_cast<int>(v) : -2;
+  }
+  const auto set = [&](int source, const Vec3& place) {
+    SolidVertex& vertex = piece.vertices[at(source)];
+    vertex.kerf = place - vertex.position;
+    vertex.has_kerf = true;
+  };
+  for (Size s = 0; s < own.size(); ++s) {
+    piece.vertices[s].kerf.setZero();
+    piece.vertices[s].has_kerf = false;
+    if (own[s] >= 0) set(static_cast<int>(s), positions[at(own[s])]);
+  }
+  for (const SolidSurface::OnEdge& on : surface.on_edges) {
+    const bool is_known = [&](int v) {
+      const int source = surface.vertex_sources[at(v)];
+      return source >= 0 && own[at(source)] == v;
+    }(on.from) && own[at(surface.vertex_sources[at(on.to)])] == on.to;
+    if (is_known && own[at(on.source)] == -1)
+      set(on.source, positions[at(on.from)] + on.share * (positions[at(on.to)] - positions[at(on.from)]));
+  }
+  divide_crack_facets(piece, surface);
 }
 
 }  // namespace shatterbox::geometry

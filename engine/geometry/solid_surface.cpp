@@ -164,21 +164,15 @@ class BorderBuilder {
         if (root == corner) {
           vertex_of_corner_[at(corner)] = static_cast<int>(surface_.mesh.positions.size());
           const int source = complex_.side_begin(complex_.sides_of(facet)[i]);
-          surface_.mesh.positions.push_back(complex_.position(source));
+          const SolidVertex& vertex = complex_.vertices[at(source)];
+          surface_.mesh.positions.push_back(vertex.position + vertex.kerf);
           surface_.vertex_sources.push_back(source);
+          surface_.has_kerf.push_back(vertex.has_kerf);
         } else {
           vertex_of_corner_[at(corner)] = vertex_of_corner_[at(root)];
         }
       }
     }
-  }
-
-  void add_triangle(const Triangle& triangle, int cell, const SolidFacet& facet) {
-    surface_.mesh.triangles.push_back(triangle);
-    surface_.triangle_cells.push_back(cell);
-    surface_.triangle_grains.push_back(complex_.cells[at(cell)].grain);
-    surface_.is_crack_face.push_back(facet.kind != FacetKind::outer);
-    surface_.triangle_sources.push_back(facet.kind == FacetKind::outer ? facet.tag : -1);
   }
 
   // Sides of border facets are numbered like the corners they begin in, and run with the material on their
@@ -260,7 +254,7 @@ class BorderBuilder {
                      [](const Loop& a, const Loop& b) { return a.region < b.region; });
   }
 
-  Loop make_loop(const std::vector<int>& sides) const {
+  Loop make_loop(const std::vector<int>& sides) {
     Loop loop;
     loop.region = region_of(sides[0]);
     const int n = static_cast<int>(sides.size());
@@ -274,9 +268,22 @@ class BorderBuilder {
         loop.keys.push_back(key);
       } else {
         loop.keys.back() = std::min(loop.keys.back(), key);  // the same from both of the edge's regions
+        surface_.on_edges.push_back({begin_of(side), loop.vertices.back(), -1, 0.0});
       }
+      const int end = end_of(side);
+      if (!is_needless_[at(end)])
+        for (auto on = surface_.on_edges.rbegin(); on != surface_.on_edges.rend() && on->to < 0; ++on)
+          place(*on, end);
     }
     return loop;
+  }
+
+  /// Says where on its edge, which ends at `to`, a vertex is.
+  void place(SolidSurface::OnEdge& on, int to) const {
+    const std::vector<Vec3>& positions = surface_.mesh.positions;
+    const Vec3 way = positions[at(to)] - positions[at(on.from)];
+    on.to = to;
+    on.share = way.dot(positions[at(on.source)] - positions[at(on.from)]) / way.squaredNorm();
   }
 
   void add_triangle(const Triangle& triangle, const Border& border) {
@@ -284,8 +291,10 @@ class BorderBuilder {
     const int cell = std::max(facet.cells[0], facet.cells[1]);
     surface_.mesh.triangles.push_back(triangle);
     surface_.triangle_cells.push_back(cell);
+    surface_.triangle_facets.push_back(border.facet);
     surface_.triangle_grains.push_back(complex_.cells[at(cell)].grain);
     surface_.is_crack_face.push_back(facet.kind != FacetKind::outer);
+    surface_.is_old_face.push_back(facet.kind == FacetKind::old_crack);
     surface_.triangle_sources.push_back(facet.kind == FacetKind::outer ? facet.tag : -1);
   }
 
@@ -366,6 +375,7 @@ class BorderBuilder {
   }
 
   void drop_needless_vertices() {
+    for (SolidSurface::OnEdge& on : surface_.on_edges) on.source = surface_.vertex_sources[at(on.source)];
     std::vector<int> number(surface_.mesh.positions.size(), -1);
     for (const Triangle& t : surface_.mesh.triangles)
       for (const int v : t) number[at(v)] = 0;
@@ -374,10 +384,19 @@ class BorderBuilder {
       if (number[v] < 0) continue;
       surface_.mesh.positions[at(count)] = Vec3(surface_.mesh.positions[v]);
       surface_.vertex_sources[at(count)] = surface_.vertex_sources[v];
+      surface_.has_kerf[at(count)] = surface_.has_kerf[v];
       number[v] = count++;
     }
     surface_.mesh.positions.resize(at(count));
     surface_.vertex_sources.resize(at(count));
+    surface_.has_kerf.resize(at(count));
+    std::erase_if(surface_.on_edges, [&](const SolidSurface::OnEdge& on) {
+      return on.to < 0 || number[at(on.from)] < 0 || number[at(on.to)] < 0;
+    });
+    for (SolidSurface::OnEdge& on : surface_.on_edges) {
+      on.from = number[at(on.from)];
+      on.to = number[at(on.to)];
+    }
     for (Triangle& t : surface_.mesh.triangles)
       for (int& v : t) v = number[at(v)];
   }
@@ -404,6 +423,8 @@ class BorderBuilder {
         surface_.mesh.positions.push_back(
             0.5 * (surface_.mesh.positions[at(ends[0])] + surface_.mesh.positions[at(ends[1])]));
         surface_.vertex_sources.push_back(-1);
+        surface_.has_kerf.push_back(
+            std::uint8_t(surface_.has_kerf[at(ends[0])] & surface_.has_kerf[at(ends[1])]));
         for (const Size k : {i, i + 1}) split_triangle(spokes_[k].triangle, ends, middle);
       }
       first = last;
@@ -425,7 +446,9 @@ class BorderBuilder {
         surface_.triangle_cells.push_back(int(surface_.triangle_cells[t]));
         surface_.triangle_grains.push_back(int(surface_.triangle_grains[t]));
         surface_.triangle_sources.push_back(int(surface_.triangle_sources[t]));
+        surface_.triangle_facets.push_back(int(surface_.triangle_facets[t]));
         surface_.is_crack_face.push_back(std::uint8_t(surface_.is_crack_face[t]));
+        surface_.is_old_face.push_back(std::uint8_t(surface_.is_old_face[t]));
         return;
       }
       if (divided_into(static_cast<int>(t)) < 0) return;

@@ -267,12 +267,12 @@ std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& m
   return shape;
 }
 
-std::shared_ptr<const body::Shape> make_solid_shape(const geometry::SolidComplex& piece,
-                                                    const Fragile& fragile) {
+std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile) {
   auto shape = std::make_shared<body::Shape>();
   const geometry::MassProperties mass = geometry::solid_mass_properties(piece, fragile.density);
   geometry::SolidSurface surface = geometry::extract_surface(piece);
   shape->least_gap = geometry::stand_back(surface, kKerf * fragile.size);
+  geometry::keep_kerf(piece, surface);
   shape->kind = body::ShapeKind::solid;
   shape->surface = std::move(surface.mesh);
   shape->bounding_radius = centre_mesh(shape->surface, mass.centre);

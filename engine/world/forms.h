@@ -48,8 +48,7 @@ std::shared_ptr<stress::ShellSystemCache> make_systems(
 std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& mesh, const Fragile& fragile,
                                                     double thickness);
 
-/// Likewise of a piece of a solid (settled).
-std::shared_ptr<const body::Shape> make_solid_shape(const geometry::SolidComplex& piece,
-                                                    const Fragile& fragile);
+/// Likewise of a piece of a solid (settled), which gets to know its surface.
+std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile);
 
 }  // namespace shatterbox::world

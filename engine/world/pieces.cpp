@@ -51,14 +51,14 @@ std::shared_ptr<Fragile> cut_from(const Fragile& parent, const fracture::SolidDe
 
 Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fracture::SolidDecision& decision) {
   Piece piece;
-  const auto fragile =
-      cut_from(parent, decision, std::make_shared<const geometry::SolidComplex>(std::move(split.complex)));
+  const auto complex = std::make_shared<geometry::SolidComplex>(std::move(split.complex));
+  const auto fragile = cut_from(parent, decision, complex);
   auto& subject = std::get<fracture::SolidSubject>(fragile->subject);
   piece.is_held = std::any_of(split.mesh.vertex_source.begin(), split.mesh.vertex_source.end(), [&](int v) {
     return std::binary_search(subject.clamped_vertices.begin(), subject.clamped_vertices.end(), v);
   });
   if (!piece.is_held) subject.clamped_vertices.clear();
-  piece.shape = make_solid_shape(*subject.complex, *fragile);
+  piece.shape = make_solid_shape(*complex, *fragile);
   piece.fragile = fragile;
   return piece;
 }

@@ -270,8 +270,8 @@ TEST_CASE("a crack's field: a plane stays one, a sphere closes") {
     for (int i = -250; i <= 250; ++i)
       for (int j = -250; j <= 250; ++j)
         if ((p + step * (i * u + j * w)).cwiseAbs().maxCoeff() < 0.5) area += step * step;
-    CHECK(grown.area == Approx(area).epsilon(0.03));  // kept off the nodes it is not quite plane
-    CHECK(grown.angle < 0.06);
+    CHECK(grown.area == Approx(area).epsilon(0.03));  // through the nodes beside it, it is not quite plane
+    CHECK(grown.angle < 0.13);
   }
   const double radius = 0.35;
   const Grown sphere =
@@ -335,7 +335,7 @@ TEST_CASE("a solid's crack runs across the pull, to the surface, and ends where 
   const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), 0.1, "glass");
   geometry::SolidComplex complex = *subject.complex;
   const Trace first = trace(complex, pull(2, 1e9), Vec3(0.03, 0.02, 0.11), 0);
-  CHECK(first.area == Approx(1.0).epsilon(0.02));
+  CHECK(first.area == Approx(1.0).epsilon(0.04));  // a plane but for nodes near it, which it goes through
   CHECK(first.energy == Approx(8.0 * first.area));
   CHECK(split_solid(complex).pieces.size() == 2);
   // Across the upper part only.

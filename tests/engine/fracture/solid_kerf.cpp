@@ -1,9 +1,12 @@
 // The kerf of a solid's pieces: they stand apart, cross nothing, and keep the outer surface.
 #include "engine/geometry/solid_kerf.h"
 
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "engine/fracture/split_solid.h"
+#include "engine/geometry/closest_points.h"
 #include "engine/geometry/crossings.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/tetrahedralise.h"
@@ -36,7 +39,105 @@ std::vector<TriangleMesh> pieces_with_kerf(SolidComplex complex, double kerf, do
   return meshes;
 }
 
+/// How far outside of a closed surface a point is, m; 0 inside: by the surface's solid angle.
+double distance_outside(const TriangleMesh& mesh, const Vec3& point) {
+  double angle = 0.0, least = 1e300;
+  for (const Triangle& t : mesh.triangles) {
+    std::array<Vec3, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = mesh.positions[static_cast<std::size_t>(t[k])];
+    const Vec3 at = closest_on_triangle(point, corner[0], corner[1], corner[2]).barycentric;
+    least = std::min(least, (at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2] - point).norm());
+    const Vec3 a = corner[0] - point, b = corner[1] - point, c = corner[2] - point;
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                     b.dot(c) * a.norm() + c.dot(a) * b.norm());
+  }
+  return angle > 6.283 ? 0.0 : least;
+}
+
+SolidCut whole_plane(const SolidComplex& complex, core::Random& random, int id) {
+  Vec3 normal(random.normal(), 0.0, 0.0);
+  normal.y() = random.normal();
+  normal.z() = random.normal();
+  normal.normalize();
+  const double offset = normal.dot(Vec3::Constant(0.5)) + 0.2 * random.normal();
+  return test::plane_cut(complex, normal, offset, id);
+}
+
 }  // namespace
+
+TEST_CASE(
+    "solid kerf: a vertex where material goes on from one side of a crack to the other becomes several") {
+  // Two half cracks in one plane from both sides, each beside what a third crack parts: the material of one
+  // piece is behind the plane on one side of it and in front on the other.
+  const double kerf = 1e-3;
+  SolidComplex complex = make_solid_complex(test::make_cube_elements(4));
+  SolidCutter cutter(complex);
+  const auto cut_where = [&](const Vec3& normal, double offset, int id, auto&& is_in) {
+    SolidCut cut = test::plane_cut(complex, normal, offset, id);
+    std::erase_if(cut.cells, [&](int cell) {
+      Vec3 middle = Vec3::Zero();
+      const auto& t =
+          complex.elements->mesh
+              .tetrahedra[static_cast<std::size_t>(complex.cells[static_cast<std::size_t>(cell)].element)];
+      for (const int v : t) middle += 0.25 * complex.elements->mesh.positions[static_cast<std::size_t>(v)];
+      return !is_in(middle);
+    });
+    cutter.cut(cut);
+  };
+  // Four bars along z, of which two that touch along an edge hold together at the end.
+  const auto in_front = [](const Vec3& p) { return p.z() < 0.75; };
+  cut_where(Vec3::UnitX(), 0.5, 0, in_front);
+  cut_where(Vec3::UnitY(), 0.5, 1, in_front);
+  cut_where(Vec3::UnitZ(), 0.75, 2, [](const Vec3& p) { return (p.x() < 0.5) != (p.y() < 0.5); });
+  double least = 0.0;
+  const auto pieces = pieces_with_kerf(complex, kerf, least);
+  REQUIRE(pieces.size() == 3);
+  CHECK(least > 0.1 * kerf);
+  CHECK(count_crossing_pairs(pieces) == 0);
+  for (const TriangleMesh& piece : pieces) CHECK_FALSE(crosses_itself(piece));
+}
+
+TEST_CASE("solid kerf: pieces of pieces stick out of what they are of nowhere") {
+  const double kerf = 2e-4;
+  int crossing = 0, kept = 0;
+  double farthest = 0.0;
+  for (int trial = 0; trial < test::how_many(12, 4); ++trial) {
+    core::Random random(33, static_cast<std::uint64_t>(trial));
+    SolidComplex whole =
+        make_solid_complex(test::make_cube_elements(2, 0.2, static_cast<std::uint64_t>(trial)));
+    {
+      SolidCutter cutter(whole);
+      for (int i = 0; i < 3; ++i) cutter.cut(whole_plane(whole, random, i));
+    }
+    for (auto& piece : fracture::split_solid(std::move(whole)).pieces) {
+      SolidSurface surface = extract_surface(piece.complex);
+      stand_back(surface, kerf);
+      keep_kerf(piece.complex, surface);
+      CHECK(are_cells_closed(piece.complex));
+      const SolidSurface again = extract_surface(piece.complex);
+      kept += enclosed_volume(again.mesh) == Approx(enclosed_volume(surface.mesh)).epsilon(1e-9);
+      SolidComplex complex = piece.complex;
+      SolidCutter cutter(complex);
+      for (int i = 0; i < 2; ++i) cutter.cut(whole_plane(complex, random, 3 + i));
+      double least = 0.0;
+      const auto pieces = pieces_with_kerf(std::move(complex), kerf, least);
+      crossing += count_crossing_pairs(pieces) > 0;
+      for (const TriangleMesh& part : pieces)
+        for (const auto& t : part.triangles) {
+          Vec3 middle = Vec3::Zero();
+          for (const int v : t) {
+            const Vec3& p = part.positions[static_cast<std::size_t>(v)];
+            middle += p / 3.0;
+            farthest = std::max(farthest, distance_outside(surface.mesh, p));
+          }
+          farthest = std::max(farthest, distance_outside(surface.mesh, middle));
+        }
+    }
+  }
+  CHECK(crossing == 0);
+  CHECK(kept > 0);
+  CHECK(farthest < 1e-5 * kerf);
+}
 
 TEST_CASE("solid kerf: halves stand apart by two kerfs, their outer faces stay in their planes") {
   const double kerf = 1e-3;
