@@ -57,6 +57,8 @@ void add_run_options(CLI::App& command, Options& options) {
       ->type_name("DIR");
   command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
   add_picture_options(command, options);
+  command.add_option("--compare", options.compare, "two to four values of a setting, beside each other")
+      ->type_name("NAME.key=a,b");
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));

@@ -34,6 +34,7 @@ struct Options {
   std::optional<long long> seed;
   int threads = 0;  // 0: one a core
   std::vector<std::string> overrides;
+  std::string compare;  // NAME.key=a,b: beside each other
   std::string script;
   bool has_pictures = true;
   bool has_audit = false;

@@ -27,7 +27,7 @@ using core::milliseconds_since;
 constexpr std::size_t kMostWaiting = 2;
 
 struct Waiting {
-  std::vector<render::Frame> samples;
+  std::vector<std::vector<render::Frame>> panels;  // of each the samples
   int number = 0;
 };
 
@@ -37,6 +37,28 @@ render::Image expose(render::Renderer& renderer, const std::vector<render::Frame
   // Backwards: the truth is of what was drawn last, and its moment is the first.
   for (std::size_t i = samples.size(); i-- > 0;) sum.add(renderer.render(samples[i]));
   return sum.mean();
+}
+
+/// In how many columns panels stand beside each other.
+int columns_of(int panels) {
+  return panels == 4 ? 2 : panels;
+}
+
+/// Panels of one size, a dark line between them.
+render::Image join(const std::vector<render::Image>& panels) {
+  const int columns = columns_of(static_cast<int>(panels.size()));
+  const int width = panels.front().width, height = panels.front().height;
+  render::Image out(width * columns, height * (static_cast<int>(panels.size()) / columns));
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const int left = static_cast<int>(i) % columns * width, top = static_cast<int>(i) / columns * height;
+    for (int y = 0; y < height; ++y) {
+      const bool is_line = y == 0 && top > 0;
+      std::uint8_t* const to = out.at(left, top + y);
+      if (!is_line) std::memcpy(to, panels[i].at(0, y), 3 * static_cast<std::size_t>(width));
+      if (left > 0) std::memset(to, 0, 3);
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -123,26 +145,29 @@ struct Painter::Room {
 
   void paint() {
     const auto start = Clock::now();
-    render::Renderer renderer(settings.size, settings.quality);
-    painted.gl_renderer = renderer.gl_renderer();
+    std::vector<render::Renderer> renderers;  // of each panel, so that each keeps what has not changed
+    for (int i = 0; i < settings.panels; ++i) renderers.emplace_back(settings.size, settings.quality);
+    painted.gl_renderer = renderers.front().gl_renderer();
     auto last = start;
     double encoded = 0.0;
     const bool has_files = !settings.frames_folder.empty() || !settings.truth_folder.empty();
     while (auto waited = next()) {
-      const auto& [samples, number] = *waited;
+      const auto& [panels, number] = *waited;
       if (painted.start == 0.0) {  // compiles the shaders for this processor; not a frame's cost
-        (void)renderer.render(samples.front());
+        for (std::size_t i = 0; i < panels.size(); ++i) (void)renderers[i].render(panels[i].front());
         painted.start = milliseconds_since(start);
         last = Clock::now();
       }
       const auto begin = Clock::now();
-      render::Image image = expose(renderer, samples);
+      std::vector<render::Image> images;
+      for (std::size_t i = 0; i < panels.size(); ++i) images.push_back(expose(renderers[i], panels[i]));
+      render::Image image = images.size() == 1 ? std::move(images.front()) : join(images);
       painted.numbers.push_back(number);
       painted.render.push_back(milliseconds_since(begin));
       const std::uint64_t hash = hash_image(image);
       painted.hashes.push_back(hash);
       const auto written = Clock::now();
-      if (!settings.truth_folder.empty() && !write_truth(renderer, number)) return;
+      if (!settings.truth_folder.empty() && !write_truth(renderers.front(), number)) return;
       if (!write(std::move(image), number)) return;
       const double encoder = video ? video->encode_cpu_ms() : 0.0;
       painted.encode.push_back(encoder - encoded + (has_files ? milliseconds_since(written) : 0.0));
@@ -170,8 +195,8 @@ Painter::Painter(PainterSettings settings) : room_(std::make_unique<Room>()) {
   }
   if (!s.video.empty()) {
     render::VideoSettings video;
-    video.width = s.size.width;
-    video.height = s.size.height;
+    video.width = s.size.width * columns_of(s.panels);
+    video.height = s.size.height * (s.panels / columns_of(s.panels));
     video.frames_per_second = s.frames_per_second;
     video.keep = static_cast<long>(s.kept.size());
     room_->video.emplace(s.video, video);
@@ -190,11 +215,11 @@ Painter::~Painter() {
   (void)finish();
 }
 
-bool Painter::add(std::vector<render::Frame> samples, int number) {
+bool Painter::add(std::vector<std::vector<render::Frame>> panels, int number) {
   std::unique_lock lock(room_->mutex);
   room_->changed.wait(lock, [this] { return room_->waiting.size() < kMostWaiting || !room_->error.empty(); });
   if (!room_->error.empty()) return false;
-  room_->waiting.push_back({std::move(samples), number});
+  room_->waiting.push_back({std::move(panels), number});
   room_->changed.notify_all();
   return true;
 }

@@ -22,6 +22,7 @@ struct Picture {
 struct PainterSettings {
   render::Size size;
   render::Quality quality = render::Quality::preview;
+  int panels = 1;  // pictures of that size beside each other; four: in two rows
   int frames_per_second = 60;
   std::string video;          // empty: none
   std::string frames_folder;  // empty: none
@@ -46,9 +47,9 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// Hands frame `number` of the film over, the mean of the light of `samples`; waits while two are waiting.
-  /// False once something failed: see error().
-  bool add(std::vector<render::Frame> samples, int number);
+  /// Hands frame `number` of the film over: of each panel the pictures of whose light it is the mean. Waits
+  /// while two are waiting. False once something failed: see error().
+  bool add(std::vector<std::vector<render::Frame>> panels, int number);
   /// Waits for the last frame, closes the video. False if something failed.
   bool finish();
 

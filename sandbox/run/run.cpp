@@ -13,12 +13,12 @@
 #include "sandbox/report/summary.h"
 #include "sandbox/run/checkpoint.h"
 #include "sandbox/run/exports.h"
-#include "sandbox/run/exposure.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/plan.h"
 #include "sandbox/run/progress.h"
-#include "sandbox/run/projector.h"
+#include "sandbox/run/showing.h"
+#include "sandbox/run/side_by_side.h"
 #include "sandbox/scene/find_scene.h"
 
 namespace shatterbox::sandbox::run {
@@ -35,20 +35,6 @@ struct Shot {
   int first = 0;  // number of its first frame in the film
 };
 
-/// Which frames are drawn: all, or those that show the moments asked for.
-class Choice {
- public:
-  explicit Choice(std::vector<double> stills) : stills_(std::move(stills)), has_all_(stills_.empty()) {}
-  /// `ahead`: the time of the next frame, s.
-  bool takes(double ahead) {
-    return std::erase_if(stills_, [ahead](double time) { return time < ahead - 1e-9; }) > 0 || has_all_;
-  }
-
- private:
-  std::vector<double> stills_;  // s, not drawn yet
-  bool has_all_;
-};
-
 /// What all shots of a film share.
 struct Film {
   Painter* painter = nullptr;  // none: no pictures
@@ -56,65 +42,38 @@ struct Film {
   int first_drawn = 0;  // frames below it are kept from an earlier run
 };
 
-/// The pictures of one frame, of which `moment` is the first, if it is drawn; steps to its last moment.
-std::vector<render::Frame> expose(const view::Moment& moment, const Exposure& exposure, bool is_drawn,
-                                  Projector& projector, view::View& view) {
-  std::vector<render::Frame> samples;
-  std::optional<view::Moment> now = moment;
-  const int samples_a_slot = exposure.slots() == 1 ? exposure.samples() : 1;
-  for (int slot = 0; now && slot < exposure.slots(); ++slot) {
-    if (slot > 0) {
-      now = projector.next();
-      if (!now) break;
-      for (const scene::Cue& cue : projector.take_cues()) view.begin(cue, *now);
-    }
-    for (int i = 0; is_drawn && i < samples_a_slot && slot < exposure.samples(); ++i) {
-      const auto number = static_cast<int>(samples.size());
-      samples.push_back(view.make_frame(*now, exposure.lens_point(number)));
-      samples.back().caption = samples.front().caption;  // numbers are not blurred
-      samples.back().title = samples.front().title;
-    }
-  }
-  return samples;
-}
-
 /// The loop. A sentence if it failed, else empty. `first`: number of the first frame in the film.
 std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) {
   Painter* const painter = film.painter;
-  const scene::SceneDescription& scene = *job.scene;
-  const world::World& world = job.built->world;
-  const int fps = job.options.frames_per_second;
-  const Exposure exposure(scene.camera);
-  Projector projector(scene, *job.built, recorder, job.options.has_audit, fps, exposure.slots());
-  view::View view(scene, *job.built, shot);
-  Exports exports(job, view, film.first_drawn);
-  Choice choice(job.options.stills);
-  Progress progress(std::max(1, static_cast<int>(scene.seconds * fps + 0.5)), stderr_is_terminal());
-  std::vector<int> shown;  // how far the film is with each frame, in frames' lengths of the world's time
-  for (int frame = 0;; ++frame) {
-    const auto start = Clock::now();
-    const double audited = recorder.record.audit_time;
-    const std::optional<view::Moment> moment = projector.next();
-    if (!moment) break;
-    for (const scene::Cue& cue : projector.take_cues()) view.begin(cue, *moment);
-    const bool is_due = choice.takes(projector.time_ahead()), is_kept = first + frame < film.first_drawn;
-    const bool is_drawn = painter != nullptr && is_due && !is_kept;
-    if (is_kept) (void)view.camera_at(*moment);  // it remembers whom it follows
-    if (std::string fault = exports.add(*moment, first + frame); !fault.empty()) return fault;
-    if (std::string fault = film.checkpoint.pass(shot, world, painter); !fault.empty()) return fault;
-    std::vector<render::Frame> samples =
-        expose(*moment, exposure, is_drawn, projector, view);  // steps on while the shutter is open
-    const double audit_time = recorder.record.audit_time - audited;
-    recorder.note_frame(world, milliseconds_since(start) - audit_time, audit_time);
-    if (is_drawn && !painter->add(std::move(samples), first + frame)) return painter->error();
-    shown.push_back(static_cast<int>(projector.time_ahead() * fps + 1e-6));
+  Showing showing(job, recorder, shot);
+  Exports exports(job, showing.view(), film.first_drawn);
+  Progress progress(showing.expected(), stderr_is_terminal());
+  std::vector<int> shown;  // how far the film is with each frame
+  for (int frame = 0; showing.advance(); ++frame) {
+    const bool is_kept = first + frame < film.first_drawn;
+    const bool is_drawn = painter != nullptr && showing.is_due() && !is_kept;
+    if (is_kept) showing.pass_over();
+    if (std::string fault = exports.add(showing.moment(), first + frame); !fault.empty()) return fault;
+    if (std::string fault = film.checkpoint.pass(shot, showing.world(), painter); !fault.empty())
+      return fault;
+    std::vector<render::Frame> samples = showing.expose(is_drawn);
+    if (is_drawn && !painter->add({std::move(samples)}, first + frame)) return painter->error();
+    shown.push_back(showing.shown());
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
     const int finished = is_whole_film ? painter->finished_frames() - first : frame + 1;
-    progress.show(finished > 0 ? shown[static_cast<std::size_t>(finished) - 1] : 0,
-                  fmt::format("{:.2f} s, {} bodies", world.time(), world.bodies().size()));
+    progress.show(
+        finished > 0 ? shown[static_cast<std::size_t>(finished) - 1] : 0,
+        fmt::format("{:.2f} s, {} bodies", showing.world().time(), showing.world().bodies().size()));
   }
-  projector.finish();
+  showing.finish();
   return exports.close();
+}
+
+/// After a shot: what its record says in the end.
+void close_shot(Shot& shot, Clock::time_point start) {
+  shot.recorder.record.is_interrupted = is_interrupted();
+  shot.recorder.finish(shot.job->built->world, milliseconds_since(start) / 1000.0);
+  sort_parts(plan_parts(*shot.job->scene, shot.job->options), shot.recorder.record);
 }
 
 void play_shot(Shot& shot, int number, Film& film, int first, std::string& fault) {
@@ -125,9 +84,36 @@ void play_shot(Shot& shot, int number, Film& film, int first, std::string& fault
   } catch (const std::exception& error) {
     fault = error.what();
   }
-  shot.recorder.record.is_interrupted = is_interrupted();
-  shot.recorder.finish(shot.job->built->world, milliseconds_since(start) / 1000.0);
-  sort_parts(plan_parts(*shot.job->scene, shot.job->options), shot.recorder.record);
+  close_shot(shot, start);
+}
+
+/// One shot after the other. The first is played even if the run is interrupted already: its record says so.
+void play_in_turn(std::vector<Shot>& shots, Film& film, std::string& fault) {
+  int first = 0;
+  for (std::size_t i = 0; i < shots.size() && fault.empty(); ++i) {
+    if (i > 0 && is_interrupted()) return;
+    if (shots.size() > 1)
+      fmt::print(stderr, "shot {} of {}: {}\n", i + 1, shots.size(), shots[i].job->scene->name);
+    play_shot(shots[i], static_cast<int>(i), film, first, fault);
+    first += static_cast<int>(shots[i].recorder.record.frames.size());
+  }
+}
+
+/// All shots at once, beside each other.
+void play_compared(std::vector<Shot>& shots, Painter* painter, std::string& fault) {
+  const auto start = Clock::now();
+  std::vector<Job*> jobs;
+  std::vector<Recorder*> recorders;
+  for (Shot& shot : shots) {
+    jobs.push_back(&*shot.job);
+    recorders.push_back(&shot.recorder);
+  }
+  try {
+    fault = play_side_by_side(jobs, recorders, painter);
+  } catch (const std::exception& error) {
+    fault = error.what();
+  }
+  for (Shot& shot : shots) close_shot(shot, start);
 }
 
 /// The reports and the closing words of all shots that were played. The exit status.
@@ -160,7 +146,7 @@ int conclude(std::vector<Shot>& shots, const Options& options, std::string fault
   return breaches > 0 ? kDiffers : kDone;
 }
 
-/// Plays the shots one after the other into one film.
+/// Plays the shots into one film: one after the other, or all beside each other.
 int play_all(std::vector<Shot>& shots) {
   const Options options = shots.front().job->options;
   PainterSettings settings = shots.front().job->painter;
@@ -183,13 +169,10 @@ int play_all(std::vector<Shot>& shots) {
   }
   film.painter = painter ? &*painter : nullptr;
   std::string fault;
-  int first = 0;
-  for (std::size_t i = 0; i < shots.size() && fault.empty() && !is_interrupted(); ++i) {
-    if (shots.size() > 1)
-      fmt::print(stderr, "shot {} of {}: {}\n", i + 1, shots.size(), shots[i].job->scene->name);
-    play_shot(shots[i], static_cast<int>(i), film, first, fault);
-    first += static_cast<int>(shots[i].recorder.record.frames.size());
-  }
+  if (options.compare.empty())
+    play_in_turn(shots, film, fault);
+  else
+    play_compared(shots, film.painter, fault);
   if (painter) {
     if (!painter->finish() && fault.empty()) fault = painter->error();
     for (Shot& shot : shots) shot.recorder.note_pictures(painter->painted(), shot.first);
@@ -219,12 +202,26 @@ int run_scene(const Options& options) {
     scene::book(problems, scene::Place{"--export, --tables, --truth", 0, 0},
                 fmt::format("{} is a film of {} shots, each a world of its own", options.scene, files.size()),
                 fmt::format("take one of them: {}", files.front()));
-  std::vector<Shot> shots(files.size());
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  std::vector<std::string> settings;  // of each shot, where they are compared
+  if (!options.compare.empty()) {
+    settings = compared_settings(options.compare, problems);
+    check_compare(options, problems);
+    if (files.size() > 1)
+      scene::book(problems, scene::Place{"--compare", 0, 0},
+                  fmt::format("{} is a film of {} shots", options.scene, files.size()),
+                  fmt::format("take one of them: {}", files.front()));
+    if (!problems.empty()) return refuse(problems);
+  }
+  std::vector<Shot> shots(std::max(files.size(), settings.size()));
+  for (std::size_t i = 0; i < shots.size(); ++i) {
     Options own = options;
-    own.scene = files[i];
-    if (files.size() > 1) own.video = film_of(options);
+    own.scene = settings.empty() ? files[i] : files.front();
+    if (!settings.empty()) own.overrides.push_back(settings[i]);
+    if (shots.size() > 1) own.video = film_of(options);
     shots[i].job = make_job(own, shots[i].recorder, problems);
+    shots[i].job->painter.panels = std::max<int>(1, static_cast<int>(settings.size()));
+    if (!settings.empty()) shots[i].recorder.record.scene += ", " + settings[i];
+    if (!settings.empty() && !problems.empty()) break;  // the others have the same ones
   }
   if (!problems.empty()) return refuse(problems);
   return play_all(shots);

@@ -1,0 +1,119 @@
+#include "sandbox/run/side_by_side.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "sandbox/run/interrupt.h"
+#include "sandbox/run/progress.h"
+#include "sandbox/run/showing.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+constexpr std::size_t kMostPanels = 4;
+
+std::vector<std::string> split_values(const std::string& text) {
+  std::vector<std::string> values(1);
+  int depth = 0;
+  char quote = 0;
+  for (const char c : text) {
+    if (quote != 0) {
+      quote = c == quote ? char{0} : quote;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else {
+      depth += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+      if (c == ',' && depth == 0) {
+        values.emplace_back();
+        continue;
+      }
+    }
+    values.back() += c;
+  }
+  return values;
+}
+
+/// One of the worlds, and what it shows when it is over.
+struct Panel {
+  std::string label;
+  std::unique_ptr<Showing> showing;
+  bool is_over = false;
+  std::vector<render::Frame> last;
+};
+
+void label(const std::string& text, std::vector<render::Frame>& samples) {
+  for (render::Frame& sample : samples)
+    sample.caption = sample.caption.empty() ? text : text + "\n" + sample.caption;
+}
+
+/// The next frame of all. False when all are over.
+bool advance(std::vector<Panel>& panels) {
+  bool goes_on = false;
+  for (Panel& panel : panels) {
+    panel.is_over = panel.is_over || !panel.showing->advance();
+    goes_on = goes_on || !panel.is_over;
+  }
+  return goes_on;
+}
+
+}  // namespace
+
+std::vector<std::string> compared_settings(const std::string& compare, scene::Problems& problems) {
+  const std::size_t equals = compare.find('=');
+  const std::vector<std::string> values =
+      equals == std::string::npos ? std::vector<std::string>() : split_values(compare.substr(equals + 1));
+  if (values.size() < 2 || values.size() > kMostPanels) {
+    scene::book(problems, scene::Place{"--compare", 0, 0},
+                fmt::format("\"{}\" does not name two to four values of a setting", compare),
+                "write NAME.key=a,b, for example pane.thickness=0.003,0.006");
+    return {};
+  }
+  std::vector<std::string> settings;
+  for (const std::string& value : values) settings.push_back(compare.substr(0, equals + 1) + value);
+  return settings;
+}
+
+void check_compare(const Options& options, scene::Problems& problems) {
+  const auto refuse_output = [&](const char* option, bool is_asked) {
+    if (is_asked)
+      scene::book(problems, scene::Place{option, 0, 0}, "holds one world, and --compare shows several",
+                  "leave one of them out");
+  };
+  refuse_output("--meshes", !options.meshes_folder.empty());
+  refuse_output("--export", !options.model.empty());
+  refuse_output("--tables", !options.tables_folder.empty());
+  refuse_output("--truth", !options.truth_folder.empty());
+  refuse_output("--resume", options.resumes);
+}
+
+std::string play_side_by_side(std::vector<Job*> jobs, std::vector<Recorder*> recorders, Painter* painter) {
+  std::vector<Panel> panels(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    panels[i].label = jobs[i]->options.overrides.back();
+    panels[i].showing = std::make_unique<Showing>(*jobs[i], *recorders[i], static_cast<int>(i));
+  }
+  Progress progress(panels.front().showing->expected(), stderr_is_terminal());
+  for (int frame = 0; advance(panels); ++frame) {
+    const bool is_drawn =
+        painter != nullptr && std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
+          return !panel.is_over && panel.showing->is_due();
+        });
+    std::vector<std::vector<render::Frame>> pictures;
+    for (Panel& panel : panels) {
+      if (!panel.is_over) {
+        panel.last = panel.showing->expose(is_drawn);
+        label(panel.label, panel.last);
+      }
+      pictures.push_back(panel.last);
+    }
+    if (is_drawn && !painter->add(std::move(pictures), frame)) return painter->error();
+    progress.show(frame + 1, fmt::format("{:.2f} s", panels.front().showing->world().time()));
+  }
+  for (Panel& panel : panels) panel.showing->finish();
+  return {};
+}
+
+}  // namespace shatterbox::sandbox::run
