@@ -148,6 +148,7 @@ Json make_json(const RunRecord& record) {
   json["compiler"] = record.compiler;
   json["gl_renderer"] = record.gl_renderer;
   json["scene"] = record.scene;
+  json["goal"] = record.goal;
   json["seed"] = record.seed;
   json["steps"] = w.steps;
   json["steps_per_second"] = record.steps_per_second;

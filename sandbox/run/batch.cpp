@@ -17,6 +17,7 @@
 #include "sandbox/report/text_file.h"
 #include "sandbox/run/again.h"
 #include "sandbox/run/batch_plan.h"
+#include "sandbox/run/gallery.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/job.h"
 
@@ -223,7 +224,12 @@ int run_batch(const BatchOptions& options) {
     row.report = read_json_file(row.folder / "report.json");
     worst = std::max(worst, row.status);
   }
-  const std::string fault = tell(rows, sweeps, options.folder);
+  std::string fault = tell(rows, sweeps, options.folder);
+  if (fault.empty() && options.has_gallery) {
+    std::vector<Exhibit> exhibits;
+    for (const Row& row : rows) exhibits.push_back({row.run.name, row.folder, row.report});
+    fault = write_gallery(options.folder, exhibits);
+  }
   std::fflush(stdout);
   if (!fault.empty()) fmt::print(stderr, "failed: {}\n", fault);
   return !fault.empty() || is_interrupted() ? kFailed : worst;

@@ -12,8 +12,9 @@ struct BatchOptions {
   std::vector<std::string> sweeps;     // NAME.key=value,value,..
   std::vector<std::string> run_words;  // options of every run
   std::string folder = "batch";
-  int jobs = 0;          // at a time; 0: one a core
-  bool resumes = false;  // what is done is not done again, what was cut short goes on
+  int jobs = 0;              // at a time; 0: one a core
+  bool has_gallery = false;  // a page of their films
+  bool resumes = false;      // what is done is not done again, what was cut short goes on
 };
 
 /// Runs all, prints the table. The greatest exit status of the runs.

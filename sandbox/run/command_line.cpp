@@ -92,6 +92,7 @@ void add_batch_options(CLI::App& command, BatchOptions& options) {
       ->type_name("NAME.key=a,b,..")
       ->allow_extra_args(false);
   command.add_flag("--resume", options.resumes, "what is done is not done again, what was cut short goes on");
+  command.add_flag("--gallery", options.has_gallery, "a page of the films: index.html");
   command.footer(
       "What stands behind -- are options of every run: batch scenes --jobs 2 -- --no-render --seconds 1");
 }

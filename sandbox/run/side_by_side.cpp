@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sandbox/run/batch_plan.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/progress.h"
 #include "sandbox/run/showing.h"
@@ -14,27 +15,6 @@ namespace shatterbox::sandbox::run {
 namespace {
 
 constexpr std::size_t kMostPanels = 4;
-
-std::vector<std::string> split_values(const std::string& text) {
-  std::vector<std::string> values(1);
-  int depth = 0;
-  char quote = 0;
-  for (const char c : text) {
-    if (quote != 0) {
-      quote = c == quote ? char{0} : quote;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else {
-      depth += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
-      if (c == ',' && depth == 0) {
-        values.emplace_back();
-        continue;
-      }
-    }
-    values.back() += c;
-  }
-  return values;
-}
 
 /// One of the worlds, and what it shows when it is over.
 struct Panel {
@@ -62,17 +42,16 @@ bool advance(std::vector<Panel>& panels) {
 }  // namespace
 
 std::vector<std::string> compared_settings(const std::string& compare, scene::Problems& problems) {
-  const std::size_t equals = compare.find('=');
-  const std::vector<std::string> values =
-      equals == std::string::npos ? std::vector<std::string>() : split_values(compare.substr(equals + 1));
-  if (values.size() < 2 || values.size() > kMostPanels) {
+  scene::Problems ignored;
+  const Sweep sweep = parse_sweep(compare, ignored);
+  if (!ignored.empty() || sweep.values.size() < 2 || sweep.values.size() > kMostPanels) {
     scene::book(problems, scene::Place{"--compare", 0, 0},
                 fmt::format("\"{}\" does not name two to four values of a setting", compare),
                 "write NAME.key=a,b, for example pane.thickness=0.003,0.006");
     return {};
   }
   std::vector<std::string> settings;
-  for (const std::string& value : values) settings.push_back(compare.substr(0, equals + 1) + value);
+  for (const std::string& value : sweep.values) settings.push_back(sweep.key + "=" + value);
   return settings;
 }
 

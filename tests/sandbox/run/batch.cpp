@@ -99,3 +99,25 @@ TEST_CASE("Ctrl-C ends a batch in order, and it goes on where it was") {
   for (const char* seed : {"1", "2", "3"})
     CHECK(count_frames(folder, std::string("out/good_scene.seed=") + seed + "/film.mp4") == 300);
 }
+
+TEST_CASE("a gallery shows two pictures of each film, its goal and its numbers") {
+  const Folder folder;
+  folder.write("balls.toml", kSmallScene);
+  folder.write("odd & ends.toml", kSmallScene);
+  REQUIRE(program(folder, "batch balls.toml 'odd & ends.toml' -o b --gallery -- --seconds 0.2 --size 64x48")
+              .status == 0);
+  const std::string page = read_text(folder / "b/index.html");
+  CHECK(page.find("things fall") != std::string::npos);
+  CHECK(page.find("0 pieces of 0 breaks") != std::string::npos);
+  int pictures = 0;
+  for (std::size_t at = page.find("src=\""); at != std::string::npos; at = page.find("src=\"", at + 1)) {
+    const std::string file = page.substr(at + 5, page.find('"', at + 5) - at - 5);
+    INFO(file);
+    CHECK(fs::exists(folder / "b" / file));
+    ++pictures;
+  }
+  CHECK(pictures == 4);
+  // What makes no film is told without pictures.
+  REQUIRE(program(folder, "batch balls.toml -o c --gallery -- --seconds 0.1 --no-render").status == 0);
+  CHECK(read_text(folder / "c/index.html").find("no pictures") != std::string::npos);
+}
