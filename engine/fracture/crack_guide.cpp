@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "engine/core/index.h"
+#include "engine/stress/elimination_order.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -39,7 +40,7 @@ std::array<Vec3, 4> shape_gradients(const geometry::TetMesh& mesh, int element) 
 }  // namespace
 
 struct CrackGuide::Factor {
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> solver;
 };
 
 Mat3 guide_conduction(const Vec3& across, double sureness) {
@@ -53,6 +54,7 @@ CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> 
   int count = 0;
   for (int& n : number_)
     if (n == 0) n = count++;
+  dissect(count);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(10 * elements_.size() + at(count));
   double trace = 0.0;
@@ -75,6 +77,25 @@ CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> 
   matrix.setFromTriplets(entries.begin(), entries.end());
   factor_ = std::make_unique<Factor>();
   factor_->solver.compute(matrix);
+}
+
+/// Numbers the unknowns as they are best eliminated. In three dimensions the factor is several times smaller
+/// than by least degrees.
+void CrackGuide::dissect(int count) {
+  std::vector<std::array<int, 2>> edges;
+  edges.reserve(6 * elements_.size());
+  for (const GuideElement& e : elements_) {
+    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
+    for (const auto& ends : geometry::kTetrahedronEdges) {
+      const auto [low, high] = std::minmax(number_[at(t[at(ends[0])])], number_[at(t[at(ends[1])])]);
+      edges.push_back({low, high});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const std::vector<int> rank = stress::rank_vertices(at(count), edges);
+  for (int& n : number_)
+    if (n >= 0) n = rank[at(n)];
 }
 
 CrackGuide::~CrackGuide() = default;

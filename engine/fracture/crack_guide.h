@@ -38,6 +38,8 @@ class CrackGuide {
  private:
   struct Factor;
 
+  void dissect(int count);
+
   const geometry::TetMesh& mesh_;
   std::vector<GuideElement> elements_;
   std::vector<int> number_;  // |nodes|: unknown, -1 for none

@@ -18,14 +18,17 @@ using core::at;
 }  // namespace
 
 std::vector<int> rank_vertices(const geometry::ShellElements& elements) {
-  const Size count = elements.mesh.positions.size();
+  return rank_vertices(elements.mesh.positions.size(), elements.topology.edges);
+}
+
+std::vector<int> rank_vertices(Size count, const std::vector<std::array<int, 2>>& edges) {
   std::vector<idx_t> first(count + 1, 0);
-  for (const auto& edge : elements.topology.edges)
+  for (const auto& edge : edges)
     for (const int vertex : edge) ++first[at(vertex) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<idx_t> neighbours(at(first.back()));
   std::vector<idx_t> fill(first.begin(), first.end() - 1);
-  for (const auto& edge : elements.topology.edges)
+  for (const auto& edge : edges)
     for (Size end = 0; end < 2; ++end) neighbours[at(fill[at(edge[end])]++)] = edge[1 - end];
 
   std::vector<int> rank(count);

@@ -4,6 +4,7 @@
 // a third of the nodes once replaces ordering all unknowns at each break.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/geometry/shell_mesh.h"
@@ -13,6 +14,9 @@ namespace shatterbox::stress {
 /// Place of each vertex in a nested dissection of the mesh (|V|, a permutation). Same mesh, same answer, any
 /// thread.
 std::vector<int> rank_vertices(const geometry::ShellElements& elements);
+
+/// Likewise of any graph: `edges` (each once, no loops) between `vertex_count` vertices.
+std::vector<int> rank_vertices(std::size_t vertex_count, const std::vector<std::array<int, 2>>& edges);
 
 /// The nodes of a (cut) mesh in elimination order: virtual vertex v is node v, virtual edge e is node
 /// |virtual vertices| + e. Edges are left out if `with_edges` is false.

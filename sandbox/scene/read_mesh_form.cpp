@@ -10,6 +10,8 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
+constexpr const char* kGlmarkFolder = "/usr/share/glmark2/";  // of a package, for the scene of the bunny
+
 /// What shapes there are for a kind of body, and which there will be.
 struct Shapes {
   std::vector<std::string> known, later;
@@ -50,7 +52,9 @@ std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDes
     std::error_code code;
     if (!std::filesystem::is_regular_file(shape.files.back(), code)) {
       reader.add_problem(name->place, fmt::format("there is no mesh file {}", shape.files.back()),
-                         "files are looked for beside the scene; .obj, .ply and .stl are read");
+                         shape.files.back().starts_with(kGlmarkFolder)
+                             ? "it comes with Debian's package: sudo apt install glmark2-data"
+                             : "files are looked for beside the scene; .obj, .ply and .stl are read");
     }
   }
   if (names.empty()) reader.add_problem_at("mesh", "mesh names no file");
