@@ -63,12 +63,22 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
 
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
-  for (const char* scene : {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments",
-                            "card_house", "plate_stack", "bowls", "rain", "reel"}) {
+  for (const char* scene :
+       {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments", "card_house", "plate_stack",
+        "bowls", "rain", "reel", "tablet", "wall", "brick_wall", "dominoes", "blast", "arch"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);
   }
+}
+
+TEST_CASE("arch: twenty-five stones stand by friction alone, and come down without their crown") {
+  const Folder folder;
+  const auto standing = play(folder, "arch --seconds 1.1");
+  CHECK(standing["conservation"]["kinetic_energy_j"].get<double>() < 1e-6);
+  const auto fallen = play(folder, "arch --seconds 3.5");
+  CHECK(fallen["conservation"]["potential_energy_j"].get<double>() <
+        0.7 * standing["conservation"]["potential_energy_j"].get<double>());
 }
 
 TEST_CASE("ornament: shatters into at least 20 pieces, a low drop is held, with the verdict in the report") {

@@ -104,6 +104,8 @@ const Broken kCorpus[] = {
      "t.toml:5:10", "held by the world", ""},
     {"[[body]]\nkind = \"shell\"\nmesh = \"no_such.obj\"\n", "t.toml:3:8",
      "there is no mesh file no_such.obj", "beside the scene"},
+    {"[[body]]\nkind = \"solid\"\nmesh = \"/usr/share/glmark2/no_such.obj\"\n", "t.toml:3:8",
+     "there is no mesh file", "apt install glmark2-data"},
     {"[[body]]\nkind = \"sphere\"\nrotation = [0,0,1]\norientation = [1,0,0,0]\n", "t.toml:4:15", "not both",
      ""},
     {"[[body]]\nkind = \"sphere\"\norientation = [0,0,0,0]\n", "t.toml:3:15", "points nowhere", ""},
