@@ -74,6 +74,26 @@ TEST_CASE("check and list say what there is") {
   }
 }
 
+TEST_CASE("bash completes verbs, options, scenes and words of options") {
+  const Folder folder;
+  folder.write("complete.sh",
+               "source '" SHATTERBOX_SOURCE_DIR
+               "/sandbox/completion.bash'\n"
+               "COMP_WORDS=(\"$@\")\nCOMP_CWORD=$(($# - 1))\n_shatterbox\necho \"${COMPREPLY[*]}\"\n");
+  folder.write("orange.toml", kSmallScene);
+  const auto completed = [&folder](const std::string& words) {
+    return shell(folder, "bash complete.sh " SHATTERBOX_PROGRAM " " + words).out;
+  };
+  CHECK(completed("pl") == "plan\n");
+  CHECK(completed("run orn") == "ornament ornaments\n");
+  CHECK(completed("run ora") == "orange.toml\n");
+  CHECK(completed("run ornament --qu") == "--quality\n");
+  CHECK(completed("run ornament --quality ''") == "preview full\n");
+  CHECK(completed("golden ''") == "make check\n");
+  CHECK(completed("golden make --reas") == "--reason\n");
+  CHECK(completed("study mot") == "motion\n");
+}
+
 TEST_CASE("an installed program finds the scenes that were installed with it") {
   const Folder folder;
   fs::create_directories(folder / "bin");
