@@ -5,8 +5,7 @@ ENGINE_PACKAGES=(g++ cmake ninja-build libeigen3-dev libtbb-dev libmetis-dev cat
 
 BUILD_PACKAGES=("${ENGINE_PACKAGES[@]}" pkg-config libosmesa6-dev libglm-dev libstb-dev python3-glad
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev libassimp-dev
-  zlib1g-dev)  # libassimp-dev links it without asking for it
+  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev)
 
 TEST_PACKAGES=("${BUILD_PACKAGES[@]}" ffmpeg gnuplot-nox libgmp-dev)
 

@@ -1,4 +1,5 @@
-// Reading meshes: OBJ through tinyobjloader in double precision, PLY and STL through Assimp. What comes out
+// Reading meshes: OBJ through tinyobjloader in double precision, PLY and STL by readers of our own, in
+// which no file can hang or ask for more than it holds. What comes out
 // is as the file has it; geometry::mend judges it.
 #pragma once
 
@@ -16,7 +17,7 @@ namespace shatterbox::sandbox::scene {
 inline constexpr std::uintmax_t kMostMeshFileBytes = std::uintmax_t{1} << 29;
 
 /// The triangles of an .obj, .ply or .stl file (by its ending, in any case); polygons are cut into triangles.
-/// PLY and STL come in single precision, STL unwelded: positions equal to the bit are welded. A sentence with
+/// STL comes in single precision and unwelded: positions equal to the bit are welded. A sentence with
 /// the path, and for OBJ the line, if the file is missing, is no such mesh, is cut short, or has a number
 /// that is none. What was done on the way (welded, cut polygons) goes to `notes` if given.
 core::Result<geometry::TriangleMesh> read_mesh(const std::filesystem::path& path,
