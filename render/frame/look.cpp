@@ -63,6 +63,13 @@ Look glass(glm::vec3 tint) {
   return look;
 }
 
+Look frosted_glass(glm::vec3 tint) {
+  Look look = glass(tint);
+  look.roughness = look.inside_roughness = 0.09F;  // more is a crack's, as glass.frag tells them apart
+  look.transmission = 0.35F;
+  return look;
+}
+
 Look stone(glm::vec3 colour) {
   Look look = matt(colour);
   look.crack = glm::mix(colour, glm::vec3(0.7F), 0.35F);

@@ -40,6 +40,7 @@ Look ornament(glm::vec3 paint);      // metallic lacquer, silvered inside, brigh
 Look metal(glm::vec3 tint, float roughness = 0.3F);
 Look ceramic(glm::vec3 glaze);  // glazed both sides, matt earthenware where broken
 Look glass(glm::vec3 tint = {0.95F, 0.985F, 0.97F});
+Look frosted_glass(glm::vec3 tint);
 Look stone(glm::vec3 colour);
 
 }  // namespace shatterbox::render

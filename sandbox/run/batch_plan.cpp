@@ -18,18 +18,17 @@ const scene::Place kSweepPlace{"--sweep", 0, 0};
 
 /// Its scene files, or itself. Of a folder, in the order of their names.
 std::vector<std::string> scenes_of(const std::string& what, scene::Problems& problems) {
+  std::vector<std::string> files = scene::find_shots(what);  // of a folder, here or of those that came along
+  if (!files.empty()) return files;
+  scene::Problems own;
+  const std::string file = scene::find_scene(what, own);
+  if (!file.empty()) return {file};
   std::error_code code;
-  if (!fs::is_directory(what, code)) {
-    const std::string file = scene::find_scene(what, problems);
-    return file.empty() ? std::vector<std::string>{} : std::vector{file};
-  }
-  std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(what, code))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
-  if (files.empty())
+  if (fs::is_directory(what, code)) own.clear();
+  for (scene::Problem& problem : own) problems.push_back(std::move(problem));
+  if (own.empty())
     scene::book(problems, scene::Place{what, 0, 0}, "there is no scene (.toml) in this folder");
-  return files;
+  return {};
 }
 
 constexpr std::size_t kLongestName = 120;

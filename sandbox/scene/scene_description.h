@@ -195,8 +195,9 @@ struct SceneDescription {
 
 // Names that mean something to sandbox/view.
 inline const std::vector<std::string> kLookNames{
-    "ornament", "glass", "ceramic",  "porcelain", "steel",  "wood",   "concrete",  "brick",
-    "plaster",  "ice",   "eggshell", "matt",      "glossy", "hidden", "aluminium", "terracotta"};
+    "ornament",  "glass",      "ceramic", "porcelain", "steel",    "wood",   "concrete",
+    "brick",     "plaster",    "ice",     "eggshell",  "matt",     "glossy", "hidden",
+    "aluminium", "terracotta", "frosted", "chrome",    "chocolate"};
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
 inline const std::vector<std::string> kOverlayNames{"none",    "stress",   "pieces",   "grains",

@@ -14,6 +14,16 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   const auto paint = [&colour](unsigned usual) { return colour.value_or(hex(usual)); };
   if (name == "ornament") return render::ornament(paint(0xb5121f));
   if (name == "glass") return colour ? render::glass(*colour) : render::glass();
+  if (name == "frosted") return render::frosted_glass(paint(0xe9f2f1));
+  if (name == "chrome") return render::metal(paint(0xe6e8ea), 0.05F);
+  if (name == "chocolate") {
+    render::Look look = render::matt(paint(0x4a2a18));
+    look.crack = 0.85F * look.outside;
+    look.roughness = look.inside_roughness = 0.55F;
+    look.clear_coat = 0.45F;
+    look.clear_coat_roughness = 0.3F;
+    return look;
+  }
   if (name == "ceramic") return render::ceramic(paint(0x2f6f86));
   if (name == "porcelain") {
     render::Look look = render::ceramic(paint(0xf2efe8));

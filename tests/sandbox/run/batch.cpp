@@ -78,6 +78,9 @@ TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
   CHECK(read_text(folder / "mixed/bad/log.txt").find("did you mean") != std::string::npos);
   CHECK(read_json(folder / "mixed/summary.json")["rows"][1][1] == 0);
   CHECK(program(folder, "batch none.toml").status == 2);
+  CHECK(program(folder, "batch none").err.find("no such scene") != std::string::npos);
+  CHECK(program(folder, "batch mixed").err.find("no scene (.toml) in this folder") != std::string::npos);
+  CHECK(program(folder, "batch reel --sweep reel=1").err.find("no such scene") == std::string::npos);
   CHECK(program(folder, "batch good.toml --sweep radius=1").status == 2);
   CHECK(program(folder, "batch good.toml -o good.toml").status == 2);
 }
