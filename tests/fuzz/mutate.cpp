@@ -1,5 +1,10 @@
 // Plays files and a fixed number of random changes of them: mutate COUNT FOLDER... ; the same every time.
+// What does not come back is kept in the folder for temporary files.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -76,23 +81,40 @@ void change(std::string& text, const std::string& other, std::mt19937& random) {
   }
 }
 
+constexpr unsigned kMostSeconds = 20;  // for one text
+
+std::string g_text, g_file;  // what is being read, and where it is kept if that does not come back
+
+extern "C" void keep_text(int signal) {
+  const int file = open(g_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file >= 0 && write(file, g_text.data(), g_text.size()) >= 0)
+    (void)write(2, g_file.data(), g_file.size());
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void run_one(std::string text) {
+  g_text = std::move(text);
+  alarm(kMostSeconds);
+  (void)fuzz::run_one(g_text);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
   const std::vector<std::string> corpus = read_corpus(argc - 2, argv + 2);
   fuzz::require(!corpus.empty(), "there are files to begin with");
-  for (const std::string& text : corpus) (void)fuzz::run_one(text);
+  g_file = (fs::temp_directory_path() / ("shatterbox_" + fs::path(argv[0]).filename().string() + "_last"))
+               .string();
+  for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGBUS, SIGALRM}) std::signal(signal, keep_text);
+  for (const std::string& text : corpus) run_one(text);
   std::mt19937 random(1);
-  const fs::path last =
-      fs::temp_directory_path() / ("shatterbox_" + fs::path(argv[0]).filename().string() + "_last");
   for (int i = 0; i < std::atoi(argv[1]); ++i) {
     std::string text = corpus[random() % corpus.size()];
     for (auto changes = 1 + random() % 4; changes > 0; --changes)
       change(text, corpus[random() % corpus.size()], random);
-    std::ofstream(last, std::ios::binary) << text;  // what it was, if it does not come back
-    (void)fuzz::run_one(text);
+    run_one(std::move(text));
   }
-  fs::remove(last);
   return 0;
 }
