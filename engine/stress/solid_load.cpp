@@ -107,6 +107,19 @@ SolidSkin make_border_skin(const geometry::SolidMesh& mesh) {
   return skin;
 }
 
+namespace {
+
+constexpr double kSurely = 1.0 + 1e-9;  // times a distance: beyond its rounding
+
+/// From a point to the box about a triangle: what is farther need not be looked at.
+double distance_to_box(const Vec3& point, const std::array<Vec3, 3>& corners) {
+  const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+  const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+  return (low - point).cwiseMax(point - high).cwiseMax(0.0).norm();
+}
+
+}  // namespace
+
 SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& skin, const Vec3& point,
                            double radius) {
   SolidPatch patch;
@@ -115,6 +128,7 @@ SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& ski
   double least = 0.0;
   for (int t = 0; t < static_cast<int>(skin.cells.size()); ++t) {
     const auto corners = triangle_corners(skin, t);
+    if (first >= 0 && distance_to_box(point, corners) > kSurely * least) continue;
     const auto nearest = geometry::closest_on_triangle(point, corners[0], corners[1], corners[2]);
     if (first >= 0 && !(nearest.distance < least)) continue;
     first = t;
