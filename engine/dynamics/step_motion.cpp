@@ -256,6 +256,8 @@ int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& sett
     spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
   }
   const int awake = report.awake_bodies, hits = report.hits;
+  // Who was cut stood still for the whole part: short parts cost less of the motion.
+  if (report.failsafe_steps > 0 && settings.time_step > kPartTime) return lively_parts(settings);
   if (kManySpin * spinning > awake && kManyHits * hits > awake) return lively_parts(settings);
   return hits >= kLeastHits && kCrowdHits * hits > awake ? kCrowdParts : 1;
 }

@@ -134,9 +134,10 @@ TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, sp
   test::Scene scene;
   for (int k = 0; k < 300; ++k)
     scene.add(test::make_shell(test::square_mesh(0.05, 1))).pose.translation.x() = 0.2 * k;
-  const auto parts_after = [&](int hits, double spin) {
+  const auto parts_after = [&](int hits, double spin, int failsafe_steps = 0) {
     dynamics::ContactReport step;
     step.awake_bodies = 300;
+    step.failsafe_steps = failsafe_steps;
     step.hits = hits;
     for (auto& b : scene.bodies) b.angular_velocity = Vec3(0, spin, 0);
     dynamics::end_step(scene.bodies, scene.settings, 1, step, scene.state);
@@ -148,8 +149,12 @@ TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, sp
   CHECK(parts_after(61, 0.0) == 2);
   CHECK(parts_after(0, 200.0) == 1);
   CHECK(parts_after(61, 200.0) == 4);
+  CHECK(parts_after(0, 0.0, 1) == 4);
+  scene.settings.time_step = 1.0 / 960.0;
+  CHECK(parts_after(0, 0.0, 1) == 1);
   scene.settings.time_step = 1.0 / 60.0;
   CHECK(parts_after(61, 200.0) == 16);
+  CHECK(parts_after(0, 0.0, 1) == 16);
 }
 
 TEST_CASE(
