@@ -114,7 +114,7 @@ void ModelFilm::add_floor(const render::Camera& camera) {
   if (!ground) return;
   const auto width = static_cast<float>(kFloorWidth) * glm::distance(camera.position, camera.target);
   const float depth = static_cast<float>(kFloorDepth) * width;
-  floor_.emplace();
+  floor_ = Actor();
   floor_->name = "floor";
   floor_->extras = {{"plane", true}};
   floor_->mesh = add_mesh(add_geometry(*render::make_box(1, {width, depth, width})),
@@ -124,7 +124,7 @@ void ModelFilm::add_floor(const render::Camera& camera) {
 
 void ModelFilm::add_camera(const render::Camera& camera) {
   if (!camera_) {
-    camera_.emplace();
+    camera_ = Actor();
     camera_->name = "camera";
     const double away = glm::distance(camera.position, camera.target);
     file_.json["cameras"] = Json::array({{{"type", "perspective"},

@@ -30,7 +30,7 @@ Solids lattice_box(const Vec3& half_extent, double element_size) {
 geometry::TetMesh mapped_grid(const std::array<int, 3>& cells, const Map& map, double jitter) {
   geometry::TetMesh mesh;
   core::Random random(11, 0);
-  const auto& [nx, ny, nz] = cells;
+  const int nx = cells[0], ny = cells[1], nz = cells[2];
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)
       for (int i = 0; i <= nx; ++i) {
