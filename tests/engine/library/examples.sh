@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs the engine from a build folder into an empty prefix, takes the examples out of engine/README.md, builds them
-# as a stranger's project would, and runs them. examples.sh BUILD SOURCE CXX
+# as a stranger's project would, and runs them. examples.sh BUILD SOURCE CXX GENERATOR
 set -euo pipefail
-build=$1 source=$2 compiler=$3
+build=$1 source=$2 compiler=$3 generator=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -25,7 +25,7 @@ for name in "${names[@]}"; do
   printf 'add_executable(%s %s.cpp)\ntarget_link_libraries(%s PRIVATE shatterbox::engine)\n' "$name" "$name" "$name" \
     >>"$work/examples/CMakeLists.txt"
 done
-cmake -S "$work/examples" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" \
+cmake -S "$work/examples" -B "$work/build" -G "$generator" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" \
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="-O1 -Wall -Wextra -Wshadow -Werror" >/dev/null
 cmake --build "$work/build" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 for name in "${names[@]}"; do
