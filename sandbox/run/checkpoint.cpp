@@ -1,6 +1,5 @@
 #include "sandbox/run/checkpoint.h"
 
-#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -23,11 +22,7 @@ constexpr std::chrono::seconds kBetweenSaves{1};
 
 void add_text(core::Hash& hash, const std::string& text) {
   hash.add(static_cast<std::uint64_t>(text.size()));
-  for (std::size_t i = 0; i < text.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, text.data() + i, std::min<std::size_t>(8, text.size() - i));
-    hash.add(word);
-  }
+  add_bytes(hash, text.data(), text.size());
 }
 
 /// Of the texts and of all that stands in the world at its start, meshes with it.
@@ -60,6 +55,7 @@ std::string file_beside(const Options& options) {
 Checkpoint::Checkpoint(const std::vector<const Job*>& jobs) : saved_(Clock::now()) {
   const Options& options = jobs.front()->options;
   file_ = file_beside(options);
+  if (file_.empty()) return;  // nothing to keep, nothing to compare
   video_ = options.video;
   frames_folder_ = options.frames_folder;
   truth_folder_ = options.truth_folder;

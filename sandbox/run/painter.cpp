@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "engine/core/clock.h"
-#include "engine/core/hash.h"
 #include "render/output/image_file.h"
 #include "render/output/light_sum.h"
 #include "render/output/npz_file.h"
@@ -63,14 +62,18 @@ render::Image join(const std::vector<render::Image>& panels) {
 
 }  // namespace
 
+void add_bytes(core::Hash& hash, const void* bytes, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, static_cast<const char*>(bytes) + i, std::min<std::size_t>(8, count - i));
+    hash.add(word);
+  }
+}
+
 std::uint64_t hash_image(const render::Image& image) {
   core::Hash hash;
   hash.add(static_cast<std::uint64_t>(image.width)).add(static_cast<std::uint64_t>(image.height));
-  for (std::size_t i = 0; i < image.pixels.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, image.pixels.data() + i, std::min<std::size_t>(8, image.pixels.size() - i));
-    hash.add(word);
-  }
+  add_bytes(hash, image.pixels.data(), image.pixels.size());
   return hash.value();
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/hash.h"
 #include "render/frame/frame.h"
 #include "render/renderer.h"
 
@@ -68,6 +69,9 @@ class Painter {
 /// Where frame `number` lies in the folder of pictures, and in that of truth.
 std::string picture_file(const std::string& folder, int number);
 std::string truth_file(const std::string& folder, int number);
+
+/// Adds bytes to a hash, eight at a time.
+void add_bytes(core::Hash& hash, const void* bytes, std::size_t count);
 
 /// A hash of a picture's bytes and size.
 std::uint64_t hash_image(const render::Image& image);
