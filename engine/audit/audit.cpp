@@ -188,8 +188,7 @@ std::vector<std::pair<int, int>> Audit::find_pairs(const std::vector<Actor>& act
   const auto is_wanted = [&](const Actor& a, const Actor& b) {
     if (!a.is_dynamic && !b.is_dynamic) return false;
     if (!a.is_moving && !b.is_moving && !a.is_new && !b.is_new) return crossing_.count({a.id, b.id}) > 0;
-    if (a.kind == ShapeKind::plane || b.kind == ShapeKind::plane) return a.kind != b.kind;
-    return body::is_mesh(a.kind) || body::is_mesh(b.kind);
+    return a.kind != ShapeKind::plane || b.kind != ShapeKind::plane;
   };
   std::vector<int> order;
   for (int i = 0; i < static_cast<int>(actors.size()); ++i) {
@@ -245,6 +244,14 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
     if (b->kind == ShapeKind::plane) {
       if (is_new) result.crossed_at_start = is_below_plane(a->moving.start, a->radius, b->end);
       audit_plane(a->moving, a->radius, b->end, result.findings);
+    } else if (a->kind == ShapeKind::sphere) {
+      const auto ball = [](const Actor& actor, const MovingSurface& leg) {
+        return MovingBall{{leg.start.front(), leg.end.front()}, actor.radius};
+      };
+      if (is_new) result.crossed_at_start = do_balls_cross_at_start(ball(*a, a->moving), ball(*b, b->moving));
+      follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+        audit_balls(ball(*a, leg_a), ball(*b, leg_b), is_end, result.findings);
+      });
     } else if (b->kind == ShapeKind::sphere) {
       if (is_new)
         result.crossed_at_start =

@@ -3,7 +3,7 @@
 // surfaces only and shares no code with the contact path.
 //
 // Counted are pairs of bodies with a dynamic one in them. Shells and boxes are triangles; a
-// sphere is a ball, a plane the half space below it. Spheres and boxes among themselves are not looked at.
+// sphere is a ball, a plane the half space below it.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,9 @@ enum class FindingKind : std::uint8_t {
   triangle_passage,  // a triangle of a was passed through by a vertex of b
   edge_passage,      // an edge of a passed through an edge of b
   sunk_in_plane,     // a vertex of a (or the sphere a) is below the plane b at the end of the step
-  sunk_in_sphere,    // a triangle of a reaches into the sphere b at the end of the step
-  sphere_passage     // a triangle of a was inside of the sphere b within the step, or let its centre through
+  sunk_in_sphere,    // a triangle of a (or the sphere a) reaches into the sphere b at the end of the step
+  sphere_passage     // a triangle of a, or the sphere a, was inside of the sphere b within the step, or a
+                     // triangle let its centre through
 };
 
 const char* name_of(FindingKind kind);

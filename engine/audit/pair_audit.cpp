@@ -273,4 +273,22 @@ bool crosses_sphere_at_start(const Surface& a, const MovingSurface& moving_a, co
   return false;
 }
 
+bool do_balls_cross_at_start(const MovingBall& a, const MovingBall& b) {
+  return (b.centre[0] - a.centre[0]).norm() < (a.radius + b.radius) * (1.0 - kTouch);
+}
+
+void audit_balls(const MovingBall& a, const MovingBall& b, bool is_end, PairFindings& findings) {
+  const double reach = (a.radius + b.radius) * (1.0 - kTouch);
+  const Vec3 start = b.centre[0] - a.centre[0], end = b.centre[1] - a.centre[1], way = end - start;
+  const bool is_inside = end.norm() < reach;
+  if (is_inside && is_end) {
+    findings.add(FindingKind::sunk_in_sphere, 0, 0);
+    findings.has_crossing = true;
+  }
+  const double length_squared = way.squaredNorm();
+  const double share = length_squared > 0.0 ? std::clamp(-start.dot(way) / length_squared, 0.0, 1.0) : 0.0;
+  const bool dipped = is_inside ? !is_end : (start + share * way).norm() < reach;
+  if (dipped && !do_balls_cross_at_start(a, b)) findings.add(FindingKind::sphere_passage, 0, 0);
+}
+
 }  // namespace shatterbox::audit

@@ -1,6 +1,7 @@
 // The audit of one pair of bodies in one step: all features of one against those of the other.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/audit/audit.h"
@@ -33,5 +34,13 @@ void audit_sphere(const Surface& a, const MovingSurface& moving_a, const Vec3& c
                   const Vec3& centre_end, double radius, bool is_end, PairFindings& findings);
 bool crosses_sphere_at_start(const Surface& a, const MovingSurface& moving_a, const Vec3& centre,
                              double radius);
+
+/// Two balls whose centres move along straight lines, from [0] to [1].
+struct MovingBall {
+  std::array<Vec3, 2> centre;
+  double radius = 0.0;
+};
+void audit_balls(const MovingBall& a, const MovingBall& b, bool is_end, PairFindings& findings);
+bool do_balls_cross_at_start(const MovingBall& a, const MovingBall& b);
 
 }  // namespace shatterbox::audit

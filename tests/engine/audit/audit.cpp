@@ -54,6 +54,46 @@ TEST_CASE("audit: what sinks into a plane is counted, what lies on it is not") {
   }
 }
 
+TEST_CASE("audit: two balls may touch but neither overlap nor pass each other within the step") {
+  const Body ball = make_solid(1, body::ShapeKind::sphere, 0.5);
+  const Body other = make_solid(2, body::ShapeKind::sphere, 0.25);
+  const AuditReport touch = move(ball, other, Vec3(0, 2, 0), Vec3(0, 0.75, 0));
+  CHECK(touch.crossings + touch.passages == 0);
+  const AuditReport sunk = move(ball, other, Vec3(0, 2, 0), Vec3(0, 0.75 - 1e-6, 0));
+  CHECK(sunk.crossings == 1);
+  CHECK(sunk.passages == 0);
+  const AuditReport passed = move(ball, other, Vec3(0.7, 2, 0), Vec3(0.7, -2, 0));
+  CHECK(passed.crossings == 0);
+  CHECK(passed.passages == 1);
+  const AuditReport beside = move(ball, other, Vec3(0.76, 2, 0), Vec3(0.76, -2, 0));
+  CHECK(beside.crossings + beside.passages == 0);
+  const AuditReport from_start = move(ball, other, Vec3(0.7, 0, 0), Vec3(0.6, 0, 0));
+  CHECK(from_start.exempt_pairs == 1);
+  CHECK(from_start.crossings + from_start.passages == 0);
+}
+
+TEST_CASE("audit: two boxes may come close but neither overlap nor pass each other within the step") {
+  const Body box = make_solid(1, body::ShapeKind::box, 0.5),
+             other = make_solid(2, body::ShapeKind::box, 0.25);
+  const Vec3 above(0.1, 2, 0.05);
+  const AuditReport close = move(box, other, above, Vec3(0.1, 0.75 + 1e-9, 0.05));
+  CHECK(close.crossings + close.passages == 0);
+  CHECK(move(box, other, above, Vec3(0.1, 0.75 - 1e-6, 0.05)).crossings > 0);
+  const AuditReport passed = move(box, other, above, Vec3(0.1, -2, 0.05));
+  CHECK(passed.crossings == 0);
+  CHECK(passed.passages > 0);
+  const AuditReport beside = move(box, other, Vec3(0.76, 2, 0), Vec3(0.76, -2, 0));
+  CHECK(beside.crossings + beside.passages == 0);
+}
+
+TEST_CASE("audit: a ball may lie on a box but not reach into it") {
+  const Body ball = make_solid(1, body::ShapeKind::sphere, 0.5),
+             box = make_solid(2, body::ShapeKind::box, 0.25);
+  const AuditReport touch = move(ball, box, Vec3(0, 2, 0), Vec3(0.1, 0.75, 0));
+  CHECK(touch.crossings + touch.passages == 0);
+  CHECK(move(ball, box, Vec3(0, 2, 0), Vec3(0.1, 0.75 - 1e-6, 0)).crossings > 0);
+}
+
 TEST_CASE("audit: a sphere may touch a triangle, not reach through it, nor pass within the step") {
   const Body ball = make_solid(1, body::ShapeKind::sphere, 0.5), plate = test::make_plate(2, kPlate);
   const AuditReport touch = move(ball, plate, Vec3(0, 1, 0), Vec3(1, 0.5, 0));
