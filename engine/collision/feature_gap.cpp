@@ -121,6 +121,14 @@ FeatureGap measure(const FeaturePoints& f, const Vec3& hint) {
   return result;
 }
 
+double separation_along(const FeaturePoints& f, const Vec3& direction) {
+  std::array<double, 4> along;
+  for (std::size_t i = 0; i < 4; ++i) along[i] = direction.dot(f.points[i]);
+  if (f.is_edge_edge) return std::min(along[0], along[1]) - std::max(along[2], along[3]);
+  if (f.is_flipped) return std::min({along[1], along[2], along[3]}) - along[0] - f.radius;
+  return along[0] - std::max({along[1], along[2], along[3]}) - f.radius;
+}
+
 bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Collider& a,
                       const std::vector<Vec3>& positions_a, const Collider& b,
                       const std::vector<Vec3>& positions_b, double slack) {

@@ -16,10 +16,11 @@ using core::at;
 // Boxes of triangles and nodes from those of the vertices.
 void refit(const Collider& c, FeatureBoxes& boxes) {
   boxes.triangles.resize(c.triangles.size());
-  for (std::size_t t = 0; t < c.triangles.size(); ++t) {
-    TightBox& box = boxes.triangles[t] = boxes.vertices[at(c.triangles[t][0])];
-    box.include(boxes.vertices[at(c.triangles[t][1])]);
-    box.include(boxes.vertices[at(c.triangles[t][2])]);
+  for (std::size_t k = 0; k < c.triangles.size(); ++k) {
+    const geometry::Triangle& triangle = c.triangles[at(c.tree.order[k])];
+    TightBox& box = boxes.triangles[k] = boxes.vertices[at(triangle[0])];
+    box.include(boxes.vertices[at(triangle[1])]);
+    box.include(boxes.vertices[at(triangle[2])]);
   }
   boxes.nodes.resize(c.tree.nodes.size());
   for (std::size_t i = c.tree.nodes.size(); i-- > 0;) {
@@ -29,8 +30,7 @@ void refit(const Collider& c, FeatureBoxes& boxes) {
       box = boxes.nodes[i + 1];
       box.include(boxes.nodes[at(node.right)]);
     }
-    for (int k = node.begin; k < node.begin + node.count; ++k)
-      box.include(boxes.triangles[at(c.tree.order[at(k)])]);
+    for (int k = node.begin; k < node.begin + node.count; ++k) box.include(boxes.triangles[at(k)]);
     boxes.nodes[i] = box;
   }
 }
@@ -102,15 +102,14 @@ class Descent {
                        const Visit& visit) {
     near_b_.clear();
     for (int k = 0; k < node_b.count; ++k) {
-      const int t = b_.tree.order[at(node_b.begin + k)];
-      const TightBox box = stretched(boxes_b_.triangles[at(t)], way_);
-      if (is_near(box_a, box)) near_b_.push_back({t, k, box});
+      const TightBox box = stretched(boxes_b_.triangles[at(node_b.begin + k)], way_);
+      if (is_near(box_a, box)) near_b_.push_back({b_.tree.order[at(node_b.begin + k)], k, box});
     }
     if (near_b_.empty()) return;
     for (int k = node_a.begin; k < node_a.begin + node_a.count; ++k) {
-      const int t = a_.tree.order[at(k)];
-      const TightBox& box = boxes_a_.triangles[at(t)];
+      const TightBox& box = boxes_a_.triangles[at(k)];
       if (!is_near(box, box_b)) continue;
+      const int t = a_.tree.order[at(k)];
       for (const NearTriangle& other : near_b_) {
         if (is_near(box, other.box)) visit(t, box, other.number, other.box, other.place);
       }
@@ -319,7 +318,7 @@ bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius
       continue;
     }
     for (int k = node.begin; k < node.begin + node.count; ++k) {
-      const TightBox& box = body.swept.triangles[at(body.collider->tree.order[at(k)])];
+      const TightBox& box = body.swept.triangles[at(k)];
       if (distance_squared(box, path) <= reach_squared) return true;
     }
   }

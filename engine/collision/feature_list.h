@@ -26,9 +26,11 @@ struct FeaturePair {
 
 using FeatureList = std::vector<FeaturePair>;
 
-/// Boxes over vertices, triangles and over the nodes of the tree.
+/// Boxes over vertices, triangles and over the nodes of the tree. Those of a leaf's triangles lie side by
+/// side.
 struct FeatureBoxes {
-  std::vector<TightBox> vertices, triangles, nodes;  // |V|, |T|, |nodes|; empty until needed
+  std::vector<TightBox> vertices, triangles,
+      nodes;  // |V|, |T| in the tree's order, |nodes|; empty until needed
 };
 
 /// A collider in the world: where its vertices are, and the boxes over that and over where they go.

@@ -19,6 +19,7 @@ using core::at;
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr std::size_t kMostHits = 6;
 constexpr double kStrayed = 0.1;  // of the slack of searches
+constexpr double kClear = 1.3;    // times the least separation: where a start does not lower it
 constexpr double kAmple = 20.0;   // times the kept gap: more room than rounds take
 
 void keep_first(std::vector<PathHit>& hits, double size) {
@@ -279,6 +280,8 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
   const auto &ends_a = paths_[at(pair.a)].end, &ends_b = paths_[at(pair.b)].end;
   std::vector<PathHit> hits;
   pair.free_until.resize(search.features.size(), -1.0);
+  // Neighbouring features part along about the same direction.
+  Vec3 parting = Vec3::Zero();
   for (std::size_t i = 0; i < search.features.size(); ++i) {
     if (pair.free_until[i] > pair.moved) {
       spare = std::min(spare, pair.free_until[i] - pair.moved);
@@ -294,9 +297,18 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
     const Vec3 hint = direction_hint(a, b, start);
     if (pair.start_gaps.size() <= i) pair.start_gaps.resize(search.features.size());
     auto& gap = pair.start_gaps[i];
+    if (gap.distance >= 0.0 && gap.gap > reach + spare) continue;
+    const auto end = collision::gather(features, *a.collider, ends_a, *b.collider, ends_b);
+    if (collision::separation_along(start, parting) > kClear * safe) {
+      const double left = collision::separation_along(end, parting) - safe;
+      if (left >= spare) {
+        pair.free_until[i] = pair.moved + left;
+        continue;
+      }
+    }
     if (gap.distance < 0.0) gap = collision::measure(start, hint);
     if (gap.gap > reach + spare) continue;
-    const auto end = collision::gather(features, *a.collider, ends_a, *b.collider, ends_b);
+    parting = gap.normal;
     const double least = least_separation(gap.gap, pair);
     const auto path = collision::follow_paths(start, end, least, hint, &gap);
     spare = std::min(spare, path.spare);

@@ -24,6 +24,7 @@ constexpr int kLeastParts = 4;
 constexpr double kPartTime = 1.0 / 960.0;  // s
 constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
+constexpr int kManyCut = 500;   // one after which, of so many awake bodies, more than one was cut short
 constexpr int kCrowdParts = 2;  // of one after which, of so many awake bodies, more than one pair was hit,
 constexpr int kCrowdHits = 5;   // and at least so many in all
 constexpr int kLeastHits = 50;
@@ -257,7 +258,8 @@ int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& sett
   }
   const int awake = report.awake_bodies, hits = report.hits;
   // Who was cut stood still for the whole part: short parts cost less of the motion.
-  if (report.failsafe_steps > 0 && settings.time_step > kPartTime) return lively_parts(settings);
+  if (kManyCut * report.failsafe_steps > awake && settings.time_step > kPartTime)
+    return lively_parts(settings);
   if (kManySpin * spinning > awake && kManyHits * hits > awake) return lively_parts(settings);
   return hits >= kLeastHits && kCrowdHits * hits > awake ? kCrowdParts : 1;
 }

@@ -157,6 +157,24 @@ TEST_CASE("a list along paths holds every feature pair that comes within the mar
   CHECK(listed < 4 * met);  // and not much more
 }
 
+TEST_CASE("features are no further apart along any direction than they are") {
+  core::Random random(31);
+  for (const FeatureKind kind :
+       {FeatureKind::edge_edge, FeatureKind::vertex_triangle, FeatureKind::triangle_vertex}) {
+    for (int n = 0; n < 500; ++n) {
+      FeaturePoints f;
+      f.is_edge_edge = kind == FeatureKind::edge_edge;
+      f.is_flipped = kind == FeatureKind::triangle_vertex;
+      f.radius = f.is_edge_edge ? 0.0 : random.uniform(0.0, 0.1);
+      for (Vec3& p : f.points) p = draw(random);
+      const FeatureGap gap = measure(f, Vec3::UnitY());
+      CHECK(separation_along(f, draw(random).normalized()) <= gap.gap + 1e-14);
+      // Along the direction of the closest points, it is the gap.
+      CHECK(separation_along(f, gap.normal) == Approx(gap.gap).margin(1e-13));
+    }
+  }
+}
+
 TEST_CASE("a path that is called free keeps its least separation") {
   core::Random random(5);
   int hits = 0, free = 0;
