@@ -23,7 +23,9 @@ namespace {
 
 using core::Clock;
 using core::milliseconds_since;
-constexpr std::size_t kMostWaiting = 2;
+// So many frames the world may be ahead of the pictures: while it takes its time over one in which much breaks,
+// those before it are drawn.
+constexpr std::size_t kMostWaiting = 8;
 
 struct Waiting {
   std::vector<std::vector<render::Frame>> panels;  // of each the samples

@@ -49,7 +49,7 @@ class Painter {
   Painter& operator=(const Painter&) = delete;
 
   /// Hands frame `number` of the film over: of each panel the pictures of whose light it is the mean. Waits
-  /// while two are waiting. False once something failed: see error().
+  /// while eight are waiting. False once something failed: see error().
   bool add(std::vector<std::vector<render::Frame>> panels, int number);
   /// Waits for the last frame, closes the video. False if something failed.
   bool finish();
