@@ -109,10 +109,11 @@ struct Renderer::Rooms {
   PassTimes times;
   bool is_timed = false;
 
-  Rooms(Size size_, Quality quality_)
+  Rooms(Size size_, Quality quality_, BackEnd back_end)
       : size(size_),
         quality(quality_),
         level(level_of(quality_)),
+        context(back_end),
         drawn(size.width, size.height, 1, GL_SRGB8_ALPHA8, GL_DEPTH_COMPONENT32F),
         tiles(size.width, size.height),
         changes(size.width, size.height, level.occlusion_scale),
@@ -195,9 +196,9 @@ struct Renderer::Rooms {
   }
 };
 
-Renderer::Renderer(Size size, Quality quality) {
+Renderer::Renderer(Size size, Quality quality, BackEnd back_end) {
   check_size(size);
-  rooms_ = std::make_unique<Rooms>(size, quality);
+  rooms_ = std::make_unique<Rooms>(size, quality, back_end);
 }
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;

@@ -1,4 +1,4 @@
-// The door of render: Frame in, Image out. Off-screen, on the CPU (OSMesa, llvmpipe).
+// The door of render: Frame in, Image out. Off-screen, on the CPU (llvmpipe, by OSMesa or EGL).
 // One renderer belongs to the thread that made it; the same frame gives the same bytes. What has not changed
 // since the last frame is not drawn again: that picture is kept.
 #pragma once
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/context/back_end.h"
 #include "render/frame/frame.h"
 #include "render/frame/truth.h"
 #include "render/output/image.h"
@@ -34,7 +35,8 @@ struct PassTimes {
 class Renderer {
  public:
   // Throws std::runtime_error in words when no GL 4.5 context can be had or the size is not in 1..8192.
-  Renderer(Size size, Quality quality);
+  // All renderers of a process have one back-end.
+  Renderer(Size size, Quality quality, BackEnd back_end = BackEnd::usual);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -50,7 +52,7 @@ class Renderer {
 
   Size size() const;
   Quality quality() const;
-  const std::string& gl_renderer() const;  // for the report: "llvmpipe (LLVM 15.0.6, 256 bits)"
+  const std::string& gl_renderer() const;  // for the report: "llvmpipe (LLVM 15.0.6, 256 bits), OSMesa"
   bool is_llvmpipe() const;                // pictures are only comparable if so
   int mesh_count() const;                  // meshes on the GPU now
   bool has_shadow_maps() const;            // they are made when something first casts a shadow

@@ -18,6 +18,7 @@ _shatterbox() {
   fi
   case $before in
     --quality) choices="preview full" ;;
+    --gl) choices="osmesa egl" ;;
     --tolerance) choices="default exact video" ;;
     --size) choices="320x180 640x360 1280x720 1920x1080" ;;
     -o | --frames | --meshes | --export | --tables | --truth | --report | --script | --picture | --pictures | --junit)

@@ -1,25 +1,24 @@
-// The GL context: OSMesa, 4.5 core, on a dummy one-pixel buffer; everything is drawn to framebuffer objects
-// of our own.
+// The GL context: 4.5 core, on the processor; everything is drawn to framebuffer objects of our own.
 #pragma once
+#include <memory>
 #include <string>
 
-struct osmesa_context;  // OSMesaContext, without its header
+#include "render/context/back_end.h"
+#include "render/context/native_context.h"
 
 namespace shatterbox::render {
 
 class Context {
  public:
-  Context();  // throws std::runtime_error with the reason; current afterwards
-  ~Context();
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
+  // Current afterwards. Throws std::runtime_error with the reason; one is that a process draws with one
+  // back-end from its first context on.
+  explicit Context(BackEnd back_end);
 
   void make_current() const;
-  const std::string& gl_renderer() const { return gl_renderer_; }
+  const std::string& gl_renderer() const { return gl_renderer_; }  // and by which back-end
 
  private:
-  ::osmesa_context* handle_ = nullptr;
-  mutable unsigned char dummy_[4] = {};  // must outlive the context
+  std::unique_ptr<NativeContext> native_;
   std::string gl_renderer_;
 };
 

@@ -57,6 +57,10 @@ void add_run_options(CLI::App& command, Options& options) {
       ->type_name("DIR");
   command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
   add_picture_options(command, options);
+  command
+      .add_option("--gl", options.gl, "who draws: osmesa (the usual one) or egl; the pictures are the same")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"osmesa", "egl"}));
   command.add_option("--compare", options.compare, "two to four values of a setting, beside each other")
       ->type_name("NAME.key=a,b");
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")

@@ -30,6 +30,7 @@ struct Options {
   std::string size = "640x360";
   int frames_per_second = 60;
   std::string quality = "preview";
+  std::string gl;  // "osmesa" or "egl"; empty: the usual one
   std::optional<double> seconds;
   std::optional<long long> seed;
   int threads = 0;  // 0: one a core

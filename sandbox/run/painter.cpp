@@ -151,7 +151,8 @@ struct Painter::Room {
   void paint() {
     const auto start = Clock::now();
     std::vector<render::Renderer> renderers;  // of each panel, so that each keeps what has not changed
-    for (int i = 0; i < settings.panels; ++i) renderers.emplace_back(settings.size, settings.quality);
+    for (int i = 0; i < settings.panels; ++i)
+      renderers.emplace_back(settings.size, settings.quality, settings.back_end);
     painted.gl_renderer = renderers.front().gl_renderer();
     auto last = start;
     double encoded = 0.0;

@@ -23,6 +23,7 @@ struct Picture {
 struct PainterSettings {
   render::Size size;
   render::Quality quality = render::Quality::preview;
+  render::BackEnd back_end = render::BackEnd::usual;
   int panels = 1;  // pictures of that size beside each other; four: in two rows
   int frames_per_second = 60;
   std::string video;          // empty: none

@@ -37,7 +37,7 @@ double median(std::vector<double> values) {
 }
 
 void measure_picture(const Job& job, const render::Frame& frame, Measured& measured) {
-  render::Renderer renderer(job.painter.size, job.painter.quality);
+  render::Renderer renderer(job.painter.size, job.painter.quality, job.painter.back_end);
   (void)renderer.render(frame);  // compiles the shaders
   renderer.set_timing(true);
   renderer.forget();
