@@ -59,6 +59,7 @@ int list_all() {
   };
   row("looks", scene::kLookNames);
   row("grounds", scene::kGroundNames);
+  row("lights", scene::kLightNames);
   row("backdrops", scene::kBackdropNames);
   row("overlays", scene::kOverlayNames);
   row("events", scene::kEventVerbs);

@@ -101,6 +101,7 @@ void read_camera(const TomlValue& table, SceneDescription& scene, Problems& prob
 
 void read_light(const TomlValue& table, LightEntry& light, Problems& problems) {
   TableReader reader(table, "[light]", problems);
+  light.preset = reader.choice("preset", kLightNames).value_or("");
   if (const TomlValue* sun = reader.value("sun"); sun != nullptr && sun->is_table()) {
     TableReader inner(*sun, "[light] sun", problems);
     light.sun_direction = inner.vector("direction", between(-1e6, 1e6));

@@ -160,6 +160,7 @@ struct CameraEntry {
 };
 
 struct LightEntry {
+  std::string preset;                             // of kLightNames; empty: "studio"
   std::optional<Vec3> sun_direction, sun_colour;  // towards the sun; sRGB
   std::optional<double> sun_strength, sun_size;   // radiance of a white matt surface; degrees
   std::optional<double> sky;                      // strength
@@ -171,7 +172,7 @@ struct RenderEntry {
   std::string ground;  // of kGroundNames; empty: "plain" where there is a level plane
   std::optional<Vec3> ground_colour;
   double checker = 0.0;  // m a square; 0: plain
-  std::string backdrop = "studio";
+  std::string backdrop;  // of kBackdropNames; empty: the light preset's own
   std::string overlay = "none";
   std::optional<double> overlay_most;  // top of its scale, in its unit
   double exposure = 1.0;
@@ -199,7 +200,8 @@ inline const std::vector<std::string> kLookNames{
     "brick",     "plaster",    "ice",     "eggshell",  "matt",     "glossy", "hidden",
     "aluminium", "terracotta", "frosted", "chrome",    "chocolate"};
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
-inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white"};
+inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white", "evening", "overcast"};
+inline const std::vector<std::string> kLightNames{"studio", "noon", "evening", "overcast"};
 inline const std::vector<std::string> kOverlayNames{"none",    "stress",   "pieces",   "grains",
                                                     "impacts", "velocity", "wireframe"};
 

@@ -6,6 +6,28 @@ namespace shatterbox::sandbox::view {
 
 namespace {
 
+const render::Lights kNoon{.sun_direction = {0.3F, 1.0F, 0.25F},
+                           .sun_colour = {1.0F, 0.97F, 0.91F},
+                           .sun_strength = 1.6F,
+                           .sun_size = 0.6F,
+                           .sky_colour = {0.58F, 0.76F, 1.0F},
+                           .sky_strength = 0.36F,
+                           .softbox_strength = 0.15F};
+const render::Lights kEvening{.sun_direction = {0.85F, 0.3F, 0.3F},
+                              .sun_colour = {1.0F, 0.60F, 0.30F},
+                              .sun_strength = 2.0F,
+                              .sun_size = 1.0F,
+                              .sky_colour = {0.62F, 0.66F, 1.0F},
+                              .sky_strength = 0.38F,
+                              .softbox_strength = 0.3F};
+const render::Lights kOvercast{.sun_direction = {0.15F, 1.0F, 0.2F},
+                               .sun_colour = {0.96F, 0.98F, 1.0F},
+                               .sun_strength = 0.55F,
+                               .sun_size = 35.0F,
+                               .sky_colour = {0.90F, 0.95F, 1.0F},
+                               .sky_strength = 0.85F,
+                               .softbox_strength = 0.3F};
+
 glm::vec3 hex(unsigned rgb) {
   return linear_colour(Vec3((rgb >> 16) & 255U, (rgb >> 8) & 255U, rgb & 255U) / 255.0);
 }
@@ -112,6 +134,17 @@ std::optional<render::Ground> make_ground(const std::string& name, double height
   return ground;
 }
 
+render::Lights make_light(const std::string& name) {
+  if (name == "noon") return kNoon;
+  if (name == "evening") return kEvening;
+  return name == "overcast" ? kOvercast : render::Lights{};
+}
+
+std::string usual_backdrop(const std::string& light) {
+  if (light == "noon") return "sky";
+  return light.empty() ? "studio" : light;
+}
+
 render::Backdrop make_backdrop(const std::string& name) {
   render::Backdrop backdrop;
   if (name == "studio") backdrop.sweep = 0.8F;
@@ -123,6 +156,14 @@ render::Backdrop make_backdrop(const std::string& name) {
     backdrop.top = hex(0x6f9fd0);
     backdrop.bottom = hex(0xd8e4ee);
     backdrop.glow = 0.1F;
+  } else if (name == "evening") {
+    backdrop.top = hex(0x4a5a8c);
+    backdrop.bottom = hex(0xe8b184);
+    backdrop.glow = 0.15F;
+  } else if (name == "overcast") {
+    backdrop.top = hex(0x9aa5ae);
+    backdrop.bottom = hex(0xd3d8da);
+    backdrop.glow = 0.05F;
   } else if (name == "white") {
     backdrop.top = backdrop.bottom = glm::vec3(0.92F);
     backdrop.glow = backdrop.vignette = 0.0F;

@@ -1,4 +1,4 @@
-// The names that scenes use for looks, grounds and backdrops, in render's terms.
+// The names that scenes use for looks, grounds, lights and backdrops, in render's terms.
 #pragma once
 
 #include <optional>
@@ -24,6 +24,12 @@ std::string usual_look(const std::string& preset);
 
 /// Ground by a name of scene::kGroundNames at a height (m); nothing for "none".
 std::optional<render::Ground> make_ground(const std::string& name, double height);
+
+/// Sun, sky and soft boxes by a name of scene::kLightNames; empty is the studio's.
+render::Lights make_light(const std::string& name);
+
+/// The backdrop that goes with a light.
+std::string usual_backdrop(const std::string& light);
 
 /// Backdrop by a name of scene::kBackdropNames.
 render::Backdrop make_backdrop(const std::string& name);

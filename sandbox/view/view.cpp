@@ -48,7 +48,7 @@ std::shared_ptr<const render::Mesh> make_surface_mesh(const body::Shape& shape, 
 }
 
 render::Lights make_lights(const scene::LightEntry& entry) {
-  render::Lights lights;
+  render::Lights lights = make_light(entry.preset);
   if (entry.sun_direction) lights.sun_direction = to_glm(*entry.sun_direction);
   if (entry.sun_colour) lights.sun_colour = linear_colour(*entry.sun_colour);
   if (entry.sun_strength) lights.sun_strength = static_cast<float>(*entry.sun_strength);
@@ -88,7 +88,8 @@ View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built,
       next_mesh_((static_cast<std::uint64_t>(shot) << 32U) + 1) {
   stage_.lights = make_lights(scene.light);
   stage_.ground = find_ground(scene, built);
-  stage_.backdrop = make_backdrop(scene.render.backdrop);
+  stage_.backdrop = make_backdrop(scene.render.backdrop.empty() ? usual_backdrop(scene.light.preset)
+                                                                : scene.render.backdrop);
   stage_.exposure = static_cast<float>(scene.render.exposure);
 }
 

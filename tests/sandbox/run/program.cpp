@@ -69,7 +69,8 @@ TEST_CASE("check and list say what there is") {
   CHECK(checked.out.find("10 bodies") != std::string::npos);
   const Outcome listed = program(folder, "list");
   CHECK(listed.status == 0);
-  for (const char* word : {"ornament", "window", "bowl", "glass", "projectile"}) {
+  for (const char* word :
+       {"ornament", "window", "bowl", "glass", "projectile", "studio, noon, evening, overcast"}) {
     CHECK(listed.out.find(word) != std::string::npos);
   }
 }

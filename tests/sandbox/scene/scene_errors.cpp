@@ -31,6 +31,7 @@ const Broken kCorpus[] = {
      "did you mean \"radius\"?"},
     {"[light]\nsum = [0,1,0]\n", "t.toml:2:1", "unknown key \"sum\"", "did you mean \"sun\"?"},
     {"[render]\nbackdrp = \"dark\"\n", "t.toml:2:1", "unknown key", "did you mean \"backdrop\"?"},
+    {"[light]\npreset = \"evning\"\n", "t.toml:2:10", "evning", "did you mean \"evening\"?"},
     {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 2, spaceing = 1}\n",
      "t.toml:3:", "unknown key \"spaceing\"", "did you mean \"spacing\"?"},
     // Wrong types.

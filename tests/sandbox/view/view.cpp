@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 #include "engine/geometry/edge_topology.h"
 #include "sandbox/view/camera.h"
 #include "sandbox/view/looks.h"
@@ -72,6 +74,39 @@ TEST_CASE("every name of the vocabulary means something") {
   }
   for (const material::Preset& preset : material::presets()) {
     CHECK(view::usual_look(preset.material.name) != "matt");
+  }
+}
+
+TEST_CASE("a light preset is a sun with a sky and a backdrop that single keys override") {
+  const auto frame_of = [](const std::string& tables) {
+    const auto reading = scene::read("[[body]]\nkind = \"sphere\"\n" + tables);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    scene::Problems problems;
+    auto built = scene::build_world(*reading.scene, problems);
+    REQUIRE(built.has_value());
+    return view::View(*reading.scene, *built).make_frame();
+  };
+  const render::Frame usual = frame_of(""), studio = frame_of("[light]\npreset = \"studio\"\n");
+  CHECK(studio.lights.sun_direction == usual.lights.sun_direction);
+  CHECK(studio.lights.sky_strength == usual.lights.sky_strength);
+  CHECK(studio.backdrop.sweep == usual.backdrop.sweep);
+  const std::string evening_text = "[light]\npreset = \"evening\"\n";
+  const render::Frame evening = frame_of(evening_text);
+  CHECK(evening.lights.sun_direction != usual.lights.sun_direction);
+  CHECK(evening.backdrop.top == view::make_backdrop("evening").top);
+  const render::Frame mixed =
+      frame_of(evening_text + "sun = {strength = 0.5}\nsky = 0.7\n[render]\nbackdrop = \"white\"\n");
+  CHECK(mixed.lights.sun_direction == evening.lights.sun_direction);
+  CHECK(mixed.lights.sun_colour == evening.lights.sun_colour);
+  CHECK(mixed.lights.sky_colour == evening.lights.sky_colour);
+  CHECK(mixed.lights.sun_strength == Approx(0.5F));
+  CHECK(mixed.lights.sky_strength == Approx(0.7F));
+  CHECK(mixed.backdrop.top == view::make_backdrop("white").top);
+  // Every light has a backdrop that exists.
+  for (const std::string& light : scene::kLightNames) {
+    const std::string backdrop = view::usual_backdrop(light);
+    CHECK(std::count(scene::kBackdropNames.begin(), scene::kBackdropNames.end(), backdrop) == 1);
   }
 }
 
