@@ -21,7 +21,7 @@ _shatterbox() {
     --gl) choices="osmesa egl" ;;
     --tolerance) choices="default exact video" ;;
     --size) choices="320x180 640x360 1280x720 1920x1080" ;;
-    -o | --frames | --meshes | --export | --tables | --truth | --report | --script | --picture | --pictures | --junit)
+    -o | --frames | --meshes | --export | --tables | --truth | --record | --report | --script | --picture | --pictures | --junit)
       mapfile -t COMPREPLY < <(compgen -f -- "$word")
       return
       ;;

@@ -1,4 +1,4 @@
-// The program: shatterbox run | check | diff | golden | study | bench | list. See sandbox/README.md.
+// The program: shatterbox run | render | check | diff | golden | study | bench | list. See sandbox/README.md.
 #include <cstdio>
 #include <exception>
 

@@ -23,11 +23,6 @@ Json vector(const Vec3& v) {
   return Json::array({number(v.x()), number(v.y()), number(v.z())});
 }
 
-Json spread(const std::vector<double>& values) {
-  const Spread s = spread_of(values);
-  return {{"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
-}
-
 Json impacts(const world::WorldReport& report) {
   Json list = Json::array();
   for (const world::ImpactRow& row : report.impacts) {
@@ -120,24 +115,32 @@ Json times(const RunRecord& record) {
     encode.push_back(f.encode);
   }
   Json stages = Json::object();
-  for (const auto& [name, values] : record.stages) stages[name] = spread(values);
+  for (const auto& [name, values] : record.stages) stages[name] = make_spread(values);
   Json phases = Json::object();
   for (const Phase& phase : phases_of(record.frames)) {
     Json entry = {{"frames", phase.frame_times.size()}};
-    entry.update(spread(phase.frame_times));
+    entry.update(make_spread(phase.frame_times));
     entry["contacts"] = number(phase.contacts);
     entry["awake"] = number(phase.awake);
     phases[phase.name] = entry;
   }
-  return {{"frame", spread(frame)},   {"simulate", spread(simulate)},
-          {"render", spread(render)}, {"encode", spread(encode)},
-          {"stages", stages},         {"phases", phases}};
+  return {{"frame", make_spread(frame)},
+          {"simulate", make_spread(simulate)},
+          {"render", make_spread(render)},
+          {"encode", make_spread(encode)},
+          {"stages", stages},
+          {"phases", phases}};
 }
 
 }  // namespace
 
 std::string hex_digits(std::uint64_t number) {
   return fmt::format("{:016x}", number);
+}
+
+Json make_spread(const std::vector<double>& values) {
+  const Spread s = spread_of(values);
+  return {{"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
 }
 
 Json make_json(const RunRecord& record) {

@@ -14,6 +14,9 @@ inline constexpr int kReportVersion = 1;
 /// The whole report; numbers that are not finite become null.
 nlohmann::ordered_json make_json(const RunRecord& record);
 
+/// {"median", "p95", "max"}.
+nlohmann::ordered_json make_spread(const std::vector<double>& values);
+
 /// Writes it beside its name and renames it; of several shots of one film a list of theirs. A sentence if
 /// that fails, else empty.
 std::string write_report(const std::string& path, const std::vector<const RunRecord*>& shots);

@@ -6,6 +6,7 @@
 
 #include "engine/core/hash.h"
 #include "render/output/video_file.h"
+#include "sandbox/recording/bytes.h"
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/text_file.h"
 #include "sandbox/run/exports.h"
@@ -22,7 +23,7 @@ constexpr std::chrono::seconds kBetweenSaves{1};
 
 void add_text(core::Hash& hash, const std::string& text) {
   hash.add(static_cast<std::uint64_t>(text.size()));
-  add_bytes(hash, text.data(), text.size());
+  recording::add_bytes(hash, text.data(), text.size());
 }
 
 /// Of the texts and of all that stands in the world at its start, meshes with it.

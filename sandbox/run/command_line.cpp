@@ -9,6 +9,7 @@
 #include "sandbox/run/diff.h"
 #include "sandbox/run/golden.h"
 #include "sandbox/run/plan.h"
+#include "sandbox/run/rendering.h"
 #include "sandbox/run/run.h"
 #include "sandbox/run/study.h"
 #include "sandbox/scene/nearest_name.h"
@@ -42,6 +43,12 @@ void add_picture_options(CLI::App& command, Options& options) {
       ->check(CLI::IsMember({"preview", "full"}));
 }
 
+void add_gl_option(CLI::App& command, std::string& name) {
+  command.add_option("--gl", name, "who draws: osmesa (the usual one) or egl; the pictures are the same")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"osmesa", "egl"}));
+}
+
 void add_run_options(CLI::App& command, Options& options) {
   command.add_option("-o", options.video, "video: .mp4 .mkv .webm .gif")->type_name("FILE");
   command.add_option("--frames", options.frames_folder, "folder for one PNG a frame")->type_name("DIR");
@@ -55,12 +62,12 @@ void add_run_options(CLI::App& command, Options& options) {
       .add_option("--truth", options.truth_folder,
                   "folder for depth, normals, ids and camera of each picture")
       ->type_name("DIR");
+  command
+      .add_option("--record", options.recording, "the pictures before they are drawn, for the verb render")
+      ->type_name("FILE");
   command.add_option("--report", options.report, "report in JSON")->type_name("FILE");
   add_picture_options(command, options);
-  command
-      .add_option("--gl", options.gl, "who draws: osmesa (the usual one) or egl; the pictures are the same")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"osmesa", "egl"}));
+  add_gl_option(command, options.gl);
   command.add_option("--compare", options.compare, "two to four values of a setting, beside each other")
       ->type_name("NAME.key=a,b");
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")
@@ -70,6 +77,25 @@ void add_run_options(CLI::App& command, Options& options) {
                    "check after every step that nothing crosses; status 1 if it does");
   command.add_flag("--resume", options.resumes, "go on from where a run with these options was cut short");
   command.add_flag("!--no-render", options.has_pictures, "simulate only");
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  command.add_option("RECORDING", options.recording, "what run --record has written")->required();
+  command.add_option("--frames", options.frames, "these only, from 0: the first and the one behind the last")
+      ->type_name("FIRST:END");
+  command.add_option("-o", options.video, "video: .mp4 .mkv .webm .gif")->type_name("FILE");
+  command.add_option("--pictures", options.pictures_folder, "folder for one PNG a frame")->type_name("DIR");
+  command
+      .add_option("--truth", options.truth_folder,
+                  "folder for depth, normals, ids and camera of each picture")
+      ->type_name("DIR");
+  command.add_option("--report", options.report, "hashes and times of the frames in JSON")->type_name("FILE");
+  command.add_option("--size", options.size, "picture size; as recorded without it")
+      ->type_name("WIDTHxHEIGHT");
+  command.add_option("--quality", options.quality, "preview or full; as recorded without it")
+      ->check(CLI::IsMember({"preview", "full"}));
+  add_gl_option(command, options.gl);
+  command.footer("For example: render film.rec --frames 100:200 -o part.mp4");
 }
 
 void add_bench_options(CLI::App& command, BenchOptions& options) {
@@ -141,8 +167,8 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 
 /// A mistyped verb gets the nearest one named.
 bool is_known_verb(const std::string& verb) {
-  const std::vector<std::string> verbs{"run",    "batch", "check", "plan", "diff",
-                                       "golden", "study", "bench", "list"};
+  const std::vector<std::string> verbs{"run",  "render", "batch", "check", "plan",
+                                       "diff", "golden", "study", "bench", "list"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
   std::fprintf(stderr, "there is no verb \"%s\"\n    %s\n", verb.c_str(),
@@ -165,6 +191,10 @@ int run_command_line(int argc, char** argv) {
       "plan", "say which parts a run needs and why, what it leaves out, and what that takes");
   bool is_lean = false;
   plan_command->add_flag("--lean", is_lean, "list what could still be switched off, and what that saves");
+  RenderOptions rendering;
+  CLI::App* render_command =
+      app.add_subcommand("render", "draw and encode a recorded run, or a range of its frames");
+  add_render_options(*render_command, rendering);
   BenchOptions bench;
   CLI::App* bench_command = app.add_subcommand("bench", "time the benchmark scenes, one after the other");
   add_bench_options(*bench_command, bench);
@@ -201,6 +231,7 @@ int run_command_line(int argc, char** argv) {
   }
   if (app.got_subcommand("run")) return run_scene(options);
   if (app.got_subcommand("plan")) return plan_scene(options, is_lean);
+  if (app.got_subcommand("render")) return render_recording(rendering);
   if (app.got_subcommand("batch")) return run_batch(batch);
   if (app.got_subcommand("bench")) return run_bench(bench);
   if (app.got_subcommand("diff")) return run_diff(diff);

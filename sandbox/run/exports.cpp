@@ -40,7 +40,7 @@ std::string Exports::close() {
 std::vector<std::string> export_outputs(const Options& options) {
   std::vector<std::string> outputs;
   for (const std::string& output :
-       {options.meshes_folder, options.model, options.tables_folder, options.truth_folder})
+       {options.meshes_folder, options.model, options.tables_folder, options.truth_folder, options.recording})
     if (!output.empty()) outputs.push_back(output);
   return outputs;
 }
@@ -51,6 +51,10 @@ void check_exports(const Options& options, scene::Problems& problems) {
                 fmt::format("{}: the name of a model must end in .glb", options.model),
                 "that is glTF 2.0 in one file; most programs that read .gltf read it too");
   check_file("--export", options.model, problems);
+  check_file("--record", options.recording, problems);
+  if (!options.recording.empty() && !options.stills.empty())
+    scene::book(problems, scene::Place{"--stills", 0, 0}, "a recording holds the whole film",
+                "leave --stills out; shatterbox render RECORDING --frames 30:31 draws one frame of it");
   make_folder("--meshes", options.meshes_folder, problems);
   make_folder("--tables", options.tables_folder, problems);
   make_folder("--truth", options.truth_folder, problems);

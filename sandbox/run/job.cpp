@@ -60,11 +60,8 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   const std::string file = scene::find_scene(options.scene, problems);
   job.options.video = film_of(options);
   if (const auto size = parse_size(options.size, problems)) job.painter.size = *size;
-  job.painter.quality = options.quality == "full" ? render::Quality::full : render::Quality::preview;
-  if (!options.gl.empty())
-    job.painter.back_end = options.gl == "egl" ? render::BackEnd::egl : render::BackEnd::osmesa;
-  if (const std::string fault = render::back_end_fault(job.painter.back_end); !fault.empty())
-    scene::book(problems, scene::Place{"--gl", 0, 0}, fault);
+  job.painter.quality = parse_quality(options.quality);
+  job.painter.back_end = parse_back_end(options.gl, problems);
   job.painter.frames_per_second = options.frames_per_second;
   job.painter.video = job.options.video;
   job.painter.frames_folder = options.frames_folder;

@@ -47,6 +47,18 @@ std::optional<render::Size> parse_size(const std::string& text, scene::Problems&
   return std::nullopt;
 }
 
+render::Quality parse_quality(const std::string& text) {
+  return text == "full" ? render::Quality::full : render::Quality::preview;
+}
+
+render::BackEnd parse_back_end(const std::string& text, scene::Problems& problems) {
+  render::BackEnd back_end = render::BackEnd::usual;
+  if (!text.empty()) back_end = text == "egl" ? render::BackEnd::egl : render::BackEnd::osmesa;
+  if (const std::string fault = render::back_end_fault(back_end); !fault.empty())
+    scene::book(problems, scene::Place{"--gl", 0, 0}, fault);
+  return back_end;
+}
+
 scene::SceneChanges changes_of(const Options& options) {
   scene::SceneChanges changes;
   changes.overrides = options.overrides;

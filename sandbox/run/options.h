@@ -26,6 +26,7 @@ struct Options {
   std::string model;           // glTF
   std::string tables_folder;   // CSV and JSON
   std::string truth_folder;    // depth, normals, ids, cameras
+  std::string recording;       // of the pictures before they are drawn
   std::string report;          // JSON
   std::string size = "640x360";
   int frames_per_second = 60;
@@ -44,6 +45,12 @@ struct Options {
 
 /// The size of "640x360"; nothing, with a problem, if it is none (16 to 8192 each, even for video).
 std::optional<render::Size> parse_size(const std::string& text, scene::Problems& problems);
+
+/// "full", or the preview.
+render::Quality parse_quality(const std::string& text);
+
+/// What --gl names, or the usual one without a name; one that there is not goes to `problems`.
+render::BackEnd parse_back_end(const std::string& text, scene::Problems& problems);
 
 /// --set, --seconds, --seed and --script, as changes to a scene.
 scene::SceneChanges changes_of(const Options& options);

@@ -16,6 +16,7 @@
 #include "render/output/light_sum.h"
 #include "render/output/npz_file.h"
 #include "render/output/video_file.h"
+#include "sandbox/recording/bytes.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -64,18 +65,10 @@ render::Image join(const std::vector<render::Image>& panels) {
 
 }  // namespace
 
-void add_bytes(core::Hash& hash, const void* bytes, std::size_t count) {
-  for (std::size_t i = 0; i < count; i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, static_cast<const char*>(bytes) + i, std::min<std::size_t>(8, count - i));
-    hash.add(word);
-  }
-}
-
 std::uint64_t hash_image(const render::Image& image) {
   core::Hash hash;
   hash.add(static_cast<std::uint64_t>(image.width)).add(static_cast<std::uint64_t>(image.height));
-  add_bytes(hash, image.pixels.data(), image.pixels.size());
+  recording::add_bytes(hash, image.pixels.data(), image.pixels.size());
   return hash.value();
 }
 

@@ -71,9 +71,6 @@ class Painter {
 std::string picture_file(const std::string& folder, int number);
 std::string truth_file(const std::string& folder, int number);
 
-/// Adds bytes to a hash, eight at a time.
-void add_bytes(core::Hash& hash, const void* bytes, std::size_t count);
-
 /// A hash of a picture's bytes and size.
 std::uint64_t hash_image(const render::Image& image);
 

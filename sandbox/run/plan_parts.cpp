@@ -99,6 +99,7 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
                   "camera.shutter or camera.aperture: a frame is the mean of several pictures",
                   has_pictures ? "camera has no shutter and no aperture" : "--no-render"),
       option_part("video", !options.video.empty(), "a video is asked for", "no video is asked for"),
+      option_part("recording", !options.recording.empty(), "--record", "--record is not asked for"),
       option_part("model", !options.model.empty(), "--export", "--export is not asked for"),
       option_part("audit", options.has_audit, "--audit", "--audit is not asked for"),
   };

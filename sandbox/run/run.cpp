@@ -17,6 +17,7 @@
 #include "sandbox/run/job.h"
 #include "sandbox/run/plan.h"
 #include "sandbox/run/progress.h"
+#include "sandbox/run/screen.h"
 #include "sandbox/run/showing.h"
 #include "sandbox/run/side_by_side.h"
 #include "sandbox/scene/find_scene.h"
@@ -37,14 +38,15 @@ struct Shot {
 
 /// What all shots of a film share.
 struct Film {
-  Painter* painter = nullptr;  // none: no pictures
+  Screen screen;  // nobody: no pictures
   Checkpoint checkpoint;
   int first_drawn = 0;  // frames below it are kept from an earlier run
 };
 
 /// The loop. A sentence if it failed, else empty. `first`: number of the first frame in the film.
 std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) {
-  Painter* const painter = film.painter;
+  const Screen& screen = film.screen;
+  Painter* const painter = screen.painter;
   Showing showing(job, recorder, shot);
   Exports exports(job, showing.view(), film.first_drawn);
   Progress progress(showing.expected(), stderr_is_terminal());
@@ -52,12 +54,14 @@ std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) 
   for (int frame = 0; showing.advance(); ++frame) {
     const bool is_kept = first + frame < film.first_drawn;
     const bool is_drawn = painter != nullptr && showing.is_due() && !is_kept;
-    if (is_kept) showing.pass_over();
+    if (!screen.takes(is_drawn) && is_kept) showing.pass_over();
     if (std::string fault = exports.add(showing.moment(), first + frame); !fault.empty()) return fault;
     if (std::string fault = film.checkpoint.pass(shot, showing.world(), painter); !fault.empty())
       return fault;
-    std::vector<render::Frame> samples = showing.expose(is_drawn);
-    if (is_drawn && !painter->add({std::move(samples)}, first + frame)) return painter->error();
+    recording::Panels panels;
+    panels.push_back(showing.expose(screen.takes(is_drawn)));
+    if (std::string fault = screen.add(std::move(panels), first + frame, is_drawn); !fault.empty())
+      return fault;
     shown.push_back(showing.shown());
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
     const int finished = is_whole_film ? painter->finished_frames() - first : frame + 1;
@@ -100,7 +104,7 @@ void play_in_turn(std::vector<Shot>& shots, Film& film, std::string& fault) {
 }
 
 /// All shots at once, beside each other.
-void play_compared(std::vector<Shot>& shots, Painter* painter, std::string& fault) {
+void play_compared(std::vector<Shot>& shots, const Screen& screen, std::string& fault) {
   const auto start = Clock::now();
   std::vector<Job*> jobs;
   std::vector<Recorder*> recorders;
@@ -109,7 +113,7 @@ void play_compared(std::vector<Shot>& shots, Painter* painter, std::string& faul
     recorders.push_back(&shot.recorder);
   }
   try {
-    fault = play_side_by_side(jobs, recorders, painter);
+    fault = play_side_by_side(jobs, recorders, screen);
   } catch (const std::exception& error) {
     fault = error.what();
   }
@@ -146,6 +150,22 @@ int conclude(std::vector<Shot>& shots, const Options& options, std::string fault
   return breaches > 0 ? kDiffers : kDone;
 }
 
+/// Of all shots, which are one film.
+recording::Settings recording_settings(const std::vector<Shot>& shots) {
+  const PainterSettings& painter = shots.front().job->painter;
+  recording::Settings settings;
+  settings.program = SHATTERBOX_VERSION;
+  for (const Shot& shot : shots)
+    settings.scene += (settings.scene.empty() ? "" : ", ") + shot.job->scene->name;
+  settings.goal = shots.front().job->scene->goal;
+  settings.frames_per_second = static_cast<std::uint32_t>(painter.frames_per_second);
+  settings.width = static_cast<std::uint32_t>(painter.size.width);
+  settings.height = static_cast<std::uint32_t>(painter.size.height);
+  settings.quality = painter.quality;
+  settings.panels = static_cast<std::uint32_t>(painter.panels);
+  return settings;
+}
+
 /// Plays the shots into one film: one after the other, or all beside each other.
 int play_all(std::vector<Shot>& shots) {
   const Options options = shots.front().job->options;
@@ -153,7 +173,7 @@ int play_all(std::vector<Shot>& shots) {
   scene::Problems problems;
   std::vector<const Job*> jobs;
   for (const Shot& shot : shots) jobs.push_back(&*shot.job);
-  Film film{nullptr, Checkpoint(jobs)};
+  Film film{{}, Checkpoint(jobs)};
   if (options.resumes) film.checkpoint.load(problems);
   if (!problems.empty()) return refuse(problems);
   if (!options.resumes) film.checkpoint.discard();
@@ -167,17 +187,20 @@ int play_all(std::vector<Shot>& shots) {
       return refuse(problems);
     }
   }
-  film.painter = painter ? &*painter : nullptr;
+  std::optional<recording::RecordingWriter> recording;
+  if (!options.recording.empty()) recording.emplace(options.recording, recording_settings(shots));
+  film.screen = {painter ? &*painter : nullptr, recording ? &*recording : nullptr};
   std::string fault;
   if (options.compare.empty())
     play_in_turn(shots, film, fault);
   else
-    play_compared(shots, film.painter, fault);
+    play_compared(shots, film.screen, fault);
   if (painter) {
     if (!painter->finish() && fault.empty()) fault = painter->error();
     for (Shot& shot : shots) shot.recorder.note_pictures(painter->painted(), shot.first);
   }
-  if (fault.empty() && is_interrupted()) fault = film.checkpoint.save(film.painter);
+  if (recording && fault.empty()) fault = recording->close();
+  if (fault.empty() && is_interrupted()) fault = film.checkpoint.save(film.screen.painter);
   if (fault.empty() && !is_interrupted()) film.checkpoint.discard();
   return conclude(shots, options, std::move(fault));
 }

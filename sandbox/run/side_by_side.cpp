@@ -68,7 +68,8 @@ void check_compare(const Options& options, scene::Problems& problems) {
   refuse_output("--resume", options.resumes);
 }
 
-std::string play_side_by_side(std::vector<Job*> jobs, std::vector<Recorder*> recorders, Painter* painter) {
+std::string play_side_by_side(std::vector<Job*> jobs, std::vector<Recorder*> recorders,
+                              const Screen& screen) {
   std::vector<Panel> panels(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     panels[i].label = jobs[i]->options.overrides.back();
@@ -77,18 +78,18 @@ std::string play_side_by_side(std::vector<Job*> jobs, std::vector<Recorder*> rec
   Progress progress(panels.front().showing->expected(), stderr_is_terminal());
   for (int frame = 0; advance(panels); ++frame) {
     const bool is_drawn =
-        painter != nullptr && std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
+        screen.painter != nullptr && std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
           return !panel.is_over && panel.showing->is_due();
         });
     std::vector<std::vector<render::Frame>> pictures;
     for (Panel& panel : panels) {
       if (!panel.is_over) {
-        panel.last = panel.showing->expose(is_drawn);
+        panel.last = panel.showing->expose(screen.takes(is_drawn));
         label(panel.label, panel.last);
       }
       pictures.push_back(panel.last);
     }
-    if (is_drawn && !painter->add(std::move(pictures), frame)) return painter->error();
+    if (std::string fault = screen.add(std::move(pictures), frame, is_drawn); !fault.empty()) return fault;
     progress.show(frame + 1, fmt::format("{:.2f} s", panels.front().showing->world().time()));
   }
   for (Panel& panel : panels) panel.showing->finish();

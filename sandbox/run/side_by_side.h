@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sandbox/run/job.h"
+#include "sandbox/run/screen.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -17,6 +18,6 @@ std::vector<std::string> compared_settings(const std::string& compare, scene::Pr
 void check_compare(const Options& options, scene::Problems& problems);
 
 /// Plays all, in step with each other; who is over first stays as it is. A sentence if it failed, else empty.
-std::string play_side_by_side(std::vector<Job*> jobs, std::vector<Recorder*> recorders, Painter* painter);
+std::string play_side_by_side(std::vector<Job*> jobs, std::vector<Recorder*> recorders, const Screen& screen);
 
 }  // namespace shatterbox::sandbox::run

@@ -9,34 +9,6 @@ using namespace shatterbox::sandbox::run;
 
 namespace {
 
-constexpr const char* kBreakingScene = R"(# a ball breaks a pane
-[scene]
-seconds = 2
-[[body]]
-kind = "plane"
-position = [0, -0.3, 0]
-[[body]]
-name = "pane"
-kind = "shell"
-shape = "pane"
-width = 0.4
-height = 0.4
-edge_length = 0.03
-material = "glass"
-support = "edge"
-[[body]]
-name = "ball"
-kind = "sphere"
-radius = 0.03
-position = [0, 0, 1]
-velocity = [0, 1, -6]
-material = "steel"
-[camera]
-path = [{at = 0, position = [0, 0, 2], target = [0, 0, 0]}, {at = 2, position = [1, 0, 1.5]}]
-[render]
-caption = true
-)";
-
 constexpr const char* kRun = "run pane.toml --size 320x180 --quality full ";
 constexpr int kFrames = 120;
 
