@@ -105,13 +105,16 @@ body::ImpulseLog World::act(const dynamics::StepPart& part) {
   State& s = *state_;
   body::ImpulseLog log;
   if (s.blasts.empty() && s.hands.empty()) return log;
-  s.report.stages.time("acts", [&] {
-    if (part.number == 0)
+  if (part.number == 0 && !s.blasts.empty())
+    s.report.stages.time("explosions", [&] {
       for (const dynamics::Blast& blast : s.blasts) apply_blast(s.moving.bodies, blast, log);
-    const double time_step = s.contact_settings.time_step / part.count;
-    apply_hands(s.moving.bodies, s.hands, s.settings.gravity, time_step,
-                (part.count - 1 - part.number) * time_step, log);
-  });
+    });
+  if (!s.hands.empty())
+    s.report.stages.time("hands", [&] {
+      const double time_step = s.contact_settings.time_step / part.count;
+      apply_hands(s.moving.bodies, s.hands, s.settings.gravity, time_step,
+                  (part.count - 1 - part.number) * time_step, log);
+    });
   s.is_disturbed = true;
   return log;
 }

@@ -112,7 +112,7 @@ class World {
   struct State;
 
   int count_parts() const;
-  /// Stage "acts", of one part of the step: explosions and hands.
+  /// Stages "explosions" and "hands", of one part of the step.
   body::ImpulseLog act(const dynamics::StepPart& part);
   /// Stage "motion", of one part of the step.
   dynamics::ContactReport move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log);

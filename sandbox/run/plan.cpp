@@ -10,6 +10,7 @@
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
 #include "sandbox/run/exposure.h"
+#include "sandbox/run/foresee.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/projector.h"
 #include "sandbox/scene/find_scene.h"
@@ -22,6 +23,7 @@ using core::Clock;
 using core::milliseconds_since;
 
 constexpr int kFirstSteps = 12;
+constexpr std::size_t kMostTrials = 6;
 
 /// What the first steps and the first picture took, ms.
 struct Measured {
@@ -85,7 +87,27 @@ void tell_inventory(const std::vector<world::PartCount>& rows) {
     fmt::print("    {:<17} {:>6} {:>10.2f} MB\n", row.part, row.count, row.bytes / 1e6);
 }
 
-void tell_expectation(const Job& job, const Measured& measured) {
+void tell_foreseen(const std::vector<Foreseen>& all, const scene::SceneDescription& scene) {
+  const auto breakable = std::count_if(scene.bodies.begin(), scene.bodies.end(), scene::can_break);
+  if (breakable == 0) return;
+  const bool has_trials_of_one = std::any_of(all.begin(), all.end(), [](const Foreseen& foreseen) {
+    return foreseen.has_others || foreseen.is_alone;
+  });
+  fmt::print("foreseen, by stepping the scene to the first break{}\n",
+             has_trials_of_one ? "; of each body as if nothing else could break" : "");
+  for (const Foreseen& foreseen : all) fmt::print("    {}\n", describe(foreseen));
+  if (const auto others = breakable - static_cast<std::ptrdiff_t>(all.size()); others > 0)
+    fmt::print("    {} more that can break were not tried\n", others);
+}
+
+/// What breaks as foreseen costs, ms of the simulation: copies that were tried together are in one trial.
+double cost_of_breaks(const std::vector<Foreseen>& all) {
+  double cost = 0.0;
+  for (const Foreseen& foreseen : all) cost += (foreseen.is_alone ? foreseen.copies : 1) * foreseen.all_ms;
+  return cost;
+}
+
+void tell_expectation(const Job& job, const Measured& measured, const std::vector<Foreseen>& foreseen) {
   const int fps = job.options.frames_per_second;
   const double steps_a_frame = static_cast<double>(job.scene->world.steps_per_second) / fps;
   const double frames = std::max(1.0, job.scene->seconds * fps);
@@ -93,8 +115,7 @@ void tell_expectation(const Job& job, const Measured& measured) {
   fmt::print("    memory            {:.0f} MB so far\n", measured.memory);
   fmt::print("    loading           {:.2f} s, {:.2f} s of it factors\n", 1e-3 * measured.load,
              1e-3 * measured.factors);
-  fmt::print("    a step            {:.2f} ms, as the first {} took; what breaks later costs more\n",
-             measured.step, kFirstSteps);
+  fmt::print("    a step            {:.3f} ms, as the first {} took\n", measured.step, kFirstSteps);
   const double simulate = steps_a_frame * measured.step;
   if (job.options.has_pictures)
     fmt::print("    a picture         {:.1f} ms, drawn wholly; what does not change is kept\n",
@@ -105,6 +126,11 @@ void tell_expectation(const Job& job, const Measured& measured) {
   const double a_frame = std::max(simulate, samples * measured.picture);
   fmt::print("    in all            {:.0f} frames at true speed: {:.1f} s, if it goes on as it begins\n",
              frames, 1e-3 * (measured.load + frames * a_frame));
+  if (const double breaks = cost_of_breaks(foreseen); breaks > 0.0)
+    fmt::print(
+        "    breaks            {:.1f} s more for the first {:g} s of those foreseen, each copy as the one "
+        "tried\n",
+        1e-3 * breaks, kAftermath);
 }
 
 void tell_lean(const Job& job, const Measured& measured, const std::vector<PartPlan>& parts) {
@@ -151,7 +177,9 @@ int plan_one(const Options& options, bool is_lean) {
   tell_parts(parts, false, "leaves out");
   tell_inventory(made);
   const Measured measured = measure(job, recorder);
-  tell_expectation(job, measured);
+  const std::vector<Foreseen> foreseen = foresee(*job.scene, job.built->plan, kMostTrials);
+  tell_foreseen(foreseen, *job.scene);
+  tell_expectation(job, measured, foreseen);
   if (is_lean) tell_lean(job, measured, parts);
   return kDone;
 }

@@ -29,11 +29,6 @@ std::string find_event_of(const SceneDescription& scene) {
   return {};
 }
 
-bool can_break(const BodyEntry& body) {
-  const scene::MeshForm* form = scene::find_mesh_form(body.form);
-  return form != nullptr && form->is_breakable;
-}
-
 template <class Form>
 bool can_break_as(const BodyEntry& body) {
   return std::holds_alternative<Form>(body.form) && can_break(body);
@@ -62,7 +57,7 @@ std::string overlay_of(const SceneDescription& scene) {
 std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& options) {
   const std::string moving =
       find_body_that(scene, [](const BodyEntry& b) { return b.motion == body::Motion::dynamic; });
-  const std::string breakable = find_body_that(scene, can_break);
+  const std::string breakable = find_body_that(scene, scene::can_break);
   const bool may_free = !breakable.empty();  // pieces move, even of what is held
   const std::string mover = moving.empty() && may_free ? breakable : moving;
   const std::string grained = find_body_that(scene, [&](const BodyEntry& b) {
@@ -107,7 +102,7 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
 
 void sort_parts(const std::vector<PartPlan>& parts, report::RunRecord& record) {
   const world::WorldReport& w = record.world;
-  const auto has_stage = [&w](const char* name) { return w.stages.milliseconds(name) > 0.0; };
+  const auto has_stage = [&w](const std::string& name) { return w.stages.milliseconds(name) > 0.0; };
   const bool has_grain_edges = std::any_of(w.breaks.begin(), w.breaks.end(),
                                            [](const world::BreakRow& row) { return row.grain_share > 0.0; });
   const bool has_hits = std::any_of(record.frames.begin(), record.frames.end(),
@@ -119,7 +114,7 @@ void sort_parts(const std::vector<PartPlan>& parts, report::RunRecord& record) {
     if (name == "shell_stress") return w.solver.solves == 0;
     if (name == "grains") return !has_grain_edges;
     if (name == "fracture") return w.breaks.empty();
-    if (name == "explosions" || name == "hands") return !has_stage("acts");
+    if (name == "explosions" || name == "hands") return !has_stage(name);
     return false;
   };
   record.used.clear();

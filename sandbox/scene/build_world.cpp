@@ -198,10 +198,14 @@ std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& pr
 }
 
 std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems) {
-  const std::size_t before = problems.size();
   auto plan = plan_bodies(scene, problems);
   if (!plan) return std::nullopt;
-  BuiltScene built{world::World(scene.world), std::move(*plan), {}};
+  return raise_world(scene, std::move(*plan), problems);
+}
+
+std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan plan, Problems& problems) {
+  const std::size_t before = problems.size();
+  BuiltScene built{world::World(scene.world), std::move(plan), {}};
   add_materials(scene, built.world, problems);
   if (problems.size() > before) return std::nullopt;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

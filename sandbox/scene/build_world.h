@@ -45,6 +45,9 @@ std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& pr
 /// any.
 std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems);
 
+/// The same of bodies that are planned already: `plan` has the bodies of `scene`.
+std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan plan, Problems& problems);
+
 /// The places of the copies of a body, in the order of their numbers: grids with x fastest, then y, then z;
 /// jitter depends on (seed, number of the body, number of the copy) only.
 std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uint64_t body_number);

@@ -141,6 +141,12 @@ struct BodyEntry {
   bool is_held_back = false;  // an event brings it in; until then it is not in the world
 };
 
+/// Whether it is a shell or a solid that may break.
+inline bool can_break(const BodyEntry& body) {
+  const MeshForm* form = find_mesh_form(body.form);
+  return form != nullptr && form->is_breakable;
+}
+
 struct CameraKey {
   double at = 0.0;  // s
   Vec3 position = Vec3::Zero(), target = Vec3::Zero();

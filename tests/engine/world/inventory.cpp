@@ -64,7 +64,7 @@ TEST_CASE(
       CHECK(part(w, name).count == 0);
       CHECK(part(w, name).bytes == 0.0);
     }
-    for (const char* stage : {"snapshot", "stress", "fracture", "acts"}) {
+    for (const char* stage : {"snapshot", "stress", "fracture", "explosions", "hands"}) {
       INFO(stage);
       CHECK_FALSE(has_stage(w, stage));
     }
@@ -91,10 +91,14 @@ TEST_CASE(
     for (int i = 0; i < 12; ++i) w.step();
     CHECK(w.report().breaks.size() > 0);
     for (const char* stage : {"snapshot", "stress", "fracture"}) CHECK(has_stage(w, stage));
-    CHECK_FALSE(has_stage(w, "acts"));
+    CHECK_FALSE(has_stage(w, "hands"));
     REQUIRE(w.grab(2, w.bodies()[1].pose.translation, 10.0) != 0);
     w.step();
     CHECK(part(w, "hands").count == 1);
-    CHECK(has_stage(w, "acts"));
+    CHECK(has_stage(w, "hands"));
+    CHECK_FALSE(has_stage(w, "explosions"));
+    w.explode({Vec3(0, 0.2, 1), 1.0});
+    w.step();
+    CHECK(has_stage(w, "explosions"));
   }
 }

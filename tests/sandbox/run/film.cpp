@@ -1,6 +1,9 @@
 // What scripts do to films, seen from outside.
 #include <catch2/catch.hpp>
 
+#include <iomanip>
+#include <sstream>
+
 #include "tests/sandbox/run/running.h"
 
 using namespace shatterbox::sandbox::run;
@@ -88,6 +91,85 @@ TEST_CASE("plan tells what a scene needs and why, and the report what of it was 
   CHECK(g["parts"]["factors"]["bytes"] > 0);
   CHECK_FALSE(s["time_ms"]["stages"].contains("stress"));
   CHECK(g["time_ms"]["stages"].contains("stress"));
+}
+
+TEST_CASE("plan foresees what breaks and what holds by trying") {
+  const Folder folder;
+  const std::string floor = "[scene]\nseconds = 0.4\n[[body]]\nname = \"floor\"\nkind = \"plane\"\n";
+  const auto ball = [](const std::string& name, const std::string& more) {
+    return "[[body]]\nname = \"" + name +
+           "\"\nshape = \"sphere\"\nradius = 0.05\nthickness = 0.0006\nedge_length = 0.012\nmaterial = "
+           "\"glass\"\n" +
+           more + "\n";
+  };
+  const std::string thrown =
+      "[[event]]\nat = 0.05\ndo = \"projectile\"\nfrom = [1, 0.06, 0]\nat_body = \"still\"\nspeed = 12\n";
+  struct Case {
+    std::string name, text, words;
+    bool breaks;
+  };
+  const std::vector<Case> cases{
+      {"falls", floor + ball("still", "position = [0, 0.1, 0]\nvelocity = [0, -6, 0]"), "meets \"floor\"",
+       true},
+      {"lies", floor + ball("still", "position = [0, 0.0505, 0]"), "holds", false},
+      {"struck", floor + ball("still", "position = [0, 0.0505, 0]") + thrown, "breaks", true},
+      {"flies", floor + ball("still", "position = [0, 9, 0]"), "meets nothing", false},
+  };
+  for (const Case& one : cases) {
+    write_text(folder / "s.toml", one.text);
+    const Outcome plan = program(folder, "plan s.toml --no-render");
+    INFO(one.name << plan.err << plan.out);
+    REQUIRE(plan.status == 0);
+    const std::string line = plan.out.substr(plan.out.find("foreseen"));
+    CHECK(line.find("\"still\"") != std::string::npos);
+    CHECK(line.find(one.words) != std::string::npos);
+    CHECK((line.find("and breaks") != std::string::npos) == one.breaks);
+    CHECK((line.find("of those foreseen") != std::string::npos) == one.breaks);
+    // What is foreseen of a body that alone can break is what comes.
+    REQUIRE(program(folder, "run s.toml --no-render --report r.json").status == 0);
+    const auto report = read_json(folder / "r.json");
+    CHECK(report["breaks"].empty() == !one.breaks);
+    if (!one.breaks) continue;
+    std::ostringstream when;
+    when << std::fixed << std::setprecision(3) << report["breaks"][0]["time"].get<double>();
+    CHECK(line.find("at " + when.str() + " s") != std::string::npos);
+  }
+  // Of two, one falls onto the other: neither is said to hold for sure.
+  write_text(folder / "two.toml",
+             floor + ball("under", "position = [0, 0.0505, 0]") + ball("over", "position = [0, 0.16, 0]"));
+  const Outcome two = program(folder, "plan two.toml --no-render");
+  REQUIRE(two.status == 0);
+  CHECK(two.out.find("as if nothing else could break") != std::string::npos);
+  CHECK(two.out.find(": holds,") == std::string::npos);
+  CHECK(two.out.find(": holds;") == std::string::npos);
+  // Nothing to foresee where nothing can break.
+  write_text(folder / "small.toml", kSmallScene);
+  CHECK(program(folder, "plan small.toml --no-render").out.find("foreseen") == std::string::npos);
+}
+
+TEST_CASE("hands and explosions are used or idle each by itself") {
+  const Folder folder;
+  write_text(folder / "small.toml", kSmallScene);
+  const std::string grab = "[[event]]\nat = 0.1\ndo = \"grab\"\nbody = \"crate\"\n";
+  const std::string blast = "[[event]]\nat = 0.1\ndo = \"explosion\"\ncentre = [1, 0.2, 0]\nenergy = 1\n";
+  const std::string late = "at = 9";  // after the end
+  const auto put_off = [&late](std::string event) { return event.replace(event.find("at = 0.1"), 8, late); };
+  const auto row_of = [&folder](const std::string& script, const char* part) -> std::string {
+    write_text(folder / "s.toml", script);
+    const Outcome outcome = program(folder, "run small.toml --no-render --script s.toml --report r.json");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const auto report = read_json(folder / "r.json");
+    for (const char* row : {"used", "idle", "left_out"})
+      if (std::count(report[row].begin(), report[row].end(), part) > 0) return row;
+    return "none";
+  };
+  CHECK(row_of(grab, "hands") == "used");
+  CHECK(row_of(grab, "explosions") == "left_out");
+  CHECK(row_of(blast, "hands") == "left_out");
+  CHECK(row_of(blast, "explosions") == "used");
+  CHECK(row_of(put_off(grab) + blast, "hands") == "idle");
+  CHECK(row_of(grab + put_off(blast), "explosions") == "idle");
 }
 
 TEST_CASE("a folder of scenes is a film of several shots with one report, and each shot is as by itself") {
