@@ -36,6 +36,7 @@ struct WorldSettings {
   std::optional<double> stress_window;  // s; the duration of every impact, where it is not to be computed
   double paper_duration = 1e-3;  // s; Criterion::paper compares the stress integral with strength times this
   int crack_generations = 3;     // solves of one cracking body: radial cracks, rings, and what they leave
+  bool has_energy_guard = true;  // cracks use no more energy than there is; off: to see what that changes
   bool has_sleep = true;         // islands at rest fall asleep and cost nothing
   int most_generations = 4;      // how often the pieces of one impact event may break again, usually 2 to 4
 };

@@ -16,7 +16,7 @@ constexpr const char* kGlmarkFolder = "/usr/share/glmark2/";  // of a package, f
 struct Shapes {
   std::vector<std::string> known, later;
 };
-const Shapes kShellShapes{{"ornament", "sphere", "bowl", "pane", "boat"}, {}};
+const Shapes kShellShapes{{"ornament", "sphere", "bowl", "pane", "boat", "egg"}, {}};
 const Shapes kSolidShapes{{"sphere", "slab", "vase", "bottle", "egg"}, {"bricks"}};
 const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
                                           "foot_radius", "foot_height",  "height",        "width",

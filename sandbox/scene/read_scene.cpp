@@ -63,6 +63,7 @@ void read_settings(const TomlValue& table, SceneDescription& scene, Problems& pr
       after.value_or("go_back") == "inherit" ? world::AfterBreak::inherit : world::AfterBreak::go_back;
   world.most_generations =
       static_cast<int>(reader.whole_number("most_generations", 1, 100).value_or(world.most_generations));
+  world.has_energy_guard = reader.truth("energy_guard").value_or(world.has_energy_guard);
   world.has_sleep = reader.truth("sleep").value_or(world.has_sleep);
   const auto contact = reader.choice("contact", {"default", "paper"});
   world.contact =

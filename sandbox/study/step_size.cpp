@@ -129,6 +129,26 @@ Broken hard_hit(int rate, world::Criterion criterion, int seeds, double after, d
   return broken;
 }
 
+// ---- the height at which it begins to break
+
+struct Height {
+  double height = 0.0;  // m, of the centre above touching
+  double seconds = 0.0;
+};
+
+Height breaking_height(int rate, world::Criterion criterion, double edge) {
+  Height found;
+  double held = 0.02, broke = 5.0;
+  for (int halving = 0; halving < 9; ++halving) {
+    const double height = std::sqrt(held * broke);
+    ScenePlay play = drop(rate, criterion, height, 0.0, 12, edge);
+    found.seconds += play.seconds();
+    (play.world().report().breaks.empty() ? held : broke) = height;
+  }
+  found.height = std::sqrt(held * broke);
+  return found;
+}
+
 // ---- what rests
 
 /// Whether the pane broke under a ball whose static stress is `share` of the strength.
@@ -182,6 +202,26 @@ void add_soft(Plan& plan, const std::vector<int>& rates, int finest, double edge
                criterion == world::Criterion::paper ? kNoNumber : hit.instantaneous},
               hit.seconds,
               ""};
+        });
+  }
+}
+
+void add_heights(Plan& plan, const std::vector<int>& rates, int finest, double edge) {
+  const auto references = std::make_shared<References<Height>>(
+      [finest, edge](world::Criterion c) { return breaking_height(finest, c, edge); });
+  for (const auto criterion : {world::Criterion::event, world::Criterion::paper}) {
+    const bool is_paper = criterion == world::Criterion::paper;
+    add_rates(
+        plan,
+        rate_table(is_paper ? "height-paper" : "height",
+                   is_paper ? "the same under the paper's criterion"
+                            : "the height from which the bauble begins to break, between 2 cm and 5 m to "
+                              "1 %, beside a finer step",
+                   {"height", "height, m"}),
+        rates, [criterion, references, edge](int rate) {
+          const Height found = breaking_height(rate, criterion, edge);
+          return Measured{
+              {relative(found.height, references->of(criterion).height), found.height}, found.seconds, ""};
         });
   }
 }
@@ -255,11 +295,18 @@ std::vector<std::string> conclude(const std::vector<Table>& tables) {
                                       table.name == "rest" ? "our criterion" : "the paper's criterion", wrong,
                                       2 * table.rows.size()));
     }
+    if (table.name == "height" || table.name == "height-paper") {
+      const auto [low, high] =
+          std::minmax_element(table.rows.begin(), table.rows.end(),
+                              [](const Row& a, const Row& b) { return a.errors[1] < b.errors[1]; });
+      sentences.push_back(fmt::format("It begins to break at {:.3g} to {:.3g} m over these steps{}.",
+                                      low->errors[1], high->errors[1],
+                                      table.name == "height" ? "" : " under the paper's criterion"));
+    }
     if (table.name == "break")
       sentences.push_back(fmt::format(
-          "The first break has {:.3g} pieces at {} steps a second and {:.3g} at {}; what breaks again while "
-          "shards part "
-          "does depend on the step: {:.3g} and {:.3g} pieces 50 ms later.",
+          "The first break has {:.3g} pieces at {} steps a second and {:.3g} at {}; 50 ms later there are "
+          "{:.3g} and {:.3g}.",
           coarse.errors[1], coarse.setting, fine.errors[1], fine.setting, coarse.errors[4], fine.errors[4]));
   }
   return sentences;
@@ -274,6 +321,7 @@ Plan make_step_size_plan(bool is_quick) {
   add_soft(plan, rates, finest, edge);
   add_hard(plan, is_quick ? std::vector<int>{240} : rates, finest, is_quick ? 1 : 5, is_quick ? 0.005 : 0.05,
            edge);
+  if (!is_quick) add_heights(plan, rates, finest, edge);
   add_rest(plan, rates, is_quick ? 0.3 : 60.0);
   plan.conclude = conclude;
   return plan;

@@ -63,9 +63,9 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
 
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
-  for (const char* scene :
-       {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments", "card_house", "plate_stack",
-        "bowls", "rain", "reel", "tablet", "wall", "brick_wall", "dominoes", "blast", "arch"}) {
+  for (const char* scene : {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments",
+                            "card_house", "plate_stack", "bowls", "rain", "reel", "tablet", "wall",
+                            "brick_wall", "dominoes", "blast", "arch", "vase", "egg"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);
@@ -79,6 +79,15 @@ TEST_CASE("arch: twenty-five stones stand by friction alone, and come down witho
   const auto fallen = play(folder, "arch --seconds 3.5");
   CHECK(fallen["conservation"]["potential_energy_j"].get<double>() <
         0.7 * standing["conservation"]["potential_energy_j"].get<double>());
+}
+
+TEST_CASE("egg: shatters on a worktop, and from a finger's breadth it only cracks into few") {
+  const Folder folder;
+  const auto high = play(folder, "egg --seconds 0.3");
+  check_breaks(high);
+  CHECK(high["pieces"].get<int>() >= 60);
+  const auto low = play(folder, "egg --seconds 0.3 --set egg.position=[0,0.04,0]");
+  CHECK(low["pieces"].get<int>() < high["pieces"].get<int>() / 3);
 }
 
 TEST_CASE("ornament: shatters into at least 20 pieces, a low drop is held, with the verdict in the report") {

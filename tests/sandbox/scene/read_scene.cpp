@@ -65,6 +65,7 @@ TEST_CASE("a good scene is read as it stands") {
   CHECK(scene.seconds == 2.0);
   CHECK(scene.world.seed == 7);
   CHECK(scene.world.steps_per_second == 240);
+  CHECK(scene.world.has_energy_guard);
   CHECK(scene.world.gravity == Vec3(0, -9.81, 0));
   REQUIRE(scene.bodies.size() == 5);  // two are brought in by events
   const BodyEntry& ball = scene.bodies[1];
@@ -100,9 +101,9 @@ TEST_CASE("an event after the end is a warning") {
 }
 
 TEST_CASE("the option --set changes named bodies, materials, events and tables") {
-  const Reading reading =
-      read(kScene, {"ball.radius=0.1", "thin glass.strength=1e7", "late.at=1", "scene.gravity=[0,0,0]",
-                    "camera.fov = 50", "ball.repeat.count=3", "ball.material=\"glass\""});
+  const Reading reading = read(kScene, {"ball.radius=0.1", "thin glass.strength=1e7", "late.at=1",
+                                        "scene.gravity=[0,0,0]", "scene.energy_guard=false",
+                                        "camera.fov = 50", "ball.repeat.count=3", "ball.material=\"glass\""});
   INFO(reading.text);
   REQUIRE(reading.scene.has_value());
   const SceneDescription& scene = *reading.scene;
@@ -111,6 +112,7 @@ TEST_CASE("the option --set changes named bodies, materials, events and tables")
   CHECK(scene.bodies[1].repeat.total() == 3);
   CHECK(scene.events[1].at == 1.0);
   CHECK(scene.world.gravity == Vec3(0, 0, 0));
+  CHECK_FALSE(scene.world.has_energy_guard);
   CHECK(scene.camera.fov == 50.0);
 }
 
