@@ -7,7 +7,7 @@ using namespace shatterbox::sandbox::run;
 
 namespace {
 
-const std::string kGoldens = SHATTERBOX_SOURCE_DIR "/tests/golden/goldens/";
+const std::string kScenesKept = SHATTERBOX_SOURCE_DIR "/tests/golden/goldens/";
 
 /// Of --gl egl here: nothing if it draws, else why not, which is told.
 bool has_egl(const Folder& folder) {
@@ -21,7 +21,7 @@ bool has_egl(const Folder& folder) {
 
 /// A golden's own run with a back-end; the report.
 nlohmann::json draw(const Folder& folder, const std::string& golden, const std::string& back_end) {
-  const auto kept = read_json(kGoldens + golden + "/golden.json");
+  const auto kept = read_json(kScenesKept + golden + "/golden.json");
   std::string arguments = " " + kept["scene"].get<std::string>();
   for (const std::string word : kept["arguments"]) arguments += " '" + word + "'";
   const std::string name = golden + "_" + back_end;
