@@ -130,7 +130,7 @@ void add_batch_options(CLI::App& command, BatchOptions& options) {
 void add_finding_options(CLI::App& command, FindingOptions& options) {
   command
       .add_option("--tolerance", options.tolerance,
-                  "of pictures: default, exact, video, or levels=2,share=0.0001,..")
+                  "of pictures: default, exact, video, or levels=2,share=0.0001,..; of reports: exact, 0.01")
       ->capture_default_str();
   command.add_option("--report", options.report, "what was found, in JSON")->type_name("FILE");
   command.add_option("--junit", options.junit, "the same as JUnit XML, for test farms")->type_name("FILE");
@@ -140,7 +140,8 @@ void add_finding_options(CLI::App& command, FindingOptions& options) {
 }
 
 void add_diff_options(CLI::App& command, DiffOptions& options) {
-  command.add_option("EXPECTED", options.expected, "a PNG, a folder of PNGs or a video")->required();
+  command.add_option("EXPECTED", options.expected, "a PNG, a folder of PNGs, a video or a report")
+      ->required();
   command.add_option("ACTUAL", options.actual, "another one of the kind")->required();
   add_finding_options(command, options.findings);
   command.add_option("--picture", options.picture, "the worst frame's difference as a PNG")
@@ -201,7 +202,8 @@ int run_command_line(int argc, char** argv) {
   BatchOptions batch;
   add_batch_options(*app.add_subcommand("batch", "run many scenes, or one with many values"), batch);
   DiffOptions diff;
-  CLI::App* diff_command = app.add_subcommand("diff", "compare pictures, folders of pictures or videos");
+  CLI::App* diff_command =
+      app.add_subcommand("diff", "compare pictures, folders of pictures, videos or reports");
   add_diff_options(*diff_command, diff);
   GoldenOptions golden;
   CLI::App* golden_command =

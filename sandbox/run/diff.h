@@ -20,8 +20,8 @@ struct FindingOptions {
 };
 
 struct DiffOptions {
-  std::string expected, actual;
-  std::string picture;  // PNG of the worst frame's difference
+  std::string expected, actual;  // pictures, folders of them, videos, or two reports
+  std::string picture;           // PNG of the worst frame's difference
   FindingOptions findings;
 };
 

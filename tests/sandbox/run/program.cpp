@@ -222,6 +222,25 @@ TEST_CASE("diff: 0 for the same, 1 and the place for a difference, of pictures, 
   CHECK(cut.err.find("cut.mp4") == 0);  // and nothing of what the decoder mutters
 }
 
+TEST_CASE("diff: two reports of one scene are the same and those of two seeds are not") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string run = "run good.toml --no-render --seconds 0.2 --report ";
+  REQUIRE(program(folder, run + "a.json").status == 0);
+  REQUIRE(program(folder, run + "b.json --threads 1").status == 0);
+  REQUIRE(program(folder, run + "c.json --seed 2").status == 0);
+  CHECK(program(folder, "diff a.json b.json").status == 0);
+  const Outcome found = program(folder, "diff a.json c.json --report r.json --junit j.xml");
+  CHECK(found.status == 1);
+  CHECK(found.out.find("seed: 1 and 2 (50 %)") != std::string::npos);
+  CHECK(read_json(folder / "r.json")["values_differing"] > 1);
+  CHECK(read_text(folder / "j.xml").find("name=\"state_hash\"") != std::string::npos);
+  CHECK(program(folder, "diff a.json good.toml").status == 2);
+  CHECK(program(folder, "diff a.json r.json").err.find("no report_version") != std::string::npos);
+  CHECK(program(folder, "diff a.json b.json --picture p.png").status == 2);
+  CHECK(program(folder, "diff a.json b.json --tolerance video").status == 2);
+}
+
 TEST_CASE("golden: made, checked, a change found and told, made again with a reason that is kept") {
   const Folder folder;
   fs::create_directories(folder / "scenes");
