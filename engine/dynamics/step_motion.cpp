@@ -248,6 +248,11 @@ int lively_parts(const ContactSettings& settings) {
   return std::max(kLeastParts, static_cast<int>(std::ceil(settings.time_step / kPartTime - 1e-9)));
 }
 
+// Who was cut stood still for the whole part: short parts cost less of the motion.
+bool were_many_cut(const ContactSettings& settings, const ContactReport& report) {
+  return kManyCut * report.failsafe_steps > report.awake_bodies && settings.time_step > kPartTime;
+}
+
 // What is hit on its way did not see it coming: over shorter ways more does.
 int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& settings,
                     const ContactReport& report) {
@@ -257,9 +262,7 @@ int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& sett
     spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
   }
   const int awake = report.awake_bodies, hits = report.hits;
-  // Who was cut stood still for the whole part: short parts cost less of the motion.
-  if (kManyCut * report.failsafe_steps > awake && settings.time_step > kPartTime)
-    return lively_parts(settings);
+  if (were_many_cut(settings, report)) return lively_parts(settings);
   if (kManySpin * spinning > awake && kManyHits * hits > awake) return lively_parts(settings);
   return hits >= kLeastHits && kCrowdHits * hits > awake ? kCrowdParts : 1;
 }
@@ -276,6 +279,11 @@ int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings
   }
   return newborn >= 2 && !state.bodies.empty() ? std::max(lively_parts(settings), state.next_parts)
                                                : state.next_parts;
+}
+
+int count_parts_instead(const ContactSettings& settings, const StepPart& part, const ContactReport& moved) {
+  return part.number == 0 && were_many_cut(settings, moved) ? std::max(lively_parts(settings), part.count)
+                                                            : part.count;
 }
 
 ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settings, const StepPart& part,

@@ -63,6 +63,10 @@ int count_parts(const std::vector<body::Body>& bodies, const ContactSettings& se
 ContactReport move_part(std::vector<body::Body>& bodies, const ContactSettings& settings,
                         const StepPart& part, ContactState& state, body::ImpulseLog& log);
 
+/// In how many parts the step should be taken from its begin again, now that its first one is known: in more
+/// than before if many stood still in it because they found no room.
+int count_parts_instead(const ContactSettings& settings, const StepPart& part, const ContactReport& moved);
+
 /// Adds what a part reports to the report of its step.
 void add_part(ContactReport&& part, ContactReport& step);
 

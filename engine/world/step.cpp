@@ -162,6 +162,13 @@ int World::count_parts() const {
              : dynamics::count_parts(s.moving.bodies, s.contact_settings, s.moving.contact);
 }
 
+int World::count_parts_instead(const dynamics::StepPart& part, const dynamics::ContactReport& moved) const {
+  const State& s = *state_;
+  return s.settings.contact == ContactScheme::paper
+             ? part.count
+             : dynamics::count_parts_instead(s.contact_settings, part, moved);
+}
+
 void World::step() {
   State& s = *state_;
   core::StageTimer& timer = s.report.stages;
@@ -181,6 +188,11 @@ void World::step() {
     dynamics::ContactReport moved = move_bodies(part, log);
     given.insert(given.end(), log.begin(), log.end());
     if (may_break) {
+      if (const int parts = count_parts_instead(part, moved); parts > part.count) {
+        s.moving = std::move(snapshot);
+        part.count = parts;
+        continue;
+      }
       const auto impacts = judge_impacts(given);
       const std::size_t known_breaks = s.report.breaks.size();
       if (timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); })) {

@@ -112,6 +112,7 @@ class World {
   struct State;
 
   int count_parts() const;
+  int count_parts_instead(const dynamics::StepPart& part, const dynamics::ContactReport& moved) const;
   /// Stages "explosions" and "hands", of one part of the step.
   body::ImpulseLog act(const dynamics::StepPart& part);
   /// Stage "motion", of one part of the step.
