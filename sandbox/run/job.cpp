@@ -20,9 +20,10 @@ using core::milliseconds_since;
 void check_stills(const Options& options, double seconds, scene::Problems& problems) {
   for (const double time : options.stills)
     if (!(time >= 0.0 && time < seconds))
-      scene::book(problems, scene::Place{"--stills", 0, 0},
-                  fmt::format("{:g} s is not in the film, which goes from 0 to {:g} s", time, seconds),
-                  "--seconds makes it longer");
+      scene::book(
+          problems, scene::Place{"--stills", 0, 0},
+          fmt::format("{:g} s is not in the film, whose pictures are all before {:g} s", time, seconds),
+          "--seconds makes it longer");
 }
 
 void describe_job(const Job& job, report::RunRecord& record) {
@@ -76,7 +77,8 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
                 "name one: --frames DIR or --truth DIR");
   }
   if (!options.stills.empty() && !options.video.empty()) {
-    scene::book(problems, scene::Place{"--stills", 0, 0}, "single moments make no video", "leave -o out");
+    scene::book(problems, scene::Place{"--stills", 0, 0}, "single moments make no video",
+                "write no -o, or no --stills for the whole film");
   }
   if (file.empty()) return job;
   job.scene = scene::read_scene_file(file, changes_of(options), problems);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kUsualTriangles = 5000.0;
 constexpr double kStationsOfBoat = 15.0;  // 300 triangles
+constexpr double kHardlyMeant = 10.0;  // m, across what is to break: more likely its file is in millimetres
 
 geometry::PartedMesh one_part(geometry::TriangleMesh mesh) {
   geometry::PartedMesh parted{std::move(mesh), {}};
@@ -185,6 +186,13 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
   BuiltMesh built{std::move(parted->mesh), {}};
   for (const geometry::Part part : parted->parts) built.parts.push_back(static_cast<std::uint8_t>(part));
   if (!fit(built.mesh, form, place, problems)) return std::nullopt;
+  if (const auto* files = std::get_if<MeshFileShape>(&form.shape)) {
+    const Bounds bounds = bounds_of(built.mesh.positions);
+    const double across = (bounds.most - bounds.least).maxCoeff();
+    if (across > kHardlyMeant)
+      notes.push_back(fmt::format("{}: {:.3g} m across; if the file is in millimetres, write scale = 0.001",
+                                  files->files.front(), across));
+  }
   return built;
 }
 

@@ -14,6 +14,9 @@ namespace {
 
 const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere"};
 const std::vector<std::string> kLaterKinds{"capsule"};
+const std::vector<std::string> kMaterialKeys{
+    "young",         "poisson",    "strength",       "fracture_energy", "weibull_modulus",  "flaw_area",
+    "crack_spacing", "grain_size", "grain_strength", "friction",        "rolling_friction", "restitution"};
 const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up", "breakable", "support"};
 
 Support read_support(TableReader& reader) {
@@ -202,6 +205,11 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
     reader.add_problem_at("repeat", "scripted bodies are all there from the start", "remove every");
   body.look.name = reader.choice("look", kLookNames).value_or("");
   body.look.colours = read_colours(reader);
+  reader.foreign(
+      kMaterialKeys,
+      fmt::format("it belongs to a material: [[material]] with name = \"mine\" and like = \"{}\", and "
+                  "material = \"mine\" here",
+                  material));
   reader.finish();
   scene.bodies.push_back(std::move(body));
 }

@@ -14,10 +14,11 @@ constexpr const char* kGlmarkFolder = "/usr/share/glmark2/";  // of a package, f
 
 /// What shapes there are for a kind of body, and which there will be.
 struct Shapes {
+  const char* kind;
   std::vector<std::string> known, later;
 };
-const Shapes kShellShapes{{"ornament", "sphere", "bowl", "pane", "boat", "egg"}, {}};
-const Shapes kSolidShapes{{"sphere", "slab", "vase", "bottle", "egg"}, {"bricks"}};
+const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "egg"}, {}};
+const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg"}, {"bricks"}};
 const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
                                           "foot_radius", "foot_height",  "height",        "width",
                                           "edge_length", "length",       "beam",          "depth",
@@ -157,6 +158,21 @@ MeshShape read_shape(TableReader& reader, const std::string& shape) {
   return sizes;
 }
 
+/// The name of a shape; nothing, and it is said why, if there is none of that name for this kind of body.
+std::optional<std::string> read_shape_name(TableReader& reader, const Shapes& shapes) {
+  const auto has = [](const Shapes& some, const std::string& name) {
+    return std::find(some.known.begin(), some.known.end(), name) != some.known.end();
+  };
+  const Shapes& others = &shapes == &kShellShapes ? kSolidShapes : kShellShapes;
+  const TomlValue* value = reader.table().find("shape");
+  if (value == nullptr || !value->is_text() || has(shapes, value->text) || !has(others, value->text))
+    return reader.choice("shape", shapes.known, shapes.later);
+  reader.value("shape");
+  reader.add_problem(value->place, fmt::format("\"{}\" is the shape of a {}", value->text, others.kind),
+                     fmt::format("write kind = \"{}\"", others.kind));
+  return std::nullopt;
+}
+
 void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Shapes& shapes,
                     MeshForm& form) {
   if (reader.has("mesh") && reader.has("shape")) {
@@ -168,7 +184,7 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
     form.size = reader.vector("size", positive("m"));
     reader.value("shape");
   } else {
-    const auto shape = reader.choice("shape", shapes.known, shapes.later);
+    const auto shape = read_shape_name(reader, shapes);
     if (!reader.has("shape")) {
       reader.add_problem(
           reader.table().place, fmt::format("{} has neither a mesh nor a shape", reader.what()),

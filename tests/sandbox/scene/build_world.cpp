@@ -75,6 +75,23 @@ TEST_CASE("size stretches to a box, up = z turns") {
         1e-12);  // the pane's height lies along -z; no thickness to stretch
 }
 
+TEST_CASE("a file's mesh of a hundred metres is built, with a word on millimetres") {
+  const MeshFileFolder folder;
+  const std::string file = folder.write("tent.obj", "v 0 0 0\nv 150 0 0\nv 0 120 0\nf 1 2 3\n").string();
+  const auto notes_at = [&](double scale) {
+    ShellForm form;
+    form.shape = MeshFileShape{{file}};
+    form.scale = Vec3::Constant(scale);
+    Problems problems;
+    std::vector<std::string> notes;
+    CHECK(build_mesh(form, {}, problems, notes).has_value());
+    return notes;
+  };
+  REQUIRE(notes_at(1.0).size() == 1);
+  CHECK(notes_at(1.0)[0].find("150 m across; if the file is in millimetres") != std::string::npos);
+  CHECK(notes_at(0.001).empty());
+}
+
 TEST_CASE("supports hold the border, the foot, or what is in a box") {
   const Reading reading =
       read("[[body]]\nkind = \"shell\"\nshape = \"pane\"\nwidth = 1\nheight = 1\nedge_length = 0.1\n");

@@ -72,6 +72,10 @@ const Broken kCorpus[] = {
     {"[[body]]\nname = \"camera\"\nkind = \"sphere\"\n", "t.toml:2:8", "nothing can be named \"camera\"", ""},
     // Choices.
     {"[[body]]\nkind = \"spere\"\n", "t.toml:2:8", "unknown kind \"spere\"", "did you mean \"sphere\"?"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bottle\"\n", "t.toml:3:9", "\"bottle\" is the shape of a solid",
+     "write kind = \"solid\""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nstrength = 1e9\n", "t.toml:4:1",
+     "\"strength\" does not belong here", "[[material]]"},
     {"[[body]]\nkind = \"shell\"\nshape = \"bowel\"\n", "t.toml:3:9", "unknown shape \"bowel\"",
      "did you mean \"bowl\"?"},
     {"[[body]]\nkind = \"sphere\"\nmaterial = \"glas\"\n", "t.toml:3:12", "there is no material \"glas\"",
@@ -199,7 +203,7 @@ const Broken kCorpus[] = {
     // Solids.
     {"[[body]]\nkind = \"solid\"\n", "t.toml:1:1", "has neither a mesh nor a shape", "\"slab\""},
     {"[[body]]\nkind = \"solid\"\nshape = \"slab\"\n", "t.toml:1:1", "has no size", "[x, y, z]"},
-    {"[[body]]\nkind = \"solid\"\nshape = \"pane\"\n", "t.toml:3:9", "\"pane\"", "\"slab\""},
+    {"[[body]]\nkind = \"solid\"\nshape = \"pane\"\n", "t.toml:3:9", "\"pane\"", "kind = \"shell\""},
     {"[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [1, 1, 1]\nthickness = 0.1\n", "t.toml:5:1",
      "does not belong here", "shell"},
     {"[[body]]\nkind = \"solid\"\nshape = \"sphere\"\nsupport = \"edge\"\n", "t.toml:4:1", "no open border",
