@@ -294,7 +294,6 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
     }
     if (i < pair.gaps.size() && pair.gaps[i] > reach + spare) continue;
     const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    const Vec3 hint = direction_hint(a, b, start);
     if (pair.start_gaps.size() <= i) pair.start_gaps.resize(search.features.size());
     auto& gap = pair.start_gaps[i];
     if (gap.distance >= 0.0 && gap.gap > reach + spare) continue;
@@ -306,6 +305,7 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
         continue;
       }
     }
+    const Vec3 hint = direction_hint(a, b, start);
     if (gap.distance < 0.0) gap = collision::measure(start, hint);
     if (gap.gap > reach + spare) continue;
     parting = gap.normal;

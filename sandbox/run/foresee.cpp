@@ -100,8 +100,7 @@ void note_meetings(const scene::BuiltScene& built, int tried, Foreseen& found) {
 
 Vec3 velocity_at(std::span<const body::Body> bodies, body::BodyId id, const Vec3& point) {
   const auto body = std::find_if(bodies.begin(), bodies.end(), [id](const auto& b) { return b.id == id; });
-  if (body == bodies.end()) return Vec3::Zero();
-  return body->velocity + body->angular_velocity.cross(point - body->pose.translation);
+  return body == bodies.end() ? Vec3(Vec3::Zero()) : body->velocity_at(point);
 }
 
 /// What broke it: whom its pieces met nearest to the place, and how fast it was there before the step. The
