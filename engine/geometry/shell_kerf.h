@@ -2,6 +2,8 @@
 // of the whole. For shell_surface.cpp.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/core/vec.h"
@@ -9,11 +11,17 @@
 
 namespace shatterbox::geometry {
 
+enum class BorderKind : std::uint8_t {
+  crack,        // a new face
+  older_crack,  // from which the whole stood back already: the vertex may not come nearer
+  rim,          // of the whole shell: the vertex slides along it
+};
+
 /// What the border of a surface vertex asks of its kerf.
 struct BorderNormal {
   int vertex;
-  Vec3 inward;    // unit, in the cell's plane
-  bool is_crack;  // false: the rim of the whole shell, along which the vertex slides
+  Vec3 inward;  // unit, in the cell's plane
+  BorderKind kind;
   int element, side_id;
 };
 
@@ -22,7 +30,10 @@ struct BorderNormal {
 /// goes along the fold, so that a piece never sticks out of the whole that it was born from.
 /// `triangle_normals` (|T|, unit) of the elements that the triangles lie in; `normals` ascending by vertex.
 /// Returns the narrowest stand-off of a crack vertex that is not a tip, m; `kerf` without any.
+/// A shift that leads a triangle's corner, or the middle of its side, where `is_within` (of a triangle and a
+/// place, m) is false is halved too; it is not asked where it is empty.
 double stand_back(TriangleMesh& mesh, const std::vector<Vec3>& triangle_normals,
-                  const std::vector<BorderNormal>& normals, double kerf);
+                  const std::vector<BorderNormal>& normals, double kerf,
+                  const std::function<bool(int, const Vec3&)>& is_within = {});
 
 }  // namespace shatterbox::geometry

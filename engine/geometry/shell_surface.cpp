@@ -1,6 +1,7 @@
 #include "engine/geometry/shell_surface.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <numeric>
 
@@ -8,6 +9,7 @@
 #include "engine/core/index.h"
 #include "engine/geometry/ear_clipping.h"
 #include "engine/geometry/shell_kerf.h"
+#include "engine/geometry/standing_surface.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -15,7 +17,8 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kTouch = 1e-6;  // share of an edge that counts as contact, as in find_cell_contacts
+constexpr double kBeside = 1e-6;  // of a kerf: as far as rounding may lead out of the whole
+constexpr double kTouch = 1e-6;   // share of an edge that counts as contact, as in find_cell_contacts
 
 /// A point on the border of a cell's polygon: a corner, or a place where a neighbour has a corner.
 struct BorderPoint {
@@ -34,23 +37,44 @@ struct SideStretch {
 
 class SurfaceBuilder {
  public:
-  explicit SurfaceBuilder(const ShellMesh& mesh) : mesh_(mesh), elements_(*mesh.elements) {}
+  SurfaceBuilder(const ShellMesh& mesh, const StandingSurface* whole)
+      : mesh_(mesh), elements_(*mesh.elements), whole_(whole) {}
 
   ShellSurface build(double kerf) {
+    if (whole_) find_cells_of_whole();
     collect_stretches();
     insert_neighbours_corners();
     number_nodes();
     weld();
-    triangulate();
+    number_vertices();
     place_vertices();
+    for (Size c = 0; c < mesh_.cells.size(); ++c) triangulate_cell(static_cast<int>(c));
     surface_.least_kerf =
-        kerf > 0.0 ? stand_back(surface_.mesh, triangle_normals(), collect_normals(), kerf) : kerf;
+        kerf > 0.0 ? stand_back(surface_.mesh, triangle_normals(), collect_normals(), kerf, within(kerf))
+                   : kerf;
     return std::move(surface_);
   }
 
  private:
   const ShellCorner& corner(const ShellCell& cell, int i) const {
     return mesh_.corners[at(cell.first_corner + (i % cell.corner_count))];
+  }
+
+  /// Whether a place beside a triangle is of the whole; empty without.
+  std::function<bool(int, const Vec3&)> within(double kerf) const {
+    if (!whole_) return {};
+    return [this, kerf](int triangle, const Vec3& place) {
+      const int element = mesh_.cells[at(surface_.triangle_cells[at(triangle)])].element;
+      return whole_->holds(element, place, kBeside * kerf);
+    };
+  }
+
+  void find_cells_of_whole() {
+    for (const ShellCell& cell : mesh_.cells) {
+      Vec2 middle = Vec2::Zero();
+      for (int i = 0; i < cell.corner_count; ++i) middle += corner(cell, i).barycentric;
+      whole_cells_.push_back(whole_->cell_at(cell.element, middle / cell.corner_count));
+    }
   }
 
   void collect_stretches() {
@@ -203,7 +227,7 @@ class SurfaceBuilder {
     });
   }
 
-  void triangulate() {
+  void number_vertices() {
     vertex_of_node_.assign(nodes_.size(), -1);
     std::vector<int> number(nodes_.size(), -1);
     for (Size n = 0; n < nodes_.size(); ++n) {
@@ -211,7 +235,6 @@ class SurfaceBuilder {
       if (vertex < 0) vertex = vertex_count_++;
       vertex_of_node_[n] = vertex;
     }
-    for (Size c = 0; c < mesh_.cells.size(); ++c) triangulate_cell(static_cast<int>(c));
   }
 
   void triangulate_cell(int c) {
@@ -222,7 +245,7 @@ class SurfaceBuilder {
     const int begin = first_node_[at(c)];
     std::vector<Vec2> flat;
     for (int n = begin; n < first_node_[at(c) + 1]; ++n) {
-      const Vec3 p = position_in_element(elements_, cell.element, nodes_[at(n)].barycentric) - origin;
+      const Vec3 p = place_of_node(c, n) - origin;
       flat.emplace_back(frame.col(0).dot(p), frame.col(1).dot(p));
     }
     for (const Triangle& t : clip_ears(flat)) add_triangle(c, {begin + t[0], begin + t[1], begin + t[2]});
@@ -256,23 +279,40 @@ class SurfaceBuilder {
         const int v = vertex_of_node_[at(n)];
         if (is_placed[at(v)]) continue;
         is_placed[at(v)] = 1;
-        surface_.mesh.positions[at(v)] =
-            position_in_element(elements_, mesh_.cells[c].element, nodes_[at(n)].barycentric);
+        Vec3& place = surface_.mesh.positions[at(v)];
+        place = position_in_element(elements_, mesh_.cells[c].element, nodes_[at(n)].barycentric);
+        if (whole_ && whole_cells_[c] >= 0) place = whole_->place(whole_cells_[c], place);
       }
   }
 
-  void add_normals(int c, int side, bool is_crack, std::vector<BorderNormal>& normals) const {
+  /// Of a crack face: whether the whole stood back from it already.
+  BorderKind kind_of_face(int c, int side) const {
+    if (!whole_ || whole_cells_[at(c)] < 0) return BorderKind::crack;
+    const ShellCell& cell = mesh_.cells[at(c)];
+    const Vec2 middle = 0.5 * (corner(cell, side).barycentric + corner(cell, side + 1).barycentric);
+    return whole_->is_on_crack(whole_cells_[at(c)], corner(cell, side).side_id, middle)
+               ? BorderKind::older_crack
+               : BorderKind::crack;
+  }
+
+  /// Before the kerf.
+  Vec3 place_of_node(int c, int n) const {
+    if (whole_) return surface_.mesh.positions[at(vertex_of_node_[at(n)])];
+    return position_in_element(elements_, mesh_.cells[at(c)].element, nodes_[at(n)].barycentric);
+  }
+
+  void add_normals(int c, int side, BorderKind kind, std::vector<BorderNormal>& normals) const {
     const ShellCell& cell = mesh_.cells[at(c)];
     const std::vector<int> ends = side_nodes(c, side);
-    const Vec3 a = position_in_element(elements_, cell.element, corner(cell, side).barycentric);
-    const Vec3 b = position_in_element(elements_, cell.element, corner(cell, side + 1).barycentric);
+    const Vec3 a = place_of_node(c, ends.front());
+    const Vec3 b = place_of_node(c, ends.back());
     const Vec3 normal = facet_frame(elements_, cell.element).col(2);
     const double length = (b - a).norm();
     if (!(length > 0.0)) return;
     const Vec3 inward = normal.cross(b - a) / length;
     const int id = corner(cell, side).side_id;
     for (const int n : {ends.front(), ends.back()})
-      normals.push_back({vertex_of_node_[at(n)], inward, is_crack, cell.element, id});
+      normals.push_back({vertex_of_node_[at(n)], inward, kind, cell.element, id});
   }
 
   std::vector<Vec3> triangle_normals() const {
@@ -288,9 +328,9 @@ class SurfaceBuilder {
     for (Size c = 0; c < mesh_.cells.size(); ++c)
       for (int s = 0; s < mesh_.cells[c].corner_count; ++s)
         if (corner(mesh_.cells[c], s).side == SideKind::crack)
-          add_normals(static_cast<int>(c), s, true, normals);
+          add_normals(static_cast<int>(c), s, kind_of_face(static_cast<int>(c), s), normals);
     for (Size i = 0; i < stretches_.size(); ++i)
-      if (!touches_[i]) add_normals(stretches_[i].cell, stretches_[i].side, false, normals);
+      if (!touches_[i]) add_normals(stretches_[i].cell, stretches_[i].side, BorderKind::rim, normals);
     std::stable_sort(normals.begin(), normals.end(),
                      [](const BorderNormal& a, const BorderNormal& b) { return a.vertex < b.vertex; });
     return normals;
@@ -298,6 +338,8 @@ class SurfaceBuilder {
 
   const ShellMesh& mesh_;
   const ShellElements& elements_;
+  const StandingSurface* whole_;
+  std::vector<int> whole_cells_;  // per cell, of the whole; empty without
   std::vector<SideStretch> stretches_;
   std::vector<SideStretch> facets_;
   std::vector<char> touches_;  // per stretch: material goes on there
@@ -312,8 +354,8 @@ class SurfaceBuilder {
 
 }  // namespace
 
-ShellSurface extract_surface(const ShellMesh& mesh, double kerf) {
-  return SurfaceBuilder(mesh).build(kerf);
+ShellSurface extract_surface(const ShellMesh& mesh, double kerf, const StandingSurface* whole) {
+  return SurfaceBuilder(mesh, whole).build(kerf);
 }
 
 MassProperties shell_mass_properties(const ShellMesh& mesh, double thickness, double density) {

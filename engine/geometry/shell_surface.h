@@ -21,10 +21,13 @@ struct ShellSurface {
   double least_kerf = 0.0;  // m: the narrowest stand-off of a crack vertex that is not a tip; kerf if none
 };
 
+class StandingSurface;
+
 /// The surface of a mesh. Every crack vertex stands back by `kerf` m from its crack faces, less where the
 /// material is narrower than four kerfs; at a crack's tip both lips meet. Without area there are no
-/// triangles.
-ShellSurface extract_surface(const ShellMesh& mesh, double kerf);
+/// triangles. A piece of what had been cut before stays within the surface of that `whole`, which stands
+/// back from the older faces already.
+ShellSurface extract_surface(const ShellMesh& mesh, double kerf, const StandingSurface* whole = nullptr);
 
 /// Mass, centre and inertia of the true cut polygons, kerf or not. `thickness` m, `density` kg/m3.
 MassProperties shell_mass_properties(const ShellMesh& mesh, double thickness, double density);

@@ -239,10 +239,11 @@ std::shared_ptr<stress::ShellSystemCache> make_systems(
 }
 
 std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& mesh, const Fragile& fragile,
-                                                    double thickness) {
+                                                    double thickness,
+                                                    const geometry::StandingSurface* whole) {
   auto shape = std::make_shared<body::Shape>();
   const double kerf = kKerf * fragile.size;
-  geometry::ShellSurface surface = geometry::extract_surface(mesh, kerf);
+  geometry::ShellSurface surface = geometry::extract_surface(mesh, kerf, whole);
   const geometry::MassProperties mass = geometry::shell_mass_properties(mesh, thickness, fragile.density);
   shape->kind = body::ShapeKind::shell;
   shape->surface = std::move(surface.mesh);

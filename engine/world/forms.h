@@ -4,6 +4,7 @@
 
 #include "engine/core/hash.h"
 #include "engine/core/result.h"
+#include "engine/geometry/standing_surface.h"
 #include "engine/world/description.h"
 #include "engine/world/fragile.h"
 
@@ -44,9 +45,10 @@ std::shared_ptr<stress::ShellSystemCache> make_systems(
     const fracture::ShellSubject& subject, std::shared_ptr<const stress::ShellStiffness> stiffness);
 
 /// The shape of a shell: the true cut gives mass, centre and inertia, the surface stands back from crack
-/// faces.
+/// faces and within that of the `whole` it was cut from, if that had been cut before.
 std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& mesh, const Fragile& fragile,
-                                                    double thickness);
+                                                    double thickness,
+                                                    const geometry::StandingSurface* whole = nullptr);
 
 /// Likewise of a piece of a solid (settled), which gets to know its surface.
 std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile);

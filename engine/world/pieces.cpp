@@ -1,6 +1,7 @@
 #include "engine/world/pieces.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/core/parallel.h"
 #include "engine/fracture/split_shell.h"
@@ -23,7 +24,7 @@ std::vector<fracture::CrackTip> tips_of_piece(const std::vector<fracture::CrackT
 }
 
 Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture::Decision& decision,
-                 double thickness) {
+                 double thickness, const geometry::StandingSurface* whole) {
   Piece piece;
   auto fragile = std::make_shared<Fragile>(parent);
   auto& subject = std::get<fracture::ShellSubject>(fragile->subject);
@@ -32,7 +33,7 @@ Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture
   subject.tips = tips_of_piece(decision.tips, *subject.mesh);
   piece.is_held = !subject.systems->support().empty();
   if (!piece.is_held) subject.clamped_vertices.clear();
-  piece.shape = make_shell_shape(*subject.mesh, *fragile, thickness);
+  piece.shape = make_shell_shape(*subject.mesh, *fragile, thickness, whole);
   piece.fragile = std::move(fragile);
   return piece;
 }
@@ -63,7 +64,19 @@ Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fractu
   return piece;
 }
 
-Pieces split_up(const Fragile& parent, const fracture::Decision& decision, double thickness) {
+/// Where a shell that has cracks already stands.
+std::optional<geometry::StandingSurface> standing_of(const Fragile& fragile, const body::Shape& shape) {
+  const geometry::ShellMesh& mesh = *std::get<fracture::ShellSubject>(fragile.subject).mesh;
+  const bool has_cracks = std::any_of(mesh.corners.begin(), mesh.corners.end(), [](const auto& corner) {
+    return corner.side == geometry::SideKind::crack;
+  });
+  if (!has_cracks) return std::nullopt;
+  std::vector<Vec3> placed = shape.surface.positions;
+  for (Vec3& p : placed) p += shape.material_from_body;
+  return geometry::StandingSurface(mesh, std::move(placed));
+}
+
+Pieces split_up(const Fragile& parent, const body::Shape& shape, const fracture::Decision& decision) {
   fracture::ShellSplit split =
       fracture::split_shell(*decision.mesh, decision.contacts, {kLeastWidth * parent.size});
   Pieces out;
@@ -72,8 +85,10 @@ Pieces split_up(const Fragile& parent, const fracture::Decision& decision, doubl
   for (const geometry::ShellCell& cell : decision.mesh->cells) area += cell.area;
   out.merged_share = area > 0.0 ? split.merged_area / area : 0.0;
   out.pieces.resize(split.pieces.size());
+  const std::optional<geometry::StandingSurface> standing = standing_of(parent, shape);
   core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
-    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, thickness);
+    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, shape.thickness,
+                               standing ? &*standing : nullptr);
   });
   return out;
 }
@@ -97,9 +112,9 @@ std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::Sol
   return cut_from(whole, decision, decision.complex);
 }
 
-Pieces make_pieces(const Fragile& parent, const EvaluatedImpact& impact, double thickness) {
+Pieces make_pieces(const Fragile& parent, const body::Shape& shape, const EvaluatedImpact& impact) {
   if (const auto* shell = std::get_if<fracture::Decision>(&impact.decision))
-    return split_up(parent, *shell, thickness);
+    return split_up(parent, shape, *shell);
   return split_up(parent, std::get<fracture::SolidDecision>(impact.decision));
 }
 

@@ -23,7 +23,7 @@ struct Pieces {
 /// What a solid's cracks that part nothing leave of it: its shape is what it was.
 std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::SolidDecision& decision);
 
-/// Splits what the decision of an impact on `parent` (of that thickness, m) left.
-Pieces make_pieces(const Fragile& parent, const EvaluatedImpact& impact, double thickness);
+/// Splits what the decision of an impact on `parent`, of that shape, left.
+Pieces make_pieces(const Fragile& parent, const body::Shape& shape, const EvaluatedImpact& impact);
 
 }  // namespace shatterbox::world

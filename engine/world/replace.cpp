@@ -147,7 +147,7 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   row.generation = memory.generation;
   row.place = impact.hardest.point_world;
 
-  Pieces split = make_pieces(*fragile, impact, thickness);
+  Pieces split = make_pieces(*fragile, *parent.shape, impact);
   row.merged = split.merged_count;
   row.merged_mass_share = split.merged_share;
   const std::vector<Piece>& pieces = split.pieces;

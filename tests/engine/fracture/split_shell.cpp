@@ -5,8 +5,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "engine/geometry/closest_points.h"
 #include "engine/geometry/crossings.h"
 #include "engine/geometry/shell_surface.h"
+#include "engine/geometry/standing_surface.h"
 #include "tests/engine/fracture/shapes.h"
 
 using namespace shatterbox;
@@ -208,4 +210,61 @@ TEST_CASE("a crack that ends inside is a slit whose lips meet at the tip") {
   const auto f = static_cast<long>(surface.mesh.triangles.size());
   CHECK(v - e + f == 1);
   CHECK(v == static_cast<long>(elements->mesh.positions.size()) + 2);
+}
+
+namespace {
+
+/// Where a surface is, in material space.
+double distance_to(const geometry::TriangleMesh& mesh, const Vec3& point) {
+  double nearest = 1e300;
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](std::size_t i) -> const Vec3& {
+      return mesh.positions[static_cast<std::size_t>(t[i])];
+    };
+    nearest =
+        std::min(nearest, geometry::closest_on_triangle(point, corner(0), corner(1), corner(2)).distance);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+TEST_CASE("a piece of a piece stays within the surface of the piece and keeps its own kerf") {
+  constexpr double kKerf = 1e-5;
+  for (const bool is_closed : {false, true}) {
+    const auto elements = is_closed ? test::make_sphere(0.04, 0.02) : test::make_pane(0.1, 0.03);
+    core::Random random(29, is_closed);
+    fracture::ShellCutter cutter(geometry::make_shell_mesh(elements));
+    for (int i = 0; i < 300; ++i) test::cut_at_random(cutter, random);
+    int children = 0, outside = 0, flipped = 0;
+    long crossing = 0;
+    for (const geometry::ShellMesh& piece : fracture::split_shell(cutter.mesh()).pieces) {
+      const auto stood = geometry::extract_surface(piece, kKerf);
+      const geometry::StandingSurface standing(piece, stood.mesh.positions);
+      fracture::ShellCutter again(piece);
+      for (int i = 0; i < 20; ++i) test::cut_at_random(again, random);
+      std::vector<geometry::TriangleMesh> born;
+      for (const geometry::ShellMesh& child : fracture::split_shell(again.mesh()).pieces) {
+        const auto surface = geometry::extract_surface(child, kKerf, &standing);
+        for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t) {
+          std::array<Vec3, 3> x;
+          for (std::size_t i = 0; i < 3; ++i)
+            x[i] = surface.mesh.positions[static_cast<std::size_t>(surface.mesh.triangles[t][i])];
+          const auto cell = static_cast<std::size_t>(surface.triangle_cells[t]);
+          const Vec3 normal = facet_frame(*elements, child.cells[cell].element).col(2);
+          flipped += (x[1] - x[0]).cross(x[2] - x[0]).dot(normal) <= 0.0;
+          for (std::size_t i = 0; i < 3; ++i)
+            for (const double share : {0.0, 0.5})
+              outside += distance_to(stood.mesh, x[i] + share * (x[(i + 1) % 3] - x[i])) > 1e-6 * kKerf;
+        }
+        born.push_back(surface.mesh);
+        ++children;
+      }
+      crossing += geometry::count_crossing_pairs(born);
+    }
+    CHECK(children > 150);
+    CHECK(outside == 0);
+    CHECK(flipped == 0);
+    CHECK(crossing == 0);
+  }
 }

@@ -1,0 +1,44 @@
+// Where the surface of a cut shell stands: the pieces of a piece stay within it, so that they are born inside
+// what stood there before and not in the gap to its neighbours.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/geometry/shell_mesh.h"
+
+namespace shatterbox::geometry {
+
+class StandingSurface {
+ public:
+  /// Of the surface of `mesh`: `placed` (|V|, m, material space) is where the vertices of
+  /// extract_surface(mesh, kerf) are now, whatever its kerf was.
+  StandingSurface(const ShellMesh& mesh, std::vector<Vec3> placed);
+
+  /// Number of the cell that holds a point of an element's material; -1 if the element has none.
+  int cell_at(int element, const Vec2& barycentric) const;
+
+  /// Where a point of a cell's polygon (material space, m) stands: affine in each triangle.
+  Vec3 place(int cell, const Vec3& point) const;
+
+  /// True if a point of a cell's border lies on a crack face of that number, open already.
+  bool is_on_crack(int cell, int side_id, const Vec2& barycentric) const;
+
+  /// True if a place in an element or beside it is on the surface as it stands, but for `tolerance` m.
+  bool holds(int element, const Vec3& place, double tolerance) const;
+
+ private:
+  struct Fold {  // a triangle before and after
+    Triangle vertices;
+    std::array<Vec3, 3> corners;
+  };
+
+  const ShellMesh& mesh_;
+  std::vector<Vec3> placed_;
+  std::vector<std::vector<int>> element_cells_;
+  std::vector<std::vector<int>> vertex_elements_;
+  std::vector<std::vector<Fold>> cell_triangles_;
+};
+
+}  // namespace shatterbox::geometry
