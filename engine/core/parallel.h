@@ -10,6 +10,8 @@ namespace shatterbox::core {
 
 /// Calls body(begin, end) on chunks of at most `grain` indices that cover [0, count); chunk borders depend on
 /// count and grain only. The chunks run in any order, possibly at once: each must write only what is its own.
+/// What one throws leaves the loop, when the chunks that were begun have ended; others are not begun then.
+/// Before each, `stop_if_asked` (stop.h).
 void parallel_chunks(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 #include "engine/dynamics/contact_friction.h"
 
 namespace shatterbox::dynamics {
@@ -320,6 +321,7 @@ class IslandSolver {
     double least_excess = 1e300;
     int least_round = 0;
     for (int round = 0; round < most; ++round) {
+      core::stop_if_asked();
       const bool is_on_course = round >= how.plain;
       if (round == how.plain) begin_course();
       if (is_on_course) note_impulses();
@@ -418,6 +420,7 @@ class IslandSolver {
     if (!is_due) return;
     const int most = most_sweeps(40);
     for (int sweep = 0; sweep < most; ++sweep) {
+      core::stop_if_asked();
       double excess = 0.0;
       for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
         SolverContact& c = work_.contacts[at(island_.contacts[k])];

@@ -8,6 +8,7 @@
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/core/stop.h"
 #include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/contact_solver.h"
 #include "engine/dynamics/motion_work.h"
@@ -92,6 +93,7 @@ class Guard {
 
   // Tests all pairs that are due; true if any path is not free.
   bool test() {
+    core::stop_if_asked();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       // What crosses passes, unless it has sides: that may not cross deeper.
       if (must_test_[p] && is_exempt(p) && !work_.pairs[p].has_sides) must_test_[p] = 0;

@@ -5,6 +5,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -123,6 +124,7 @@ void CrackTracer::run(std::array<LiveTip, 2>& tips, int count) {
   // A crack cannot visit more cells than there are; what runs on longer has lost its way.
   const int most_steps = 4 * static_cast<int>(elements_.mesh.triangles.size()) + 100;
   for (int step = 0; step < most_steps; ++step) {
+    core::stop_if_asked();
     LiveTip* next = nullptr;
     for (int i = 0; i < count; ++i)
       if (tips[at(i)].is_running && (!next || tips[at(i)].intensity > next->intensity)) next = &tips[at(i)];
@@ -225,6 +227,7 @@ void CrackTracer::nucleate(std::vector<Candidate> candidates) {
     return a.overload != b.overload ? a.overload > b.overload : a.number < b.number;
   });
   for (const Candidate& candidate : candidates) {
+    core::stop_if_asked();
     if (is_out_of_energy_) return;
     if (!is_shielded(candidate)) try_start(candidate);
   }

@@ -7,6 +7,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/hash.h"
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -91,6 +92,7 @@ std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>&
   const double reach = reach_of(setup);
   std::vector<Seed> seeds;
   for (const SurfacePoint& dart : darts) {
+    core::stop_if_asked();
     const Vec3 x = position_in_element(part, dart.element, dart.barycentric);
     const double distance = (x - setup.centre).norm();
     if (distance > reach) continue;
@@ -132,6 +134,7 @@ class Crusher {
     std::vector<std::pair<int, std::vector<std::vector<ShellCorner>>>> cuts;
     std::vector<char> is_used(seeds_.size(), 0);
     for (const int element : elements_) {
+      core::stop_if_asked();
       if (!(planes_[at(element)].scale > 0.0) || cutter_.cells_of(element).empty()) continue;
       const std::vector<Energy> energies = energies_of(element);
       const auto is_inside = [this](const Energy& e) { return is_crushed_[at(e.seed)] != 0; };
@@ -246,6 +249,7 @@ class Crusher {
     std::vector<std::vector<ShellCorner>> parts;
     std::vector<int> owners;
     for (const Energy& own : energies) {
+      core::stop_if_asked();
       std::vector<ShellCorner> part = cell.polygon;
       for (const Energy& other : energies) {
         if (other.seed == own.seed) continue;

@@ -21,6 +21,7 @@ using core::at;
 
 constexpr double kCoreOverload = 5.0;       // stress over strength above which the core is crushed
 constexpr double kCoreReach = 6.0;          // patch radii
+constexpr double kMostCoreCells = 40.0;     // across a core's radius
 constexpr double kCurvatureReach = 2.0;     // patch radii, about which the curvature is taken
 constexpr double kFlat = 1e6;               // body sizes: a greater radius of curvature is none
 constexpr double kWaveLength = 0.14;        // of the paths' noise, share of the body's size
@@ -234,7 +235,8 @@ class Decider {
       core.patch_radius = press.contact.radius;
       core.radius = crushed_radius(elements(), overloads, core.centre, kCoreReach * core.patch_radius);
       if (!(core.radius > 0.0)) continue;
-      core.cell_size = settings_.core_spacing * subject_.thickness;
+      // A core that is very wide against the thickness has coarser cells: of more nothing could be made.
+      core.cell_size = std::max(settings_.core_spacing * subject_.thickness, core.radius / kMostCoreCells);
       core.crack = next_crack_;
       core.generation = decision_.generations;
       core.seed = core::mix(subject_.seed + i + 0x636f7265);

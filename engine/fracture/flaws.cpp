@@ -7,6 +7,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/random.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -77,7 +78,8 @@ void pierce(const LineFamily& family, const geometry::ShellElements& elements, i
   const Vec2 low = flat[0].cwiseMin(flat[1]).cwiseMin(flat[2]) / family.square;
   const Vec2 high = flat[0].cwiseMax(flat[1]).cwiseMax(flat[2]) / family.square;
   for (auto i = static_cast<std::int64_t>(std::floor(low.x()));
-       i <= static_cast<std::int64_t>(std::floor(high.x())); ++i)
+       i <= static_cast<std::int64_t>(std::floor(high.x())); ++i) {
+    core::stop_if_asked();
     for (auto j = static_cast<std::int64_t>(std::floor(low.y()));
          j <= static_cast<std::int64_t>(std::floor(high.y())); ++j) {
       lines_of_square(family, i, j, lines);
@@ -91,6 +93,7 @@ void pierce(const LineFamily& family, const geometry::ShellElements& elements, i
         if (core::Random(key, 1).uniform() < share) points.push_back({element, barycentric, key});
       }
     }
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -136,6 +137,7 @@ void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
 /// force opens in its middle.
 void SolidTracer::grow() {
   while (!fronts_.empty()) {
+    core::stop_if_asked();
     std::pop_heap(fronts_.begin(), fronts_.end());
     const int cell = fronts_.back().cell;
     const double solved = fronts_.back().intensity;
@@ -380,6 +382,7 @@ void SolidTracer::nucleate(std::vector<SolidCandidate> candidates, std::vector<O
     return a.overload != b.overload ? a.overload > b.overload : a.number < b.number;
   });
   for (const SolidCandidate& candidate : candidates) {
+    core::stop_if_asked();
     if (is_out_of_energy_) return;
     if (!is_shielded(candidate)) start(candidate, cracks);
   }

@@ -6,6 +6,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -226,6 +227,7 @@ ShellSplit split_shell(const ShellMesh& mesh, std::vector<CellContact> contacts,
   ShellSplit split;
   ShellMesh whole = mesh;
   for (int pass = 0; settings.least_width > 0.0 && pass < kMergePasses; ++pass) {
+    core::stop_if_asked();
     if (!Merger(whole, settings.least_width).merge_once(contacts, split)) break;
     contacts = find_cell_contacts(whole);
   }
@@ -250,6 +252,7 @@ ShellSplit split_shell(const ShellMesh& mesh, std::vector<CellContact> contacts,
     own_contacts[at(piece)].push_back(contact);
   }
   for (Size p = 0; p < split.pieces.size(); ++p) {
+    core::stop_if_asked();
     split.pieces[p].elements = whole.elements;
     assign_degrees_of_freedom(split.pieces[p], own_contacts[p]);
   }

@@ -8,6 +8,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -91,6 +92,7 @@ SolidSplit split_solid(SolidComplex complex, double least_width) {
   settle(complex);
   std::vector<SolidContact> contacts = find_solid_contacts(complex);
   for (int pass = 0; pass < kMergeRounds; ++pass) {
+    core::stop_if_asked();
     if (!merge_once(complex, contacts, least_width, split)) break;
     contacts = find_solid_contacts(complex);
   }
@@ -112,6 +114,7 @@ SolidSplit split_solid(SolidComplex complex, double least_width) {
   std::vector<std::array<int, 2>> own_number(whole.vertex_source.size(), {-1, -1});  // piece, number in it
   geometry::PieceExtractor extractor(complex);
   for (const int p : order) {
+    core::stop_if_asked();
     SolidPiece piece;
     piece.complex = extractor.extract(cells[at(p)]);
     piece.mesh.elements = whole.elements;

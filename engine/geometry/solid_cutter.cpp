@@ -6,6 +6,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 #include "engine/geometry/ring_triangles.h"
 
 namespace shatterbox::geometry {
@@ -108,8 +109,10 @@ void SolidCutter::cut(const SolidCut& cut) {
     if (!is_border(facet)) split_edges(facet, cut, false);
   for (Size i = 0; i < touched_.size(); ++i) split_facet(touched_[i]);  // grows by their parts
   const int count = static_cast<int>(complex_.cells.size());
-  for (const int c : cut.cells)
+  for (const int c : cut.cells) {
+    core::stop_if_asked();
     if (c < count && cell_marks_[at(c)].sign == 0) divide_cell(c, cut);
+  }
   open_facets_in_surface(cut);
 }
 

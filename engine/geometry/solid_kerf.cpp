@@ -6,6 +6,7 @@
 #include <map>
 
 #include "engine/core/index.h"
+#include "engine/core/stop.h"
 #include "engine/geometry/bvh.h"
 #include "engine/geometry/crossings.h"
 #include "engine/geometry/solid_parting.h"
@@ -115,6 +116,7 @@ void limit(const SolidSurface& surface, std::vector<Vec3>& shift) {
       shift[v] *= kShareOfWidth * way_to_face(still, static_cast<int>(v), shift[v], 1.0 / kShareOfWidth);
   BoxedMesh moved(mesh.positions, mesh.triangles);
   for (int round = 0; round < 2 * kHalvings; ++round) {
+    core::stop_if_asked();
     for (Size v = 0; v < shift.size(); ++v) moved.positions[v] = mesh.positions[v] + shift[v];
     moved.update();
     std::vector<char> is_marked(shift.size(), 0);

@@ -7,6 +7,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -44,6 +45,7 @@ class Solver {
     }
     const double enough = settings.tolerance * settings.tolerance;
     for (int iteration = 1; iteration <= settings.most_iterations; ++iteration) {
+      core::stop_if_asked();
       if (std::none_of(is_open.begin(), is_open.end(), [](bool open) { return open; })) break;
       turn_direction(beta);
       const Lane<kLanes> curvature = multiply_direction();

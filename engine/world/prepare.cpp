@@ -106,6 +106,7 @@ void World::prepare() {
   }
   fracture::FractureSettings once;
   once.most_generations = 1;
+  once.core_spacing = 0.0;  // what is crushed comes after the last solve
   core::parallel_for(trials.size(), 1, [&](std::size_t i) {
     fracture::Impact impact;
     impact.loads = {trials[i].load};

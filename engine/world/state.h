@@ -3,11 +3,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/core/stop.h"
 #include "engine/dynamics/paper_motion.h"
 #include "engine/dynamics/step_motion.h"
 #include "engine/world/acts.h"
@@ -29,6 +31,20 @@ struct MovingState {
   body::BodyId next_id = 1;
 };
 
+/// The state at the begin of the present step, for a step that is asked to stop. Rows of the report only
+/// grow.
+struct StepBegin {
+  std::optional<MovingState> moving;  // nothing yet: the present part's snapshot is it
+  std::optional<std::map<body::BodyId, std::shared_ptr<const std::vector<double>>>> element_stress;
+  std::vector<dynamics::Hand> hands;
+  ConservationFigures conservation;
+  SolverFigures solver;
+  std::size_t impacts = 0, breaks = 0;
+  long triangles_most = 0, tetrahedra_end = 0, tetrahedra_most = 0;
+  double last_energy = 0.0;
+  bool is_disturbed = true;
+};
+
 struct World::State {
   WorldSettings settings;
   std::vector<material::Material> materials;
@@ -45,6 +61,8 @@ struct World::State {
   std::map<body::BodyId, Ancestry> ancestry;
   std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;
   WorldReport report;
+  core::StopQuestion wants_to_stop;  // empty: nobody asks
+  StepBegin begin;                   // of the present step
   long steps = 0;
   std::uint64_t hash = 0;
   double last_energy = 0.0;  // J

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "engine/core/stop.h"
 #include "engine/dynamics/scripted_motion.h"
 #include "engine/world/pieces.h"
 #include "engine/world/replace.h"
@@ -169,18 +170,41 @@ int World::count_parts_instead(const dynamics::StepPart& part, const dynamics::C
              : dynamics::count_parts_instead(s.contact_settings, part, moved);
 }
 
-void World::step() {
+bool World::step() {
+  State& s = *state_;
+  if (s.wants_to_stop && s.wants_to_stop()) return false;
+  if (s.steps == 0) s.report.bodies_start = static_cast<int>(s.moving.bodies.size());
+  s.begin = note_begin();
+  s.borne.clear();
+  s.log.clear();
+  dynamics::ContactReport contact;
+  MovingState snapshot;
+  try {
+    // Only what may break has a snapshot to go back to, and steps that last.
+    const core::StopScope scope(s.moving.fragiles.empty() ? nullptr : &s.wants_to_stop);
+    take_parts(contact, snapshot);
+  } catch (const core::Stopped&) {
+    put_back(std::move(snapshot));
+    return false;
+  }
+  s.begin = {};
+  s.blasts.clear();
+  for (dynamics::Hand& hand : s.hands) hand.velocity.setZero();
+  s.ways = std::move(contact.ways);
+  book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
+  book_scripted(s.moving.bodies, s.report.scripted);
+  ++s.steps;
+  s.report.steps = s.steps;
+  s.hash = s.report.stages.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
+  return true;
+}
+
+void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) {
   State& s = *state_;
   core::StageTimer& timer = s.report.stages;
   const bool may_break = !s.moving.fragiles.empty();
-  if (s.steps == 0) s.report.bodies_start = static_cast<int>(s.moving.bodies.size());
-
-  dynamics::ContactReport contact;
-  s.borne.clear();
-  s.log.clear();
   dynamics::StepPart part{0, count_parts()};
   for (int pass = 0; part.number < part.count;) {
-    MovingState snapshot;
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     body::ImpulseLog given = act(part);
     const std::vector<body::Body> before = s.moving.bodies;
@@ -205,6 +229,8 @@ void World::step() {
     book_conservation(before, log, s.contact_settings.time_step / part.count);
     s.log.insert(s.log.end(), given.begin(), given.end());
     dynamics::add_part(std::move(moved), contact);
+    if (s.wants_to_stop && !s.begin.moving)
+      s.begin.moving = std::move(snapshot);  // the next part has its own
     ++part.number;
     pass = 0;
   }
@@ -213,14 +239,6 @@ void World::step() {
     timer.time("sleep",
                [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   }
-  s.blasts.clear();
-  for (dynamics::Hand& hand : s.hands) hand.velocity.setZero();
-  s.ways = std::move(contact.ways);
-  book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
-  book_scripted(s.moving.bodies, s.report.scripted);
-  ++s.steps;
-  s.report.steps = s.steps;
-  s.hash = timer.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
 }
 
 std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log) {
@@ -253,6 +271,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
       continue;
     }
     if (impact.is_cracked_only()) {
+      keep_begin(snapshot);
       const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
       const auto fragile = cracked(*s.moving.fragiles.at(impact.id), decision);
       s.moving.fragiles[impact.id] = snapshot.fragiles[impact.id] = fragile;
@@ -273,6 +292,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     broken.push_back(&impact);
   }
   if (broken.empty()) return false;
+  keep_begin(snapshot);
 
   const bool goes_back = s.settings.after_break == AfterBreak::go_back;
   if (goes_back) {

@@ -11,6 +11,7 @@
 #include "engine/body/impulse_log.h"
 #include "engine/body/way.h"
 #include "engine/core/result.h"
+#include "engine/core/stop.h"
 #include "engine/dynamics/blast.h"
 #include "engine/material/material.h"
 #include "engine/world/description.h"
@@ -27,6 +28,7 @@ namespace shatterbox::world {
 
 struct EvaluatedImpact;
 struct MovingState;
+struct StepBegin;
 
 /// The last evaluated stress of a shell, for pictures: greatest principal stress over both faces and the
 /// event, Pa.
@@ -84,8 +86,13 @@ class World {
   /// From now on `ways` tells how bodies went through the last step. Changes no result.
   void keep_ways();
 
-  /// Advances by one step of 1 / steps_per_second seconds.
-  void step();
+  /// How long steps are asked whether to end: often, and from several threads at once. Where much breaks into
+  /// very much, a step can take minutes.
+  void set_stop(core::StopQuestion wants_to_stop);
+
+  /// Advances by one step of 1 / steps_per_second seconds. False if it was asked to stop: then everything is
+  /// as before the step, but for the times of its stages and pictures of stress, and it can be taken again.
+  bool step();
 
   std::span<const body::Body> bodies() const;
   const material::Material& material(int number) const;
@@ -111,6 +118,13 @@ class World {
  private:
   struct State;
 
+  /// What a step leaves behind if it is abandoned: nothing.
+  StepBegin note_begin() const;
+  void keep_begin(const MovingState& snapshot);
+  void put_back(MovingState&& snapshot);
+
+  /// All parts of the step, up to sleep. `snapshot`: at the begin of the part that is taken.
+  void take_parts(dynamics::ContactReport& contact, MovingState& snapshot);
   int count_parts() const;
   int count_parts_instead(const dynamics::StepPart& part, const dynamics::ContactReport& moved) const;
   /// Stages "explosions" and "hands", of one part of the step.

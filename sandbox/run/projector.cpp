@@ -20,6 +20,7 @@ Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& bu
       frames_per_second_(frames_per_second),
       slots_(slots) {
   if (has_audit) built_.world.keep_ways();
+  built_.world.set_stop(is_interrupted);
 }
 
 double Projector::steps_at(double film) const {
@@ -46,7 +47,7 @@ script::Sight Projector::look() {
   return {view.position, view.target, height * right, height * right.cross(way).normalized()};
 }
 
-void Projector::step(double film) {
+bool Projector::step(double film) {
   world::World& world = built_.world;
   for (std::string& fault : script_.play(built_, [this] { return look(); }))
     recorder_.record.warnings.push_back(std::move(fault));
@@ -61,8 +62,9 @@ void Projector::step(double film) {
     steps_before_ = world.steps();
   }
   inspector_.begin_step(world);
-  world.step();
+  if (!world.step()) return false;
   inspector_.end_step(world);
+  return true;
 }
 
 double Projector::time_ahead() const {
@@ -78,8 +80,7 @@ std::optional<view::Moment> Projector::next() {
     return frame > 0 && script_.clock().simulated_at(middle) > scene_.seconds * (1.0 + 1e-12);
   };
   while (!is_over() && static_cast<double>(world.steps()) < steps_at(film) && !is_interrupted()) {
-    step(film);
-    recorder_.note_step(world);
+    if (step(film)) recorder_.note_step(world);
   }
   if (is_over() || is_interrupted()) return std::nullopt;
   const script::FilmClock& clock = script_.clock();
@@ -93,7 +94,7 @@ std::optional<view::Moment> Projector::next() {
 
 void Projector::finish() {
   const auto last_step = static_cast<long>(scene_.seconds * scene_.world.steps_per_second + 0.5);
-  while (built_.world.steps() < last_step && !is_interrupted()) step(1e300);
+  while (built_.world.steps() < last_step && !is_interrupted()) (void)step(1e300);
 }
 
 }  // namespace shatterbox::sandbox::run

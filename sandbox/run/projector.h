@@ -33,7 +33,8 @@ class Projector {
   void finish();
 
  private:
-  void step(double film);
+  /// False if the step was broken off, because the run is interrupted.
+  bool step(double film);
   /// Before the coming step.
   view::Moment now() const;
   view::Whereabouts whereabouts() const;

@@ -216,7 +216,7 @@ int run_scene(const Options& options) {
     fmt::print(stderr, "for example: shatterbox run ornament -o ornament.mp4\n");
     return kBadInput;
   }
-  catch_interrupts();
+  heed_interrupts();
   core::set_thread_count(options.threads);
   scene::Problems problems;
   const std::vector<std::string> files = scene::shots_or_scene(options.scene);
@@ -247,6 +247,7 @@ int run_scene(const Options& options) {
     if (!settings.empty() && !problems.empty()) break;  // the others have the same ones
   }
   if (!problems.empty()) return refuse(problems);
+  catch_interrupts();
   return play_all(shots);
 }
 

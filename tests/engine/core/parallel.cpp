@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/elementary.h"
+#include "engine/core/stop.h"
 
 namespace shatterbox::core {
 
@@ -61,6 +62,40 @@ TEST_CASE("a loop inside a loop ends, and a grain of zero counts as one") {
   parallel_for(8, 1, [&](std::size_t) { parallel_for(8, 0, [&](std::size_t) { ++visits; }); });
   set_thread_count(0);
   CHECK(visits == 64);
+}
+
+TEST_CASE("what a chunk throws leaves its loop, and a question is asked on every thread of it") {
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    CHECK_THROWS_AS(parallel_for(100, 1, [](std::size_t i) { i == 40 ? throw Stopped() : void(); }), Stopped);
+    std::atomic<int> asked = 0, worked = 0;
+    const StopQuestion question = [&asked] { return ++asked > 50; };
+    const auto work = [&] {
+      const StopScope scope(&question);
+      parallel_for(1000, 1, [&](std::size_t) { ++worked; });
+    };
+    CHECK_THROWS_AS(work(), Stopped);
+    CHECK(worked == 50);
+    CHECK_NOTHROW(parallel_for(10, 1, [](std::size_t) { stop_if_asked(); }));  // the scope is over
+  }
+  set_thread_count(0);
+}
+
+TEST_CASE("a loop within a loop is whole, though another chunk of the outer one throws") {
+  set_thread_count(3);
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> broken = 0;
+    CHECK_THROWS_AS(parallel_for(8, 1,
+                                 [&](std::size_t i) {
+                                   if (i == 5) throw Stopped();
+                                   std::atomic<int> inner = 0;
+                                   parallel_for(200, 1, [&](std::size_t) { ++inner; });
+                                   broken += inner == 200 ? 0 : 1;
+                                 }),
+                    Stopped);
+    CHECK(broken == 0);
+  }
+  set_thread_count(0);
 }
 
 }  // namespace shatterbox::core

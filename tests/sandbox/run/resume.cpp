@@ -1,6 +1,7 @@
 // Work is not lost: runs that are killed, and what --resume makes of what they leave.
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cmath>
 #include <random>
 
 #include "tests/sandbox/run/running.h"
@@ -106,6 +107,39 @@ TEST_CASE("what was interrupted with Ctrl-C goes on too") {
   CHECK(resumed["frame_hashes"] == whole["frame_hashes"]);
   CHECK(resumed.value("kept_frames", 0) <= frames);
   CHECK(count_frames(folder, "v.mp4") == 480);
+}
+
+TEST_CASE("Ctrl-C breaks off a step that takes seconds, and the run goes on to the same end", "[.]") {
+  const Folder folder;
+  std::string scene = kBreakingScene;
+  scene.replace(scene.find("edge_length = 0.03"), 18, "edge_length = 0.0015");
+  folder.write("pane.toml", scene);
+  const std::string arguments = "run pane.toml --seconds 0.25 --size 64x48 -o v.mp4 --report r.json";
+  REQUIRE(program(folder, arguments).status == 0);
+  const auto whole = read_json(folder / "r.json");
+  REQUIRE(whole["breaks"].size() > 0);
+  const long step = std::lround(whole["breaks"][0]["time"].get<double>() * 240.0);
+  int broken_off = 0;
+  for (const char* later : {"0.5", "1.5", "2.5"}) {
+    fs::remove(folder / "v.mp4");
+    // A run that does not heed the signal within a minute is killed.
+    const Outcome cut =
+        shell(folder, "timeout -s KILL 60 " SHATTERBOX_PROGRAM " " + arguments +
+                          " & p=$!; for i in $(seq 600); do [ -s v.mp4.part ] && break; sleep "
+                          "0.05; done; sleep " +
+                          later + "; kill -INT $(pgrep -P $p); wait $p");
+    INFO(later << "\n" << cut.out << cut.err);
+    REQUIRE(cut.status == 3);
+    const auto json = read_json(folder / "r.json");
+    CHECK(json["interrupted"] == true);
+    CHECK(count_frames(folder, "v.mp4") > 0);
+    broken_off += json["steps"] == step - 1 && json["breaks"].empty() ? 1 : 0;
+    REQUIRE(program(folder, arguments + " --resume").status == 0);
+    const auto resumed = read_json(folder / "r.json");
+    CHECK(resumed["state_hash"] == whole["state_hash"]);
+    CHECK(resumed["frame_hashes"] == whole["frame_hashes"]);
+  }
+  CHECK(broken_off > 0);
 }
 
 TEST_CASE("a checkpoint is of one run only: another one is refused in words") {
