@@ -9,6 +9,7 @@
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_graph.h"
+#include "engine/dynamics/joint_work.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/pair_contacts.h"
 #include "engine/dynamics/pair_search.h"
@@ -286,6 +287,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     work.has_scripted = work.has_scripted || !work.bodies.back().rides.empty();
   }
   if (!anything_moves) return;
+  list_joints(state, work);
   for (WorkBody& w : work.bodies) look_about(settings, w.predicted, w);
   match_pairs(bodies, find_pairs(bodies, work), work, state);
 
@@ -316,6 +318,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
     find_pair_contacts(settings, work, state.pairs[at(work.pairs[p].state)], work.pairs[p]);
   });
+  forget_joined_contacts(work);
   find_sleepers_to_wake(bodies, settings, work);
   build_contact_graph(state, work);
 }

@@ -76,6 +76,12 @@ void build_islands(MotionWork& work) {
     if (a.is_free || b.is_free) continue;
     joined.unite(c.a, c.b);
   }
+  for (const WorkJoint& joint : work.joints) {
+    WorkBody &a = work.bodies[at(joint.a)], &b = work.bodies[at(joint.b)];
+    if (a.inverse_mass > 0.0) a.is_free = false;
+    if (b.inverse_mass > 0.0) b.is_free = false;
+    if (!a.is_free && !b.is_free) joined.unite(joint.a, joint.b);
+  }
   std::vector<int> number(work.bodies.size(), -1);
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     if (work.bodies[i].is_free) continue;
@@ -90,6 +96,10 @@ void build_islands(MotionWork& work) {
     const SolverContact& c = work.contacts[i];
     const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
     work.islands[at(number[at(joined.find(member))])].contacts.push_back(static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < work.joints.size(); ++i) {
+    const int member = work.bodies[at(work.joints[i].a)].is_free ? work.joints[i].b : work.joints[i].a;
+    work.islands[at(number[at(joined.find(member))])].joints.push_back(static_cast<int>(i));
   }
 }
 

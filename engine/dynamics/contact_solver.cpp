@@ -6,6 +6,7 @@
 #include "engine/core/index.h"
 #include "engine/core/stop.h"
 #include "engine/dynamics/contact_friction.h"
+#include "engine/dynamics/joint_solver.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -29,7 +30,11 @@ Moved moved(const WorkBody& body, int substeps) {
 class IslandSolver {
  public:
   IslandSolver(const ContactSettings& settings, const Island& island, MotionWork& work)
-      : settings_(settings), island_(island), work_(work), step_(settings.time_step / settings.substeps) {}
+      : settings_(settings),
+        island_(island),
+        work_(work),
+        step_(settings.time_step / settings.substeps),
+        joints_(island, step_, work) {}
 
   void run() {
     begin();
@@ -69,6 +74,7 @@ class IslandSolver {
       b.substep_rotations.clear();
       place_inertia(b);
     }
+    joints_.begin();
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
       const WorkBody &a = body(c.a), &b = body(c.b);
@@ -92,13 +98,19 @@ class IslandSolver {
   // other.
   void ride(int substep) {
     if (!work_.has_scripted) return;
+    const auto ride_on = [&](int k) {
+      WorkBody& b = body(k);
+      if (b.rides.empty()) return;
+      b.velocity = b.rides[at(substep)].velocity;
+      b.spin = b.rides[at(substep)].spin;
+    };
     for (const int i : island_.contacts) {
-      for (const int k : {work_.contacts[at(i)].a, work_.contacts[at(i)].b}) {
-        WorkBody& b = body(k);
-        if (b.rides.empty()) continue;
-        b.velocity = b.rides[at(substep)].velocity;
-        b.spin = b.rides[at(substep)].spin;
-      }
+      ride_on(work_.contacts[at(i)].a);
+      ride_on(work_.contacts[at(i)].b);
+    }
+    for (const int i : island_.joints) {
+      ride_on(work_.joints[at(i)].a);
+      ride_on(work_.joints[at(i)].b);
     }
   }
 
@@ -135,6 +147,7 @@ class IslandSolver {
   // Arms, gap and response at the present pose. Both bodies feel the impulse at one and the same point:
   // angular momentum is kept to rounding.
   void prepare(int substeps) {
+    joints_.place(substeps);
     for (const int i : island_.contacts) {
       SolverContact& c = work_.contacts[at(i)];
       const WorkBody &a = body(c.a), &b = body(c.b);
@@ -335,6 +348,8 @@ class IslandSolver {
         has_strain =
             has_strain || (c.has_sides && lasting > c.strained_from) || (c.is_close && c.impulse[0] > 0.0);
       }
+      hold_joints();
+      if (count == 0) return;
       const double enough = round + 1 < how.plain ? how.enough : how.loose;
       if (excess < (has_strain ? how.tight : enough)) return;
       // What is jammed has no solution.
@@ -347,6 +362,9 @@ class IslandSolver {
       if (is_on_course && round + 1 < most) go_on_course();
     }
   }
+
+  // All joints at once, after each sweep of the contacts.
+  void hold_joints() { joints_.hold(is_before_drift_ ? kJointShare : 0.0); }
 
   double target_before_drift(const SolverContact& c) const {
     // What touches is held where it is; letting it use up the last of its gap would drop and catch it in
@@ -380,12 +398,14 @@ class IslandSolver {
       is_pushed_apart = is_pushed_apart || (c.impulse[0] < pressed && found > tolerance);
       return found / tolerance;
     };
-    sweep({has_arrivals_ ? most_sweeps(16) : 1, 1.0, 1e300, kStrainedGap}, hold);
+    const int calm = joints_.is_empty() ? 1 : most_sweeps(kJointSweeps);
+    sweep({has_arrivals_ ? most_sweeps(16) : calm, 1.0, 1e300, kStrainedGap}, hold);
     // What came free must not be thrown by what wedged it. To press on would only strain what is wedged
     // still.
     for (int round = 1; is_pushed_apart && !has_arrivals_ && round < most_sweeps(16); ++round) {
       is_pushed_apart = false;
       for (std::size_t k = 0; k < island_.contacts.size(); ++k) hold(k, contact(k));
+      hold_joints();
     }
   }
 
@@ -431,6 +451,7 @@ class IslandSolver {
         see(k, c);
         excess = std::max(excess, found / speed);
       }
+      hold_joints();
       if (excess < kBounced) break;
     }
     for (const int i : island_.contacts) {
@@ -464,6 +485,7 @@ class IslandSolver {
   // An impact's impulse says nothing about the next substep: the bodies in it start that one from what was
   // before.
   void book() {
+    joints_.book();
     for (const int i : island_.bodies) body(i).is_struck = false;
     for (const int i : island_.contacts) {
       const SolverContact& c = work_.contacts[at(i)];
@@ -510,11 +532,14 @@ class IslandSolver {
   static constexpr double kBounced = 1e-9;      // of the speed: error of a bounce
   static constexpr double kStill = 0.25;        // of what a sweep may leave
   static constexpr double kFastSpin = 0.005;    // rad a substep
+  static constexpr double kJointShare = 0.3;    // of what a joint is off, closed in a substep
+  static constexpr int kJointSweeps = 8;        // of an island with joints in which nothing arrives
 
   const ContactSettings& settings_;
   const Island& island_;
   MotionWork& work_;
   const double step_;
+  JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
   std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island

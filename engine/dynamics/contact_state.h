@@ -13,6 +13,7 @@
 #include "engine/core/vec.h"
 #include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
+#include "engine/dynamics/joint.h"
 
 namespace shatterbox::dynamics {
 
@@ -67,6 +68,7 @@ struct SearchShelf {
 struct ContactState {
   std::vector<PairState> pairs;   // ascending (body_a, body_b)
   std::vector<BodyState> bodies;  // ascending id
+  std::vector<Joint> joints;      // ascending number; those that hold
   double substep = 0.0;           // s, of the impulses that contacts remember
   int next_parts = 1;             // in which the next step is taken: many bodies collide
   std::shared_ptr<SearchShelf> shelf = std::make_shared<SearchShelf>();

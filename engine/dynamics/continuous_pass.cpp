@@ -11,6 +11,7 @@
 #include "engine/core/stop.h"
 #include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/contact_solver.h"
+#include "engine/dynamics/joint_work.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/opening.h"
 #include "engine/dynamics/path_test.h"
@@ -307,6 +308,7 @@ class Guard {
       const double kept = all_the_way || time < 0.05 ? 0.0 : 0.8 * time;
       for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) share[at(i)] = std::min(share[at(i)], kept);
     }
+    stop_together(share);
     std::vector<char> has_moved(work_.bodies.size(), 0);
     for (std::size_t i = 0; i < work_.bodies.size(); ++i) {
       WorkBody& w = work_.bodies[i];
@@ -315,6 +317,18 @@ class Guard {
       shorten(w, share[i]);
     }
     mark_due_with(has_moved);
+  }
+
+  // Who is joined goes as far as the one who is stopped first.
+  void stop_together(std::vector<double>& share) {
+    if (work_.joints.empty()) return;
+    core::DisjointSets joined = join_bodies(work_);
+    std::vector<double> least(share.size(), 1.0);
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      double& of_all = least[at(joined.find(static_cast<int>(i)))];
+      of_all = std::min(of_all, share[i]);
+    }
+    for (std::size_t i = 0; i < share.size(); ++i) share[i] = least[at(joined.find(static_cast<int>(i)))];
   }
 
   // Poses stay; velocities lose what closes between the bodies of a zone, by impulses between them, and what

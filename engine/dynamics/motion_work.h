@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/body/body.h"
@@ -13,6 +14,7 @@
 #include "engine/dynamics/contact_settings.h"
 #include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
+#include "engine/dynamics/joint.h"
 #include "engine/dynamics/rest.h"
 #include "engine/geometry/bvh.h"
 
@@ -161,9 +163,29 @@ struct WorkPair {
   double work = 0.0;  // J, of its impulses in this substep
 };
 
+struct WorkJoint {
+  int a = 0, b = 0;  // numbers of the bodies
+  int state = 0;     // number in ContactState::joints
+  const Joint* joint = nullptr;
+
+  // At the present pose: one point for both bodies, the axes of a's frame, and how far a is off, m and rad.
+  Vec3 point = Vec3::Zero(), arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();
+  Vec3 off = Vec3::Zero(), off_turn = Vec3::Zero();
+  // N s by m/s, and N m s by rad/s; of a square metre of the first kind.
+  double stiffness = 0.0, linear_stiffness = 0.0;
+  Mat3 turn_stiffness = Mat3::Zero();
+
+  Vec3 given = Vec3::Zero(), given_couple = Vec3::Zero();  // N s, N m s on a in this substep, world
+  // Of the whole step: in the joint's axes as they were, and in the world's.
+  Vec3 total = Vec3::Zero(), total_couple = Vec3::Zero();
+  Vec3 total_world = Vec3::Zero(), total_couple_world = Vec3::Zero();
+};
+
 struct Island {
   std::vector<int> bodies;    // dynamic ones, ascending
   std::vector<int> contacts;  // ascending
+  std::vector<int> joints;    // ascending
 };
 
 class MotionWork {
@@ -171,6 +193,8 @@ class MotionWork {
   std::vector<WorkBody> bodies;  // as many as the world's, same order
   std::vector<WorkPair> pairs;   // ascending
   std::vector<SolverContact> contacts;
+  std::vector<WorkJoint> joints;
+  std::vector<std::pair<int, int>> joined, pivots;  // pairs of bodies, by area and about a point; ascending
   std::vector<Island> islands;
   std::vector<Disturbance> to_wake;  // sleepers that something comes down on
   std::vector<body::BodyId> ids;

@@ -6,6 +6,7 @@
 #include "engine/collision/broad_phase.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/dynamics/joint_work.h"
 #include "engine/dynamics/turned_box.h"
 
 namespace shatterbox::dynamics {
@@ -102,7 +103,8 @@ std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionW
   add_pairs_with_planes(work, near);
   std::erase_if(near, [&](const collision::IndexPair& pair) {
     return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
-                     work.bodies[at(pair.b)]);
+                     work.bodies[at(pair.b)]) ||
+           share_pivot(work, pair.a, pair.b);
   });
   const std::vector<TurnedBox> boxes = box_ways(work, near);
   std::vector<double> clearances(near.size(), -1e300);

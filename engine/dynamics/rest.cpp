@@ -64,6 +64,35 @@ std::vector<std::vector<int>> find_neighbours(const std::vector<Body>& bodies, c
   return neighbours;
 }
 
+// Of each body those that a joint holds to it.
+std::vector<std::vector<int>> find_joined(const std::vector<Body>& bodies, const ContactState& state) {
+  std::vector<std::vector<int>> joined(bodies.size());
+  for (const Joint& joint : state.joints) {
+    const int a = find_number(bodies, joint.body_a), b = find_number(bodies, joint.body_b);
+    if (a < 0 || b < 0) continue;
+    joined[static_cast<std::size_t>(a)].push_back(b);
+    joined[static_cast<std::size_t>(b)].push_back(a);
+  }
+  return joined;
+}
+
+// Marks all that dynamic bodies which are marked hold by joints, from one to the next.
+void mark_joined(const std::vector<Body>& bodies, const ContactState& state, std::vector<char>& marks) {
+  if (state.joints.empty()) return;
+  const auto joined = find_joined(bodies, state);
+  std::vector<int> marked;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (marks[i] && bodies[i].is_dynamic()) marked.push_back(static_cast<int>(i));
+  }
+  for (std::size_t next = 0; next < marked.size(); ++next) {
+    for (const int i : joined[static_cast<std::size_t>(marked[next])]) {
+      if (marks[static_cast<std::size_t>(i)] || !bodies[static_cast<std::size_t>(i)].is_dynamic()) continue;
+      marks[static_cast<std::size_t>(i)] = 1;
+      marked.push_back(i);
+    }
+  }
+}
+
 // Wakes the sleepers that a disturbance reaches: those it begins with, and from neighbour to neighbour all
 // that its momentum (kg m/s; 0: is not disturbed) could move noticeably.
 void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const ContactState& state,
@@ -80,13 +109,19 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
     if (momentum[i] > 0.0) wake(static_cast<int>(i));
   }
   if (roused.empty()) return;
-  const auto neighbours = find_neighbours(bodies, state);
+  const auto neighbours = find_neighbours(bodies, state), joined = find_joined(bodies, state);
   for (std::size_t next = 0; next < roused.size(); ++next) {
     const double given = momentum[static_cast<std::size_t>(roused[next])];
     for (const int i : neighbours[static_cast<std::size_t>(roused[next])]) {
       const Body& b = bodies[static_cast<std::size_t>(i)];
       if (!b.is_dynamic() || b.is_awake || given < least_momentum(settings, b)) continue;
       momentum[static_cast<std::size_t>(i)] = std::max(momentum[static_cast<std::size_t>(i)], given);
+      wake(i);
+    }
+    // What is one with it moves with it.
+    for (const int i : joined[static_cast<std::size_t>(roused[next])]) {
+      double& own = momentum[static_cast<std::size_t>(i)];
+      own = std::max(own, given);
       wake(i);
     }
   }
@@ -180,6 +215,14 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
       if (const int i = find_number(bodies, id); i >= 0) is_held[static_cast<std::size_t>(i)] = 1;
     }
   }
+  for (const Joint& joint : state.joints) {
+    const int ends[2] = {find_number(bodies, joint.body_a), find_number(bodies, joint.body_b)};
+    for (int k = 0; k < 2; ++k) {
+      if (ends[k] >= 0 && ends[1 - k] >= 0 && !bodies[static_cast<std::size_t>(ends[1 - k])].is_dynamic())
+        is_held[static_cast<std::size_t>(ends[k])] = 1;
+    }
+  }
+  mark_joined(bodies, state, is_held);
   // Nor who touches somebody that has no rest yet and could move it, or goes on by itself.
   const bool is_weightless = settings.gravity.squaredNorm() == 0.0;
   std::vector<char> is_restless(bodies.size(), 0);
@@ -188,6 +231,7 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
     if (!b.is_dynamic() || !b.is_awake) continue;
     is_restless[i] = b.quiet_time < settings.sleep_time || (!is_held[i] && !is_weightless) ? 1 : 0;
   }
+  mark_joined(bodies, state, is_restless);
   std::vector<char> is_kept_up = is_restless;
   for (const PairState& pair : state.pairs) {
     if (!pair.is_touching) continue;
@@ -202,6 +246,14 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
         is_kept_up[other] = 1;
     }
   }
+  for (const Joint& joint : state.joints) {
+    const int ends[2] = {find_number(bodies, joint.body_a), find_number(bodies, joint.body_b)};
+    for (int k = 0; k < 2; ++k) {
+      if (ends[k] >= 0 && ends[1 - k] >= 0 && bodies[static_cast<std::size_t>(ends[1 - k])].is_driven())
+        is_kept_up[static_cast<std::size_t>(ends[k])] = 1;
+    }
+  }
+  mark_joined(bodies, state, is_kept_up);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake || is_kept_up[i]) continue;

@@ -6,6 +6,7 @@
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_solver.h"
+#include "engine/dynamics/joint_work.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/parting.h"
 #include "engine/dynamics/rest.h"
@@ -187,10 +188,14 @@ void solve_islands(const std::vector<Body>& bodies, const ContactSettings& setti
   if (work.has_scripted) {
     const auto rides = [&](std::size_t number) {
       const auto& contacts = work.islands[number].contacts;
-      return std::any_of(contacts.begin(), contacts.end(), [&](int c) {
-        const SolverContact& contact = work.contacts[at(c)];
-        return !work.bodies[at(contact.a)].rides.empty() || !work.bodies[at(contact.b)].rides.empty();
-      });
+      const auto rides_one = [&](int a, int b) {
+        return !work.bodies[at(a)].rides.empty() || !work.bodies[at(b)].rides.empty();
+      };
+      const auto& joints = work.islands[number].joints;
+      return std::any_of(contacts.begin(), contacts.end(),
+                         [&](int c) { return rides_one(work.contacts[at(c)].a, work.contacts[at(c)].b); }) ||
+             std::any_of(joints.begin(), joints.end(),
+                         [&](int k) { return rides_one(work.joints[at(k)].a, work.joints[at(k)].b); });
     };
     const auto riders =
         std::stable_partition(due.begin(), due.end(), [&](std::size_t i) { return !rides(i); });
@@ -217,7 +222,9 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
     bodies[i].angular_velocity = w.spin;
   }
   log_contacts(bodies, work, log);
+  log_joints(work, log);
   remember_contacts(work, state);
+  remember_joints(work, state);
   report_contacts(work, state, report);
 }
 

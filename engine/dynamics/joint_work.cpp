@@ -1,0 +1,111 @@
+#include "engine/dynamics/joint_work.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/index.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using core::at;
+
+int find_number(const MotionWork& work, body::BodyId id) {
+  const auto place = std::lower_bound(work.ids.begin(), work.ids.end(), id);
+  return place != work.ids.end() && *place == id ? static_cast<int>(place - work.ids.begin()) : -1;
+}
+
+std::pair<int, int> ordered(int a, int b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+}  // namespace
+
+void add_to_hash(const std::vector<Joint>& joints, core::Hash& hash) {
+  for (const Joint& joint : joints) {
+    hash.add(static_cast<std::uint64_t>(joint.number));
+    hash.add((static_cast<std::uint64_t>(joint.body_a) << 32) | joint.body_b);
+    hash.add(joint.impulse).add(joint.couple);
+  }
+}
+
+void list_joints(const ContactState& state, MotionWork& work) {
+  for (std::size_t k = 0; k < state.joints.size(); ++k) {
+    const Joint& joint = state.joints[k];
+    WorkJoint w;
+    w.a = find_number(work, joint.body_a);
+    w.b = find_number(work, joint.body_b);
+    if (w.a < 0 || w.b < 0) continue;
+    if (work.bodies[at(w.a)].inverse_mass == 0.0 && work.bodies[at(w.b)].inverse_mass == 0.0) continue;
+    w.state = static_cast<int>(k);
+    w.joint = &joint;
+    work.joints.push_back(w);
+    (joint.is_pivot ? work.pivots : work.joined).push_back(ordered(w.a, w.b));
+  }
+  std::sort(work.pivots.begin(), work.pivots.end());
+  std::sort(work.joined.begin(), work.joined.end());
+}
+
+bool share_pivot(const MotionWork& work, int a, int b) {
+  return !work.pivots.empty() && std::binary_search(work.pivots.begin(), work.pivots.end(), ordered(a, b));
+}
+
+void forget_joined_contacts(MotionWork& work) {
+  if (work.joined.empty()) return;
+  for (WorkPair& pair : work.pairs) {
+    if (std::binary_search(work.joined.begin(), work.joined.end(), ordered(pair.a, pair.b)))
+      pair.contacts.clear();
+  }
+}
+
+core::DisjointSets join_bodies(const MotionWork& work) {
+  core::DisjointSets joined(work.bodies.size());
+  for (const WorkJoint& joint : work.joints) {
+    if (work.bodies[at(joint.a)].inverse_mass > 0.0 && work.bodies[at(joint.b)].inverse_mass > 0.0)
+      joined.unite(joint.a, joint.b);
+  }
+  return joined;
+}
+
+void log_joints(const MotionWork& work, body::ImpulseLog& log) {
+  for (const WorkJoint& w : work.joints) {
+    if (w.total_world.squaredNorm() + w.total_couple_world.squaredNorm() == 0.0) continue;
+    const WorkBody &a = work.bodies[at(w.a)], &b = work.bodies[at(w.b)];
+    const Mat3 axes = (a.end.rotation * w.joint->frame_a.rotation).toRotationMatrix();
+    const Vec3 force = axes.transpose() * w.total_world, couple = axes.transpose() * w.total_couple_world;
+    const auto give = [&](const Vec3& offset, const Vec3& impulse) {
+      body::LoggedImpulse entry =
+          body::log_impulse(body::ImpulseKind::contact, work.ids[at(w.a)], a.end, work.ids[at(w.b)], b.end,
+                            w.point + axes * offset, axes.col(0), axes * impulse);
+      const double inverse_mass = a.inverse_mass + b.inverse_mass;
+      entry.effective_mass = 1.0 / inverse_mass;
+      log.push_back(entry);
+    };
+    if (w.joint->is_pivot) {
+      give(Vec3::Zero(), force);
+      continue;
+    }
+    const double half_y = std::sqrt(w.joint->moments.z() / w.joint->area);
+    const double half_z = std::sqrt(w.joint->moments.y() / w.joint->area);
+    const double square = half_y * half_y + half_z * half_z;
+    for (const double side_y : {-1.0, 1.0}) {
+      for (const double side_z : {-1.0, 1.0}) {
+        const Vec3 offset(0.0, side_y * half_y, side_z * half_z);
+        Vec3 impulse = 0.25 * force;
+        impulse.x() += 0.25 * (couple.y() * side_z / half_z - couple.z() * side_y / half_y);
+        impulse += 0.25 * couple.x() / square * Vec3::UnitX().cross(offset);
+        give(offset, impulse);
+      }
+    }
+  }
+}
+
+void remember_joints(const MotionWork& work, ContactState& state) {
+  for (Joint& joint : state.joints) joint.impulse = joint.couple = Vec3::Zero();
+  for (const WorkJoint& w : work.joints) {
+    state.joints[at(w.state)].impulse = w.total;
+    state.joints[at(w.state)].couple = w.total_couple;
+  }
+}
+
+}  // namespace shatterbox::dynamics

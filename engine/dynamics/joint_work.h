@@ -1,0 +1,34 @@
+// Joints within one step: who is joined, what they gave, and what goes to the log and the state.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "engine/body/impulse_log.h"
+#include "engine/core/disjoint_sets.h"
+#include "engine/dynamics/contact_state.h"
+#include "engine/dynamics/motion_work.h"
+
+namespace shatterbox::dynamics {
+
+/// Fills `work.joints` with those of whom both bodies are there and one can move. Bodies must be there.
+void list_joints(const ContactState& state, MotionWork& work);
+
+/// True of two bodies that turn about a common point: they have no contact.
+bool share_pivot(const MotionWork& work, int a, int b);
+
+/// Takes the contacts from pairs that hold together: what presses on a joint is the joint's. They are kept
+/// from crossing like all others.
+void forget_joined_contacts(MotionWork& work);
+
+/// Bodies that move together, by their joints: what no impulse moves joins nobody.
+core::DisjointSets join_bodies(const MotionWork& work);
+
+/// Appends what joints gave: four forces at the corners of a rectangle that has the area's moments, which
+/// together are the joint's force and couple.
+void log_joints(const MotionWork& work, body::ImpulseLog& log);
+
+/// Writes what joints gave to the state.
+void remember_joints(const MotionWork& work, ContactState& state);
+
+}  // namespace shatterbox::dynamics
