@@ -14,6 +14,7 @@ StepBegin World::note_begin() const {
   begin.hands = s.hands;
   begin.conservation = s.report.conservation;
   begin.solver = s.report.solver;
+  begin.joints = s.report.joints;
   begin.impacts = s.report.impacts.size();
   begin.breaks = s.report.breaks.size();
   begin.triangles_most = s.report.triangles_most;
@@ -41,6 +42,7 @@ void World::put_back(MovingState&& snapshot) {
   s.hands = std::move(begin.hands);
   s.report.conservation = begin.conservation;
   s.report.solver = begin.solver;
+  s.report.joints = std::move(begin.joints);
   s.report.impacts.resize(begin.impacts);
   s.report.breaks.resize(begin.breaks);
   s.report.triangles_most = begin.triangles_most;

@@ -66,21 +66,30 @@ void apply_hands(std::vector<body::Body>& bodies, const std::vector<dynamics::Ha
   }
 }
 
+const body::Body* find_nearest(const std::vector<body::BodyId>& ids, const std::vector<body::Body>& bodies,
+                               const Vec3& point) {
+  const body::Body* nearest = nullptr;
+  double least = 1e300;
+  for (const body::BodyId id : ids) {
+    const body::Body* body = body::find_body(bodies, id);
+    if (body == nullptr) continue;
+    const double distance = distance_to(*body, point);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = body;
+  }
+  return nearest;
+}
+
 void regrip(std::vector<dynamics::Hand>& hands, const body::Body& parent,
             const std::vector<body::BodyId>& born, const std::vector<body::Body>& bodies) {
   for (dynamics::Hand& hand : hands) {
     if (hand.body != parent.id) continue;
     const Vec3 grip = parent.pose.apply(hand.grip);
-    double least = 1e300;
-    for (const body::BodyId id : born) {
-      const body::Body* piece = body::find_body(bodies, id);
-      if (piece == nullptr) continue;
-      const double distance = distance_to(*piece, grip);
-      if (distance >= least) continue;
-      least = distance;
-      hand.body = id;
-      hand.grip = piece->pose.apply_inverse(grip);
-    }
+    const body::Body* piece = find_nearest(born, bodies, grip);
+    if (piece == nullptr) continue;
+    hand.body = piece->id;
+    hand.grip = piece->pose.apply_inverse(grip);
   }
 }
 

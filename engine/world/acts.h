@@ -19,6 +19,11 @@ void apply_blast(std::vector<body::Body>& bodies, const dynamics::Blast& blast, 
 void apply_hands(std::vector<body::Body>& bodies, const std::vector<dynamics::Hand>& hands,
                  const Vec3& gravity, double time_step, double time_left, body::ImpulseLog& log);
 
+/// Of the bodies `ids` the one whose surface is nearest to a point (m, world), by its vertices; null if none
+/// is there.
+const body::Body* find_nearest(const std::vector<body::BodyId>& ids, const std::vector<body::Body>& bodies,
+                               const Vec3& point);
+
 /// Hands that held a body that broke, as it was in `parent`, go on with the piece of `born` (ids) that is
 /// nearest to their grip.
 void regrip(std::vector<dynamics::Hand>& hands, const body::Body& parent,

@@ -72,6 +72,25 @@ struct BodyDescription {
   std::optional<double> contact_duration;       // s, of every impact on this body
 };
 
+/// Mortar wherever two bodies face each other no further apart than `gap`: it holds them as one.
+struct MortarDescription {
+  double gap = 1e-3;  // m
+};
+
+/// Two bodies share a point, about which they turn freely; they do not collide with each other.
+struct PivotDescription {
+  Vec3 point = Vec3::Zero();  // m, world
+  double area = 1e-4;         // m2, over which its force is spread
+};
+
+struct JointDescription {
+  std::string name;
+  body::BodyId body_a = 0, body_b = 0;
+  std::variant<MortarDescription, PivotDescription> form;
+  double strength = 0.3e6;        // Pa, in tension
+  double shear_strength = 0.3e6;  // Pa, without pressure, which adds friction; unused of a pivot
+};
+
 /// Friction and restitution of two materials, instead of the geometric mean and the lesser of theirs.
 struct PairOverride {
   int material_a = 0, material_b = 0;

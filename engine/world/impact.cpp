@@ -131,6 +131,17 @@ double contact_average(double step) {
   return step * std::max(1.0, std::floor(kContactAverage / step + 0.5));
 }
 
+stress::HertzContact find_hertz_contact(const body::Body& struck, const body::Body* other) {
+  const auto surface = [](const body::Body& body) {
+    double radius = body.shape->bounding_radius;
+    if (body.shape->kind == body::ShapeKind::sphere) radius = body.shape->radius;
+    if (body.shape->kind == body::ShapeKind::plane || body.shape->kind == body::ShapeKind::box) radius = 0.0;
+    return stress::ContactSurface{body.young, body.poisson, radius};
+  };
+  return stress::make_hertz_contact(surface(struck), other ? surface(*other) : stress::ContactSurface{},
+                                    struck.shape->thickness, struck.shape->bounding_radius);
+}
+
 double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body) {
   if (!body.is_dynamic()) return 0.0;
   const Vec3 turn = point_body.cross(direction_body);

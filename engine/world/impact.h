@@ -8,6 +8,7 @@
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/stress/contact_duration.h"
 
 namespace shatterbox::world {
 
@@ -79,6 +80,9 @@ std::vector<Load> gather_loads(const OwnImpulses& impulses, body::ImpulseKind ki
 
 /// Adds `loads` to the sums in `event`, at the place of a load that is already there.
 void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, double radius);
+
+/// Hertz's contact of a body with another one, which may be null: of no elasticity known.
+stress::HertzContact find_hertz_contact(const body::Body& struck, const body::Body* other);
 
 /// How a body gives way at a point along a unit direction, both in body space: 1/kg; 0 if it cannot move.
 double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body);

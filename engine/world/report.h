@@ -62,6 +62,21 @@ struct BreakRow {
 /// Pairs of triangles of different pieces that cross at the birth, counted when asked for.
 long count_overlaps(const BreakRow& row);
 
+/// One joint: the most that it ever bore, and whether it is open.
+struct JointRow {
+  int number = 0;
+  std::string name, body_a, body_b;  // as they were when it was made
+  double area = 0.0;                 // m2
+  double most_ratio = 0.0;           // of what it can bear
+  Vec3 force = Vec3::Zero();         // N on a then: along the normal from b to a, and across it
+  Vec3 moment = Vec3::Zero();        // N m, about the same axes
+  double tension = 0.0;              // Pa, greatest at the rim; less than 0: all of it was pressed
+  double shear = 0.0;                // Pa
+  bool is_struck = false;            // by a collision
+  double opened = -1.0;              // s; -1: it holds
+  std::string verdict;               // "opened: 1.3 of its strength in shear", "held: 0.62 of its strength"
+};
+
 struct ContactFigures {
   int contacts = 0;  // with a gap below twice the kept one, last step
   int most_contacts = 0;
@@ -105,6 +120,7 @@ struct SolverFigures {
 struct WorldReport {
   std::vector<ImpactRow> impacts;
   std::vector<BreakRow> breaks;
+  std::vector<JointRow> joints;  // by number
   ContactFigures contact;
   std::vector<ScriptedRow> scripted;  // ascending ids
   ConservationFigures conservation;

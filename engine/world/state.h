@@ -16,6 +16,7 @@
 #include "engine/world/forms.h"
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
+#include "engine/world/joints.h"
 #include "engine/world/verdict.h"
 #include "engine/world/world.h"
 
@@ -27,6 +28,7 @@ struct MovingState {
   dynamics::ContactState contact;
   dynamics::PaperContactState paper_contact;      // of ContactScheme::paper
   std::map<body::BodyId, ImpactMemory> memories;  // of fragile bodies
+  JointMemories joint_memories;                   // of joints that hold
   Fragiles fragiles;
   body::BodyId next_id = 1;
 };
@@ -39,6 +41,7 @@ struct StepBegin {
   std::vector<dynamics::Hand> hands;
   ConservationFigures conservation;
   SolverFigures solver;
+  std::vector<JointRow> joints;
   std::size_t impacts = 0, breaks = 0;
   long triangles_most = 0, tetrahedra_end = 0, tetrahedra_most = 0;
   double last_energy = 0.0;
@@ -50,6 +53,7 @@ struct World::State {
   std::vector<material::Material> materials;
   dynamics::ContactSettings contact_settings;
   std::vector<SharedForm> forms;
+  std::vector<JointNature> joints;  // by number, open ones too
 
   MovingState moving;
   body::ImpulseLog log;                 // of the last step

@@ -140,6 +140,12 @@ std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t pr
     for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
     for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);
   }
+  for (const auto& [number, memory] : moving.joint_memories) {
+    hash.add(static_cast<std::uint64_t>(number)).add(memory.event_duration).add(memory.event_time);
+    hash.add(memory.event_impulse).add(memory.event_couple);
+    for (const JointMemory::Load& load : memory.contact)
+      hash.add(load.time).add(load.impulse).add(load.couple);
+  }
   dynamics::add_to_hash(moving.contact, hash);
   dynamics::add_to_hash(moving.paper_contact, hash);
   return hash.value();
@@ -202,7 +208,8 @@ bool World::step() {
 void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) {
   State& s = *state_;
   core::StageTimer& timer = s.report.stages;
-  const bool may_break = !s.moving.fragiles.empty();
+  const bool has_joints = !s.moving.contact.joints.empty();
+  const bool may_break = !s.moving.fragiles.empty() || has_joints;
   dynamics::StepPart part{0, count_parts()};
   for (int pass = 0; part.number < part.count;) {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
@@ -216,6 +223,13 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
         s.moving = std::move(snapshot);
         part.count = parts;
         continue;
+      }
+      if (has_joints) {
+        const bool may_go_back = s.settings.after_break == AfterBreak::go_back && pass + 1 < kMostPasses;
+        if (open_joints(judge_joints(part, given), snapshot, may_go_back)) {
+          ++pass;
+          continue;
+        }
       }
       const auto impacts = judge_impacts(given);
       const std::size_t known_breaks = s.report.breaks.size();
@@ -305,6 +319,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     const body::Body parent = *body::find_body(s.moving.bodies, impact->id);
     BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
     regrip(s.hands, parent, row.born, s.moving.bodies);
+    rehang(s.moving.contact.joints, parent, row.born, s.moving.bodies);
     row.time = end_time;
     inherit_stress(row);
     s.report.breaks.push_back(std::move(row));

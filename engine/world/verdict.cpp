@@ -46,20 +46,6 @@ struct Judge {
     return partner ? dynamics::pair_material(struck, *partner, contact).restitution : struck.restitution;
   }
 
-  stress::HertzContact hertz(const body::Body& struck, body::BodyId other) const {
-    const auto surface = [](const body::Body& body) {
-      double radius = body.shape->bounding_radius;
-      if (body.shape->kind == body::ShapeKind::sphere) radius = body.shape->radius;
-      if (body.shape->kind == body::ShapeKind::plane || body.shape->kind == body::ShapeKind::box)
-        radius = 0.0;
-      return stress::ContactSurface{body.young, body.poisson, radius};
-    };
-    const body::Body* partner = body::find_body(bodies, other);
-    const double size = struck.shape->bounding_radius;
-    return stress::make_hertz_contact(surface(struck), partner ? surface(*partner) : stress::ContactSurface{},
-                                      struck.shape->thickness, size);
-  }
-
   fracture::ImpactLoad impact_load(const body::Body& struck, const Load& load, bool is_collision) const {
     fracture::ImpactLoad out;
     const body::Body* partner = body::find_body(bodies, load.other);
@@ -85,7 +71,7 @@ struct Judge {
       out.effective_mass = out.impulse / (bounce * load.closing_speed);
     else
       out.closing_speed = out.impulse / (bounce * out.effective_mass);
-    const stress::HertzContact contact_pair = hertz(struck, load.other);
+    const stress::HertzContact contact_pair = find_hertz_contact(struck, body::find_body(bodies, load.other));
     const double force = stress::peak_force(contact_pair, out.effective_mass, out.closing_speed);
     out.hertz_compliance = stress::hertz_compliance(contact_pair, force);
     out.hertz_radius = stress::hertz_patch_radius(contact_pair, force);

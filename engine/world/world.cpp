@@ -41,6 +41,15 @@ void World::add_pair(const PairOverride& pair) {
 bool World::remove_body(body::BodyId id) {
   MovingState& moving = state_->moving;
   if (!body::find_body(moving.bodies, id)) return false;
+  for (const dynamics::Joint& joint : moving.contact.joints) {
+    if (joint.body_a != id && joint.body_b != id) continue;
+    body::Body* other = body::find_body(moving.bodies, joint.body_a == id ? joint.body_b : joint.body_a);
+    if (other->is_dynamic()) other->is_awake = true;
+    if (other->is_dynamic()) other->quiet_time = 0.0;
+    moving.joint_memories.erase(joint.number);
+  }
+  std::erase_if(moving.contact.joints,
+                [&](const dynamics::Joint& joint) { return joint.body_a == id || joint.body_b == id; });
   std::erase_if(moving.bodies, [&](const body::Body& b) { return b.id == id; });
   moving.memories.erase(id);
   moving.fragiles.erase(id);

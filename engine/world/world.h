@@ -27,6 +27,7 @@ struct StepPart;
 namespace shatterbox::world {
 
 struct EvaluatedImpact;
+struct JointVerdict;
 struct MovingState;
 struct StepBegin;
 
@@ -58,6 +59,10 @@ class World {
   /// Adds a body now: before the first step, or between two steps (the script's drop and projectile). Reasons
   /// for refusal: an unknown material, a form without extent, a mesh that was not mended.
   core::Result<body::BodyId> add_body(const BodyDescription& description);
+
+  /// Joins two bodies where they are now, until what they bear opens it. Returns its number; 0 if nothing
+  /// moves, or mortar finds no faces so near. Reasons for refusal: no such body, no strength.
+  core::Result<int> add_joint(const JointDescription& description);
 
   /// Removes a body; false if there is none of that id.
   bool remove_body(body::BodyId id);
@@ -136,6 +141,10 @@ class World {
   /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the part must be taken
   /// again.
   bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, int pass);
+  /// Stage "joints", of the impulses of one part.
+  std::vector<JointVerdict> judge_joints(const dynamics::StepPart& part, const body::ImpulseLog& log);
+  /// Opens those that are overloaded most. True if the part must be taken again.
+  bool open_joints(std::span<const JointVerdict> verdicts, MovingState& snapshot, bool may_go_back);
   void inherit_stress(const BreakRow& row);
   void book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,
                          double time_step);

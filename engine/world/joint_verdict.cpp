@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/disjoint_sets.h"
+#include "engine/core/elementary.h"
+#include "engine/core/index.h"
+#include "engine/stress/contact_duration.h"
+#include "engine/world/impact.h"
+#include "engine/world/joints.h"
+
+namespace shatterbox::world {
+namespace {
+
+using core::at;
+
+int number_of(const std::vector<body::Body>& bodies, body::BodyId id) {
+  const body::Body* body = body::find_body(bodies, id);
+  return body != nullptr && body->is_dynamic() ? static_cast<int>(body - bodies.data()) : -1;
+}
+
+// The hardest collision that bodies which hold together had in a part of a step.
+struct Hit {
+  double impulse = 0.0;   // N s; 0: none
+  double duration = 0.0;  // s
+  double time = 0.0;      // s, of the last
+};
+
+double duration_of(const body::LoggedImpulse& hit, const std::vector<body::Body>& bodies,
+                   const WorldSettings& settings, const dynamics::ContactSettings& contact) {
+  if (hit.duration > 0.0) return hit.duration;
+  if (settings.stress_window) return *settings.stress_window;
+  const body::Body *a = body::find_body(bodies, hit.body_a), *b = body::find_body(bodies, hit.body_b);
+  const body::Body& struck = a != nullptr ? *a : *b;
+  const body::Body* other = a != nullptr ? b : nullptr;
+  const double restitution =
+      other != nullptr ? dynamics::pair_material(struck, *other, contact).restitution : struck.restitution;
+  const double speed = hit.closing_speed;
+  const double mass = hit.impulse_world.norm() / ((1.0 + restitution) * speed);
+  const stress::HertzContact pair = find_hertz_contact(struck, other);
+  const double compliance = stress::hertz_compliance(pair, stress::peak_force(pair, mass, speed));
+  return stress::series_duration(mass, compliance, 0.0);
+}
+
+// For each body the hit of all that it is joined to.
+class Hits {
+ public:
+  Hits(const std::vector<dynamics::Joint>& joints, const std::vector<body::Body>& bodies)
+      : bodies_(bodies), joined_(bodies.size()), hits_(bodies.size()) {
+    for (const dynamics::Joint& joint : joints) {
+      const int a = number_of(bodies, joint.body_a), b = number_of(bodies, joint.body_b);
+      if (a >= 0 && b >= 0) joined_.unite(a, b);
+    }
+  }
+
+  void add(const body::LoggedImpulse& entry, double duration, double time) {
+    for (const body::BodyId id : {entry.body_a, entry.body_b}) {
+      const int i = number_of(bodies_, id);
+      if (i < 0) continue;
+      Hit& hit = hits_[at(joined_.find(i))];
+      hit.time = std::max(hit.time, time);
+      const double impulse = entry.impulse_world.norm();
+      if (impulse <= hit.impulse) continue;
+      hit.impulse = impulse;
+      hit.duration = duration;
+    }
+  }
+
+  const Hit& of(const dynamics::Joint& joint) {
+    const int a = number_of(bodies_, joint.body_a), i = a >= 0 ? a : number_of(bodies_, joint.body_b);
+    return i >= 0 ? hits_[at(joined_.find(i))] : none_;
+  }
+
+ private:
+  const std::vector<body::Body>& bodies_;
+  core::DisjointSets joined_;
+  std::vector<Hit> hits_;
+  Hit none_;
+};
+
+// Adds what the joint gave in this part to its memory, as a collision's or as contact's.
+void remember(const dynamics::Joint& joint, const Hit& hit, const PartTime& part, JointMemory& memory) {
+  const double oldest = part.start + 0.5 * part.length - part.average;
+  std::erase_if(memory.contact, [&](const JointMemory::Load& load) { return load.time < oldest; });
+  JointMemory::Load load{part.start, joint.impulse, joint.couple};
+  const bool is_hit = hit.impulse > 0.0;
+  if (!is_hit && part.start - memory.event_time > 2.0 * memory.event_duration) {
+    memory.event_impulse = memory.event_couple = Vec3::Zero();
+    memory.event_duration = 0.0;
+  }
+  if (is_hit || memory.event_duration > 0.0) {
+    if (is_hit) memory.event_time = hit.time;
+    if (is_hit) memory.event_duration = std::max(memory.event_duration, hit.duration);
+    // What it bore before goes on beside the collision.
+    Vec3 impulse = Vec3::Zero(), couple = Vec3::Zero();
+    for (const JointMemory::Load& known : memory.contact) {
+      impulse += part.length / part.average * known.impulse;
+      couple += part.length / part.average * known.couple;
+    }
+    memory.event_impulse += load.impulse - impulse;
+    memory.event_couple += load.couple - couple;
+    load.impulse = impulse;
+    load.couple = couple;
+  }
+  memory.contact.push_back(load);
+}
+
+}  // namespace
+
+JointVerdict judge_joint(const dynamics::Joint& joint, const JointNature& nature, const Vec3& force,
+                         const Vec3& moment) {
+  JointVerdict verdict;
+  verdict.number = joint.number;
+  verdict.force = force;
+  verdict.moment = moment;
+  if (joint.is_pivot) {
+    verdict.tension = force.norm() / joint.area;
+    verdict.ratio = verdict.tension / nature.strength;
+    return verdict;
+  }
+  // On a, along x: pressed where it is more than nothing.
+  double least = 1e300, reach = 0.0;
+  for (const Vec2& p : nature.outline) {
+    const double bent = moment.y() * p.y() / joint.moments.y() - moment.z() * p.x() / joint.moments.z();
+    least = std::min(least, force.x() / joint.area + bent);
+    reach = std::max(reach, p.norm());
+  }
+  verdict.tension = -least;
+  const double twist = std::abs(moment.x()) * reach / joint.moments.x();
+  verdict.shear = force.tail<2>().norm() / joint.area + twist;
+  const double pressed = std::max(0.0, force.x() / joint.area);
+  const double by_shear = verdict.shear / (nature.shear_strength + nature.friction * pressed);
+  const double by_tension = std::max(0.0, verdict.tension) / nature.strength;
+  verdict.is_by_shear = by_shear > by_tension;
+  verdict.ratio = std::max(by_shear, by_tension);
+  return verdict;
+}
+
+std::vector<JointVerdict> judge_joints(const std::vector<dynamics::Joint>& joints,
+                                       const std::vector<JointNature>& natures,
+                                       const std::vector<body::Body>& bodies, const body::ImpulseLog& log,
+                                       const WorldSettings& settings,
+                                       const dynamics::ContactSettings& contact, const PartTime& part,
+                                       JointMemories& memories) {
+  Hits hits(joints, bodies);
+  for (const body::LoggedImpulse& entry : log) {
+    const bool is_hit = entry.kind == body::ImpulseKind::collision && entry.impulse_world.squaredNorm() > 0.0;
+    if (is_hit && (entry.closing_speed > 0.0 || entry.duration > 0.0))
+      hits.add(entry, duration_of(entry, bodies, settings, contact), part.step_start + entry.time);
+  }
+  std::vector<JointVerdict> verdicts;
+  for (const dynamics::Joint& joint : joints) {
+    const JointNature& nature = natures[at(joint.number - 1)];
+    JointMemory& memory = memories[joint.number];
+    remember(joint, hits.of(joint), part, memory);
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+    for (const JointMemory::Load& load : memory.contact) {
+      force += load.impulse / part.average;
+      moment += load.couple / part.average;
+    }
+    const bool is_struck = memory.event_duration > 0.0;
+    if (is_struck) {
+      const double share = stress::kPeakOverMeanHalfSine / memory.event_duration;
+      force += share * memory.event_impulse;
+      moment += share * memory.event_couple;
+    }
+    verdicts.push_back(judge_joint(joint, nature, force, moment));
+    verdicts.back().is_struck = is_struck;
+  }
+  return verdicts;
+}
+
+}  // namespace shatterbox::world

@@ -1,0 +1,187 @@
+#include "engine/world/joints.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/core/index.h"
+#include "engine/world/acts.h"
+#include "engine/world/state.h"
+
+namespace shatterbox::world {
+namespace {
+
+using core::at;
+
+// Of those that are open at once, only who is overloaded at least this share of the most gives way: the
+// others are judged again without them.
+constexpr double kFirst = 0.5;
+
+/// The surface as triangles in the world; of a plane as much as lies before `other`.
+geometry::TriangleMesh world_surface(const body::Body& body, const body::Body& other) {
+  geometry::TriangleMesh mesh;
+  if (body::is_mesh(body.shape->kind)) {
+    mesh = body.shape->surface;
+    for (Vec3& p : mesh.positions) p = body.pose.apply(p);
+  } else if (body.shape->kind == body::ShapeKind::box) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 sides(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
+      mesh.positions.push_back(body.pose.apply(body.shape->half_extent.cwiseProduct(sides)));
+    }
+    mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  } else if (body.shape->kind == body::ShapeKind::plane) {
+    const double half = 2.0 * other.shape->bounding_radius;
+    Vec3 middle = body.pose.apply_inverse(other.pose.translation);
+    middle.y() = 0.0;
+    for (const auto& [x, z] :
+         {std::pair(-half, -half), std::pair(-half, half), std::pair(half, half), std::pair(half, -half)})
+      mesh.positions.push_back(body.pose.apply(middle + Vec3(x, 0.0, z)));
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  }
+  return mesh;
+}
+
+void wake(std::vector<body::Body>& bodies, const dynamics::Joint& joint) {
+  for (const body::BodyId id : {joint.body_a, joint.body_b}) {
+    body::Body* body = body::find_body(bodies, id);
+    if (body == nullptr || !body->is_dynamic()) continue;
+    body->is_awake = true;
+    body->quiet_time = 0.0;
+  }
+}
+
+std::string words_of(const JointVerdict& verdict, bool opened) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%s: %.3g of its strength%s", opened ? "opened" : "held", verdict.ratio,
+                verdict.is_by_shear ? " in shear" : "");
+  return text;
+}
+
+void book(const JointVerdict& verdict, JointRow& row) {
+  row.most_ratio = verdict.ratio;
+  row.force = verdict.force;
+  row.moment = verdict.moment;
+  row.tension = verdict.tension;
+  row.shear = verdict.shear;
+  row.is_struck = verdict.is_struck;
+}
+
+}  // namespace
+
+geometry::FacingArea find_mortar_area(const body::Body& a, const body::Body& b, double gap) {
+  return geometry::find_facing_area(world_surface(a, b), world_surface(b, a), gap);
+}
+
+void rehang(std::vector<dynamics::Joint>& joints, const body::Body& parent,
+            const std::vector<body::BodyId>& born, const std::vector<body::Body>& bodies) {
+  for (dynamics::Joint& joint : joints) {
+    const bool is_a = joint.body_a == parent.id;
+    if (!is_a && joint.body_b != parent.id) continue;
+    Pose& frame = is_a ? joint.frame_a : joint.frame_b;
+    const Pose place{parent.pose.rotation * frame.rotation, parent.pose.apply(frame.translation)};
+    const body::Body* piece = find_nearest(born, bodies, place.translation);
+    if (piece == nullptr) continue;
+    (is_a ? joint.body_a : joint.body_b) = piece->id;
+    frame = {piece->pose.rotation.conjugate() * place.rotation, piece->pose.apply_inverse(place.translation)};
+  }
+}
+
+core::Result<int> World::add_joint(const JointDescription& description) {
+  State& s = *state_;
+  const auto refuse = [&](const std::string& why) {
+    return core::Error{"joint '" + description.name + "': " + why};
+  };
+  const body::Body* a = body::find_body(s.moving.bodies, description.body_a);
+  const body::Body* b = body::find_body(s.moving.bodies, description.body_b);
+  if (a == nullptr || b == nullptr) return refuse("there is no such body");
+  if (a == b) return refuse("it joins a body to itself");
+  if (s.settings.contact == ContactScheme::paper) return refuse("the paper's contact knows no joints");
+  if (!(description.strength > 0.0) || !(description.shear_strength > 0.0))
+    return refuse("its strengths must be more than 0 Pa");
+  if (!a->is_dynamic() && !b->is_dynamic()) return 0;
+  dynamics::Joint joint;
+  JointNature nature{0, description.name, description.strength, description.shear_strength, 0.0, {}};
+  Pose place;
+  if (const auto* pivot = std::get_if<PivotDescription>(&description.form)) {
+    if (!(pivot->area > 0.0)) return refuse("its area must be more than 0 m2");
+    place.translation = pivot->point;
+    joint.is_pivot = true;
+    joint.area = pivot->area;
+  } else {
+    const geometry::FacingArea face =
+        find_mortar_area(*a, *b, std::get<MortarDescription>(description.form).gap);
+    if (!(face.area > 0.0)) return 0;
+    place = {Quat(face.axes), face.centre};
+    joint.area = face.area;
+    joint.moments = {face.moments.sum(), face.moments.x(), face.moments.y()};
+    nature.outline = face.outline;
+    nature.friction = dynamics::pair_material(*a, *b, s.contact_settings).friction;
+  }
+  joint.number = nature.number = static_cast<int>(s.joints.size()) + 1;
+  joint.body_a = a->id;
+  joint.body_b = b->id;
+  const auto frame_in = [&place](const body::Body& body) {
+    return Pose{body.pose.rotation.conjugate() * place.rotation, body.pose.apply_inverse(place.translation)};
+  };
+  joint.frame_a = frame_in(*a);
+  joint.frame_b = frame_in(*b);
+  JointRow& row = s.report.joints.emplace_back();
+  row.number = joint.number;
+  row.name = nature.name;
+  row.body_a = a->name;
+  row.body_b = b->name;
+  row.area = joint.area;
+  row.verdict = words_of({}, false);
+  s.moving.contact.joints.push_back(joint);
+  s.joints.push_back(std::move(nature));
+  wake(s.moving.bodies, joint);
+  s.is_disturbed = true;
+  return joint.number;
+}
+
+std::vector<JointVerdict> World::judge_joints(const dynamics::StepPart& part, const body::ImpulseLog& log) {
+  State& s = *state_;
+  const double length = s.contact_settings.time_step / part.count;
+  const PartTime when{time(), time() + part.number * length, length,
+                      contact_average(s.contact_settings.time_step)};
+  return s.report.stages.time("joints", [&] {
+    return world::judge_joints(s.moving.contact.joints, s.joints, s.moving.bodies, log, s.settings,
+                               s.contact_settings, when, s.moving.joint_memories);
+  });
+}
+
+bool World::open_joints(std::span<const JointVerdict> verdicts, MovingState& snapshot, bool may_go_back) {
+  State& s = *state_;
+  double most = 0.0;
+  for (const JointVerdict& verdict : verdicts) most = std::max(most, verdict.ratio);
+  if (most < 1.0) {
+    for (const JointVerdict& verdict : verdicts) {
+      JointRow& row = s.report.joints[at(verdict.number - 1)];
+      if (verdict.ratio > row.most_ratio) book(verdict, row);
+      row.verdict = words_of({.ratio = row.most_ratio}, false);
+    }
+    return false;
+  }
+  keep_begin(snapshot);
+  if (may_go_back) s.moving = std::move(snapshot);
+  const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
+  std::vector<int> opened;
+  for (const JointVerdict& verdict : verdicts) {
+    if (verdict.ratio < std::max(1.0, kFirst * most)) continue;
+    opened.push_back(verdict.number);
+    JointRow& row = s.report.joints[at(verdict.number - 1)];
+    book(verdict, row);
+    row.opened = end_time;
+    row.verdict = words_of(verdict, true);
+  }
+  std::erase_if(s.moving.contact.joints, [&](const dynamics::Joint& joint) {
+    const bool is_open = std::binary_search(opened.begin(), opened.end(), joint.number);
+    if (is_open) wake(s.moving.bodies, joint);
+    return is_open;
+  });
+  for (const int number : opened) s.moving.joint_memories.erase(number);
+  s.is_disturbed = true;
+  return may_go_back;
+}
+
+}  // namespace shatterbox::world

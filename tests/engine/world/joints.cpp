@@ -1,0 +1,175 @@
+// Joints through the door: what opens them, and what they leave unchanged.
+#include <catch2/catch.hpp>
+
+#include "engine/world/joints.h"
+#include "engine/world/world.h"
+
+using namespace shatterbox;
+
+namespace {
+
+constexpr double kLength = 0.24, kHeight = 0.07, kWidth = 0.115, kDensity = 1800.0;
+
+world::World make_world(int steps_per_second, bool has_sleep = true) {
+  world::WorldSettings settings;
+  settings.steps_per_second = steps_per_second;
+  settings.has_sleep = has_sleep;
+  return world::World(settings);
+}
+
+body::BodyId add_brick(world::World& world, int material, const Vec3& position, body::Motion motion) {
+  world::BodyDescription brick;
+  brick.name = "brick" + std::to_string(world.bodies().size());
+  brick.form = world::BoxDescription{0.5 * Vec3(kLength, kHeight, kWidth)};
+  brick.material = material;
+  brick.density = kDensity;
+  brick.motion = motion;
+  brick.pose.translation = position;
+  return world.add_body(brick).value();
+}
+
+world::JointDescription mortar(body::BodyId a, body::BodyId b, double strength) {
+  world::JointDescription joint;
+  joint.name = "mortar";
+  joint.body_a = a;
+  joint.body_b = b;
+  joint.form = world::MortarDescription{1e-3};
+  joint.strength = strength;
+  joint.shear_strength = strength;
+  return joint;
+}
+
+/// The greatest tension at the top of a joint that bears one brick sideways: M / W, Pa.
+double weight_tension() {
+  const double weight = kDensity * kLength * kHeight * kWidth * 9.81;
+  const double modulus = kWidth * kHeight * kHeight / 6.0;
+  return weight * 0.5 * (kLength + 5e-4) / modulus;
+}
+
+/// A brick that hangs sideways on one that is held, for a quarter of a second.
+world::JointRow hang(int steps_per_second, double strength) {
+  world::World world = make_world(steps_per_second, false);
+  const int stone = world.add_material(*material::find_preset("brick")).value();
+  const auto held = add_brick(world, stone, Vec3(0, 1, 0), body::Motion::fixed);
+  const auto free = add_brick(world, stone, Vec3(kLength + 5e-4, 1, 0), body::Motion::dynamic);
+  REQUIRE(world.add_joint(mortar(held, free, strength)).value() == 1);
+  while (world.time() < 0.25) world.step();
+  return world.report().joints.front();
+}
+
+}  // namespace
+
+TEST_CASE("a brick that hangs on mortar bends it as a cantilever does and opens it beyond its strength") {
+  const double tension = weight_tension();
+  for (const int steps : {60, 240, 960}) {
+    CAPTURE(steps);
+    const world::JointRow held = hang(steps, 1.02 * tension);
+    CAPTURE(held.verdict);
+    CHECK(held.opened < 0.0);
+    CHECK(held.tension == Approx(tension).epsilon(1e-3));
+    CHECK(held.most_ratio == Approx(1.0 / 1.02).epsilon(1e-3));
+    const world::JointRow opened = hang(steps, 0.98 * tension);
+    CHECK(opened.opened > 0.0);
+    CHECK(opened.opened < 0.02);
+    CHECK(opened.verdict.rfind("opened", 0) == 0);
+  }
+}
+
+TEST_CASE("mortar finds the area of faces that are near and none of others") {
+  world::World world = make_world(240);
+  const int stone = world.add_material(*material::find_preset("brick")).value();
+  const auto a = add_brick(world, stone, Vec3(0, 1, 0), body::Motion::dynamic);
+  const auto b =
+      add_brick(world, stone, Vec3(0.5 * kLength, 1 + kHeight, 0.25 * kWidth), body::Motion::dynamic);
+  const auto far = add_brick(world, stone, Vec3(0, 2, 0), body::Motion::dynamic);
+  CHECK(world.add_joint(mortar(a, far, 1e6)).value() == 0);
+  CHECK(world.add_joint(mortar(a, b, 1e6)).value() == 1);
+  CHECK_FALSE(world.add_joint(mortar(a, a, 1e6)).ok());
+  CHECK_FALSE(world.add_joint(mortar(a, b, 0.0)).ok());
+  CHECK(world.report().joints.front().area == Approx(0.5 * kLength * 0.75 * kWidth));
+  const auto face = world::find_mortar_area(world.bodies()[0], world.bodies()[1], 1e-3);
+  CHECK(face.centre.isApprox(Vec3(0.25 * kLength, 1 + 0.5 * kHeight, 0.125 * kWidth)));
+  CHECK(face.axes.col(0).isApprox(-Vec3::UnitY()));
+  const double y = 0.5 * kLength, z = 0.75 * kWidth;
+  CHECK(face.moments.x() == Approx(y * z * z * z / 12.0));
+  CHECK(face.moments.y() == Approx(z * y * y * y / 12.0));
+  CHECK(face.outline.size() == 4);
+}
+
+TEST_CASE("a hit on joined bricks loads their mortar alike at any step and keeps their momentum") {
+  std::vector<double> ratios;
+  for (const int steps : {120, 240, 960}) {
+    world::World world = make_world(steps);
+    world.set_gravity(Vec3::Zero());
+    const int stone = world.add_material(*material::find_preset("brick")).value();
+    const int steel = world.add_material(*material::find_preset("steel")).value();
+    body::BodyId last = 0;
+    for (int i = 0; i < 4; ++i) {
+      const auto next = add_brick(world, stone, Vec3(i * (kLength + 5e-4), 1, 0), body::Motion::dynamic);
+      if (last != 0) REQUIRE(world.add_joint(mortar(last, next, 1e9)).value() > 0);
+      last = next;
+    }
+    world::BodyDescription ball;
+    ball.name = "ball";
+    ball.form = world::SphereDescription{0.03};
+    ball.material = steel;
+    ball.pose.translation = Vec3(0.4, 1.2, 0.0);
+    ball.velocity = Vec3(0.0, -4.0, 0.0);
+    REQUIRE(world.add_body(ball).ok());
+    const double mass = world.bodies().back().shape->mass;
+    while (world.time() < 0.1) world.step();
+    Vec3 momentum = Vec3::Zero();
+    for (const auto& b : world.bodies()) momentum += b.shape->mass * b.velocity;
+    CHECK((momentum - mass * ball.velocity).norm() < 1e-12 * mass * ball.velocity.norm());
+    CHECK(world.report().joints[1].is_struck);
+    ratios.push_back(world.report().joints[1].most_ratio);
+  }
+  CAPTURE(ratios);
+  CHECK(ratios[0] == Approx(ratios[2]).epsilon(0.01));
+  CHECK(ratios[1] == Approx(ratios[2]).epsilon(0.01));
+}
+
+TEST_CASE("a hit opens the mortar about it and no other and bits repeat") {
+  const auto run = [](std::uint64_t& hash) {
+    world::World world = make_world(240);
+    const int stone = world.add_material(*material::find_preset("brick")).value();
+    const int steel = world.add_material(*material::find_preset("steel")).value();
+    world::BodyDescription floor;
+    floor.name = "floor";
+    floor.form = world::PlaneDescription{};
+    floor.material = stone;
+    REQUIRE(world.add_body(floor).ok());
+    std::vector<body::BodyId> bricks;
+    for (int row = 0; row < 5; ++row)
+      for (int i = 0; i < 5; ++i)
+        bricks.push_back(add_brick(
+            world, stone, Vec3((i + 0.5 * (row % 2)) * (kLength + 5e-4), (row + 0.5) * (kHeight + 5e-4), 0),
+            body::Motion::dynamic));
+    int joints = 0;
+    for (std::size_t i = 0; i < bricks.size(); ++i)
+      for (std::size_t k = i + 1; k < bricks.size(); ++k)
+        joints += world.add_joint(mortar(bricks[i], bricks[k], 0.5e6)).value() > 0 ? 1 : 0;
+    CHECK(joints == 5 * 4 + 4 * 9);
+    world::BodyDescription ball;
+    ball.name = "ball";
+    ball.form = world::SphereDescription{0.05};
+    ball.material = steel;
+    ball.pose.translation = Vec3(0.6, 0.21, 0.5);
+    ball.velocity = Vec3(0.0, 0.0, -15.0);
+    REQUIRE(world.add_body(ball).ok());
+    while (world.time() < 0.1) world.step();
+    hash = world.state_hash();
+    int opened = 0;
+    for (const world::JointRow& row : world.report().joints) opened += row.opened >= 0.0 ? 1 : 0;
+    CHECK(world.report().conservation.momentum_error < 1e-9);
+    CHECK(world.report().contact.crossing_pairs == 0);
+    return opened;
+  };
+  std::uint64_t once = 0, again = 0;
+  const int opened = run(once);
+  CAPTURE(opened);
+  CHECK(opened > 0);
+  CHECK(opened < 56);
+  CHECK(run(again) == opened);
+  CHECK(once == again);
+}
