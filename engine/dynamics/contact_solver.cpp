@@ -348,7 +348,7 @@ class IslandSolver {
         has_strain =
             has_strain || (c.has_sides && lasting > c.strained_from) || (c.is_close && c.impulse[0] > 0.0);
       }
-      hold_joints();
+      joints_.hold(is_before_drift_);
       if (count == 0) return;
       const double enough = round + 1 < how.plain ? how.enough : how.loose;
       if (excess < (has_strain ? how.tight : enough)) return;
@@ -362,9 +362,6 @@ class IslandSolver {
       if (is_on_course && round + 1 < most) go_on_course();
     }
   }
-
-  // All joints at once, after each sweep of the contacts.
-  void hold_joints() { joints_.hold(is_before_drift_ ? kJointShare : 0.0); }
 
   double target_before_drift(const SolverContact& c) const {
     // What touches is held where it is; letting it use up the last of its gap would drop and catch it in
@@ -405,7 +402,7 @@ class IslandSolver {
     for (int round = 1; is_pushed_apart && !has_arrivals_ && round < most_sweeps(16); ++round) {
       is_pushed_apart = false;
       for (std::size_t k = 0; k < island_.contacts.size(); ++k) hold(k, contact(k));
-      hold_joints();
+      joints_.hold(is_before_drift_);
     }
   }
 
@@ -451,7 +448,7 @@ class IslandSolver {
         see(k, c);
         excess = std::max(excess, found / speed);
       }
-      hold_joints();
+      joints_.hold(is_before_drift_);
       if (excess < kBounced) break;
     }
     for (const int i : island_.contacts) {
@@ -532,7 +529,6 @@ class IslandSolver {
   static constexpr double kBounced = 1e-9;      // of the speed: error of a bounce
   static constexpr double kStill = 0.25;        // of what a sweep may leave
   static constexpr double kFastSpin = 0.005;    // rad a substep
-  static constexpr double kJointShare = 0.3;    // of what a joint is off, closed in a substep
   static constexpr int kJointSweeps = 8;        // of an island with joints in which nothing arrives
 
   const ContactSettings& settings_;

@@ -18,7 +18,8 @@ using Six6 = Eigen::Matrix<double, 6, 6>;
 // may be than that, where others hold more mass on less area.
 constexpr double kStiff = 1e7;
 constexpr double kStiffest = 1e3;
-constexpr double kMostOff = 2e-3;  // of the lesser reach, m: what is further off comes back step by step
+constexpr double kMended = 0.3;       // of what joints are off, in a substep,
+constexpr double kMostMended = 2e-3;  // of the lesser reach, and rad: no more of it
 
 // After so many substeps.
 Pose pose_of(const WorkBody& body, int substeps) {
@@ -106,13 +107,6 @@ void JointSolver::place(int substeps) {
     joint.arm_a = joint.point - a.translation;
     joint.arm_b = joint.point - b.translation;
     joint.axes = (a.rotation * joint.joint->frame_a.rotation).toRotationMatrix();
-    const double most = kMostOff * std::min(body(joint.a).reach, body(joint.b).reach);
-    joint.off = on_a - on_b;
-    joint.off *= std::min(1.0, most / std::max(joint.off.norm(), 1e-300));
-    const Quat turn = (a.rotation * joint.joint->frame_a.rotation) *
-                      (b.rotation * joint.joint->frame_b.rotation).conjugate();
-    joint.off_turn = (turn.w() < 0.0 ? -2.0 : 2.0) * turn.vec();
-    joint.off_turn *= std::min(1.0, kMostOff / std::max(joint.off_turn.norm(), 1e-300));
     const double s = joint.stiffness;
     joint.linear_stiffness = s * joint.joint->area;
     joint.turn_stiffness =
@@ -121,6 +115,7 @@ void JointSolver::place(int substeps) {
             : Mat3(s * joint.axes * joint.joint->moments.asDiagonal() * joint.axes.transpose());
   }
   assemble();
+  find_mending(substeps);
 }
 
 void JointSolver::assemble() {
@@ -164,21 +159,55 @@ void JointSolver::assemble() {
   factor_->solver.factorize(factor_->matrix);
 }
 
-void JointSolver::hold(double share) {
+// The pushes on both bodies of a joint that is to go so fast, or so far, against its springs.
+void JointSolver::add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn,
+                             VecX& pushes) const {
+  Six force;
+  force << joint.linear_stiffness * linear, joint.turn_stiffness * turn;
+  if (dof(joint.a) >= 0) pushes.segment<6>(dof(joint.a)) += motion_at(joint.arm_a).transpose() * force;
+  if (dof(joint.b) >= 0) pushes.segment<6>(dof(joint.b)) -= motion_at(joint.arm_b).transpose() * force;
+}
+
+// How fast each joint must close. By one move of all bodies, so that no joint is bidden what another forbids:
+// being so stiff they would strain each other without end.
+void JointSolver::find_mending(int substeps) {
+  VecX pushes = VecX::Zero(dof_count_);
+  double share = kMended;
+  for (const int k : island_.joints) {
+    const WorkJoint& joint = work_.joints[at(k)];
+    const Pose a = pose_of(body(joint.a), substeps), b = pose_of(body(joint.b), substeps);
+    const Vec3 off = b.apply(joint.joint->frame_b.translation) - a.apply(joint.joint->frame_a.translation);
+    const Quat turn = (b.rotation * joint.joint->frame_b.rotation) *
+                      (a.rotation * joint.joint->frame_a.rotation).conjugate();
+    const Vec3 off_turn = (turn.w() < 0.0 ? -2.0 : 2.0) * turn.vec();
+    add_pushes(joint, off, off_turn, pushes);
+    const double reach = std::min(body(joint.a).reach, body(joint.b).reach);
+    const double far = std::max(off.norm() / reach, joint.joint->is_pivot ? 0.0 : off_turn.norm());
+    if (share * far > kMostMended) share = kMostMended / far;
+  }
+  const VecX speeds = share / step_ * factor_->solver.solve(pushes);
+  for (const int k : island_.joints) {
+    WorkJoint& joint = work_.joints[at(k)];
+    Six mending = Six::Zero();
+    if (dof(joint.a) >= 0) mending += motion_at(joint.arm_a) * speeds.segment<6>(dof(joint.a));
+    if (dof(joint.b) >= 0) mending -= motion_at(joint.arm_b) * speeds.segment<6>(dof(joint.b));
+    joint.mending = mending.head<3>();
+    joint.mending_turn = mending.tail<3>();
+  }
+}
+
+void JointSolver::hold(bool mends) {
   if (is_empty()) return;
   VecX pushes = VecX::Zero(dof_count_);
   std::vector<Six> wanted(island_.joints.size());
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     const WorkJoint& joint = work_.joints[at(island_.joints[n])];
     const WorkBody &a = body(joint.a), &b = body(joint.b);
-    Six& w = wanted[n];
-    w.head<3>() = -share / step_ * joint.off - (a.velocity + a.spin.cross(joint.arm_a)) +
-                  (b.velocity + b.spin.cross(joint.arm_b));
-    w.tail<3>() = -share / step_ * joint.off_turn - a.spin + b.spin;
-    Six force;
-    force << joint.linear_stiffness * w.head<3>(), joint.turn_stiffness * w.tail<3>();
-    if (dof(joint.a) >= 0) pushes.segment<6>(dof(joint.a)) += motion_at(joint.arm_a).transpose() * force;
-    if (dof(joint.b) >= 0) pushes.segment<6>(dof(joint.b)) -= motion_at(joint.arm_b).transpose() * force;
+    wanted[n] << b.velocity + b.spin.cross(joint.arm_b) - a.velocity - a.spin.cross(joint.arm_a),
+        b.spin - a.spin;
+    if (mends) wanted[n].head<3>() += joint.mending;
+    if (mends) wanted[n].tail<3>() += joint.mending_turn;
+    add_pushes(joint, wanted[n].head<3>(), wanted[n].tail<3>(), pushes);
   }
   const VecX change = factor_->solver.solve(pushes);
   // Impulses, not these changes, are given to the bodies: both get the same to the last bit.

@@ -20,9 +20,9 @@ class JointSolver {
   void begin();
   /// Where the bodies are after so many substeps.
   void place(int substeps);
-  /// Changes velocities so that no joint opens or turns; or so that `share` of what it is off is back at the
-  /// substep's end.
-  void hold(double share);
+  /// Changes velocities so that no joint opens or turns; or so that what they are off, as bodies went
+  /// straight through a substep, is mended by the end of the next.
+  void hold(bool mends);
   /// Adds what this substep gave to that of the step.
   void book();
 
@@ -31,8 +31,10 @@ class JointSolver {
 
   WorkBody& body(int i);
   int dof(int i) const;
+  void add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn, VecX& pushes) const;
   void make_stiffnesses();
   void assemble();
+  void find_mending(int substeps);
 
   const Island& island_;
   const double step_;

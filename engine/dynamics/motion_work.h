@@ -168,10 +168,10 @@ struct WorkJoint {
   int state = 0;     // number in ContactState::joints
   const Joint* joint = nullptr;
 
-  // At the present pose: one point for both bodies, the axes of a's frame, and how far a is off, m and rad.
+  // At the present pose: one point for both bodies, and the axes of a's frame.
   Vec3 point = Vec3::Zero(), arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
   Mat3 axes = Mat3::Identity();
-  Vec3 off = Vec3::Zero(), off_turn = Vec3::Zero();
+  Vec3 mending = Vec3::Zero(), mending_turn = Vec3::Zero();  // m/s, rad/s of a against b that put it right
   // N s by m/s, and N m s by rad/s; of a square metre of the first kind.
   double stiffness = 0.0, linear_stiffness = 0.0;
   Mat3 turn_stiffness = Mat3::Zero();

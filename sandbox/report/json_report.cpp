@@ -64,6 +64,25 @@ Json breaks(const world::WorldReport& report) {
   return list;
 }
 
+Json joints(const world::WorldReport& report) {
+  Json list = Json::array();
+  for (const world::JointRow& row : report.joints) {
+    list.push_back({{"name", row.name},
+                    {"a", row.body_a},
+                    {"b", row.body_b},
+                    {"area_m2", number(row.area)},
+                    {"verdict", row.verdict},
+                    {"opened", row.opened < 0.0 ? Json(nullptr) : number(row.opened)},
+                    {"ratio", number(row.most_ratio)},
+                    {"tension_pa", number(row.tension)},
+                    {"shear_pa", number(row.shear)},
+                    {"force_n", vector(row.force)},
+                    {"moment_nm", vector(row.moment)},
+                    {"struck", row.is_struck}});
+  }
+  return list;
+}
+
 Json merged(const world::WorldReport& report) {
   int count = 0;
   double share = 0.0;
@@ -175,6 +194,7 @@ Json make_json(const RunRecord& record) {
         {"start", w.tetrahedra_start}, {"end", w.tetrahedra_end}, {"max", w.tetrahedra_most}};
   json["impacts"] = impacts(w);
   json["breaks"] = breaks(w);
+  if (!w.joints.empty()) json["joints"] = joints(w);
   json["audit"] = audit(record);
   json["contact"] = {{"most", w.contact.most_contacts},
                      {"failsafe_steps", w.contact.failsafe_steps},

@@ -66,6 +66,22 @@ std::string break_lines(const RunRecord& record) {
   return text;
 }
 
+std::string joint_line(const RunRecord& record) {
+  const auto& joints = record.world.joints;
+  if (joints.empty()) return {};
+  const auto opened =
+      std::count_if(joints.begin(), joints.end(), [](const auto& joint) { return joint.opened >= 0.0; });
+  std::string text = fmt::format("{}, {} of them opened",
+                                 plural(static_cast<long>(joints.size()), "joint", "joints"), opened);
+  const world::JointRow* hardest = nullptr;
+  for (const world::JointRow& joint : joints)
+    if (joint.opened < 0.0 && (hardest == nullptr || joint.most_ratio > hardest->most_ratio))
+      hardest = &joint;
+  if (hardest != nullptr)
+    text += fmt::format("; of the others {} to {} {}", hardest->body_a, hardest->body_b, hardest->verdict);
+  return text + "\n";
+}
+
 std::string time_lines(const RunRecord& record) {
   std::vector<double> frame, simulate, render, encode;
   for (const FrameRecord& f : record.frames) {
@@ -179,9 +195,9 @@ std::string make_summary(const RunRecord& record) {
     text += fmt::format("interrupted at {:.2f} of {:g} s; with --resume it goes on\n",
                         record.simulated_seconds, record.asked_seconds);
   }
-  text += bodies_line(record) + impact_lines(record) + break_lines(record) + time_lines(record) +
-          crossing_line(record) + parted_line(record) + behind_lines(record) + error_line(record) +
-          audit_line(record);
+  text += bodies_line(record) + impact_lines(record) + break_lines(record) + joint_line(record) +
+          time_lines(record) + crossing_line(record) + parted_line(record) + behind_lines(record) +
+          error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,

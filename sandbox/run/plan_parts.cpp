@@ -74,6 +74,8 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
       part("sleeping", scene.world.has_sleep ? mover : "", "may come to rest",
            scene.world.has_sleep ? "nothing can move" : "scene.sleep is false"),
       part("scripted_motion", scripted, "follows a path", "no body has keyframes"),
+      part("joints", scene.joints.empty() ? "" : quoted(scene.joints.front().name), "holds bodies together",
+           "the scene has no [[joint]]"),
       part("level_sets", "", "", "solids touch by their triangles"),
       part("shell_stress", find_body_that(scene, can_break_as<scene::ShellForm>),
            "can break: stiffness of membrane and bending, factors, flaws", "no shell can break"),
@@ -114,7 +116,7 @@ void sort_parts(const std::vector<PartPlan>& parts, report::RunRecord& record) {
     if (name == "shell_stress") return w.solver.solves == 0;
     if (name == "grains") return !has_grain_edges;
     if (name == "fracture") return w.breaks.empty();
-    if (name == "explosions" || name == "hands") return !has_stage(name);
+    if (name == "explosions" || name == "hands" || name == "joints") return !has_stage(name);
     return false;
   };
   record.used.clear();

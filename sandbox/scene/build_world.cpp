@@ -8,6 +8,7 @@
 #include "engine/core/random.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_diagnosis.h"
+#include "sandbox/scene/build_joints.h"
 #include "sandbox/scene/build_mesh.h"
 #include "sandbox/scene/limits.h"
 
@@ -226,6 +227,8 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
       built.origins[id.value()] = {static_cast<int>(i), static_cast<int>(copy)};
     }
   }
+  if (problems.size() > before) return std::nullopt;
+  add_joints(scene, built, problems);
   if (problems.size() > before) return std::nullopt;
   for (std::string& sentence : find_limits(scene.world, built.world.bodies()))
     built.plan.notes.push_back(std::move(sentence));

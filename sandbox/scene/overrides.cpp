@@ -61,7 +61,7 @@ TomlValue* find_named(TomlValue& scene, const std::string& name, std::vector<std
     }
     return scene.find(table);
   }
-  for (const char* list_name : {"body", "material", "event"}) {
+  for (const char* list_name : {"body", "material", "joint", "event"}) {
     TomlValue* list = scene.find(list_name);
     if (list == nullptr || !list->is_array()) continue;
     for (std::size_t i = 0; i < list->items.size(); ++i) {

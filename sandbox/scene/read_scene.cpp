@@ -9,6 +9,7 @@
 #include "sandbox/scene/nearest_name.h"
 #include "sandbox/scene/overrides.h"
 #include "sandbox/scene/read_body.h"
+#include "sandbox/scene/read_joint.h"
 #include "sandbox/scene/read_picture.h"
 #include "sandbox/scene/table_reader.h"
 
@@ -83,7 +84,7 @@ void read_settings(const TomlValue& table, SceneDescription& scene, Problems& pr
 /// All names given, in the order of the text.
 std::vector<const TomlValue*> names_in(const TomlValue& tree) {
   std::vector<const TomlValue*> names;
-  for (const char* list_name : {"body", "material", "event"}) {
+  for (const char* list_name : {"body", "material", "joint", "event"}) {
     const TomlValue* list = tree.find(list_name);
     if (list == nullptr || !list->is_array()) continue;
     for (const TomlValue& item : list->items) {
@@ -97,7 +98,7 @@ std::vector<const TomlValue*> names_in(const TomlValue& tree) {
   return names;
 }
 
-/// Names share one space: bodies, materials, events and the words that --set knows.
+/// Names share one space: bodies, materials, joints, events and the words that --set knows.
 void check_names(const TomlValue& tree, Problems& problems) {
   const std::vector<std::string> words{"scene", "camera", "light", "render", "pair"};
   std::vector<const TomlValue*> seen;
@@ -121,7 +122,7 @@ void check_names(const TomlValue& tree, Problems& problems) {
       seen.push_back(name);
     } else {
       book(problems, name->place, fmt::format("the name \"{}\" is taken", name->text),
-           fmt::format("the first is at {}; bodies, materials and events share their names",
+           fmt::format("the first is at {}; bodies, materials, joints and events share their names",
                        describe((*twin)->place)));
     }
   }
@@ -168,10 +169,11 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
   }
   const auto& events = tables_of(root, "event");
   for (std::size_t i = 0; i < events.size(); ++i) read_event(events[i], i, scene, problems);
+  const auto& joints = tables_of(root, "joint");
+  for (std::size_t i = 0; i < joints.size(); ++i) read_joint(joints[i], i, scene, problems);
   read_camera(table_of(root, "camera"), scene, problems);
   read_light(table_of(root, "light"), scene.light, problems);
   read_render(table_of(root, "render"), scene.render, problems);
-  root.later({"joint"}, "bodies cannot be joined yet");
   root.finish();
   if (scene.bodies.empty() && problems.empty()) {
     book(problems, Place{file, 0, 0}, "the scene has no body", "add a [[body]] with kind = \"shell\"");

@@ -14,6 +14,7 @@
 #include "engine/core/vec.h"
 #include "engine/geometry/generators.h"
 #include "engine/material/material.h"
+#include "engine/world/description.h"
 #include "engine/world/settings.h"
 #include "sandbox/scene/event_description.h"
 #include "sandbox/scene/problem.h"
@@ -147,6 +148,19 @@ inline bool can_break(const BodyEntry& body) {
   return form != nullptr && form->is_breakable;
 }
 
+/// Who is held together: all of these, and their copies, by mortar where they face each other; two, at a
+/// point.
+struct JointEntry {
+  Place place;
+  std::string name;
+  std::vector<int> bodies;  // numbers in SceneDescription::bodies
+  std::variant<world::MortarDescription, world::PivotDescription> form;
+  // Mortar of class M2.5 to M9 on clay bricks: about what EN 1996-1-1 tells as flexural and initial shear
+  // strength, which are characteristic values (0.1 and 0.2 MPa), as a mean.
+  double strength = 0.3e6;        // Pa, in tension
+  double shear_strength = 0.3e6;  // Pa, without pressure
+};
+
 struct CameraKey {
   double at = 0.0;  // s
   Vec3 position = Vec3::Zero(), target = Vec3::Zero();
@@ -193,6 +207,7 @@ struct SceneDescription {
   std::vector<MaterialEntry> materials;
   std::vector<PairEntry> pairs;
   std::vector<BodyEntry> bodies;
+  std::vector<JointEntry> joints;
   std::vector<EventEntry> events;  // by time, then in the order of the text; last, who wait for something
   CameraEntry camera;
   LightEntry light;

@@ -65,7 +65,7 @@ TEST_CASE("every scene that comes along passes its check and says what must be s
   const Folder folder;
   for (const char* scene : {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments",
                             "card_house", "plate_stack", "bowls", "rain", "reel", "tablet", "wall",
-                            "brick_wall", "dominoes", "blast", "arch", "vase", "egg"}) {
+                            "brick_wall", "mortar_wall", "dominoes", "blast", "arch", "vase", "egg"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);

@@ -233,6 +233,32 @@ TEST_CASE("copies of a scripted body go the same way from where each stands, abo
   check(Vec3(0, 2, -0.5));
 }
 
+TEST_CASE("mortar joins copies where they touch and says so where none do") {
+  const std::string wall =
+      "[[body]]\nname = \"brick\"\nkind = \"box\"\nsize = [0.2, 0.1, 0.1]\nposition = [0, 0.05, 0]\n"
+      "repeat = {count = [3, 2, 1], spacing = [0.2005, 0.1005, 1], bond = 0.5}\n"
+      "[[body]]\nname = \"floor\"\nkind = \"plane\"\n"
+      "[[joint]]\nname = \"mortar\"\nbetween = [\"brick\", \"floor\"]\n";
+  const Reading reading = read(wall);
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  const auto built = build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  const auto& joints = built->world.report().joints;
+  CHECK(joints.size() == 2 * 2 + 5 + 3);  // in the courses, between them, and on the floor
+  CHECK(joints.front().name == "mortar");
+  const Reading apart = read(wall + "gap = 0.0001\n");
+  REQUIRE(apart.scene.has_value());
+  CHECK(build_world(*apart.scene, problems).has_value());  // the floor is near enough
+  const Reading none = read(
+      "[[body]]\nname = \"a\"\nkind = \"box\"\nposition = [0, 1, 0]\n[[body]]\nname = \"b\"\nkind = "
+      "\"box\"\nposition = [0, 3, 0]\n[[joint]]\nbetween = [\"a\", \"b\"]\n");
+  REQUIRE(none.scene.has_value());
+  CHECK(!build_world(*none.scene, problems).has_value());
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].message.find("look against each other") != std::string::npos);
+}
+
 TEST_CASE("a scene beyond what the engine bears says so at load") {
   const auto notes = [](const std::string& text) {
     const Reading reading = read(text);
