@@ -251,8 +251,8 @@ TEST_CASE("mortar joins copies where they touch and says so where none do") {
   REQUIRE(apart.scene.has_value());
   CHECK(build_world(*apart.scene, problems).has_value());  // the floor is near enough
   const Reading none = read(
-      "[[body]]\nname = \"a\"\nkind = \"box\"\nposition = [0, 1, 0]\n[[body]]\nname = \"b\"\nkind = "
-      "\"box\"\nposition = [0, 3, 0]\n[[joint]]\nbetween = [\"a\", \"b\"]\n");
+      "[[body]]\nname = \"a\"\nkind = \"box\"\nsize = 1\nposition = [0, 1, 0]\n[[body]]\nname = \"b\"\n"
+      "kind = \"box\"\nsize = 1\nposition = [0, 3, 0]\n[[joint]]\nbetween = [\"a\", \"b\"]\n");
   REQUIRE(none.scene.has_value());
   CHECK(!build_world(*none.scene, problems).has_value());
   REQUIRE(problems.size() == 1);

@@ -256,7 +256,7 @@ const Broken kCorpus[] = {
     {"[[joint]]\nbetween = [\"a\"]\nat = [0,0,0]\n[[body]]\nname = \"a\"\nkind = \"box\"\n", "t.toml:3:1",
      "\"at\" does not belong here", "point"},
     {"[[joint]]\nbetween = [\"a\"]\nstrength = 0\n[[body]]\nname = \"a\"\nkind = \"box\"\n", "t.toml:3:12",
-     "more than 0 Pa", ""},
+     "greater than 0 Pa", ""},
     {"[scene]\ncontact = \"papre\"\n", "t.toml:2:11", "\"papre\"", "\"paper\""},
     {"[[material]]\nname = \"m\"\nlike = \"steel\"\nplasticity = 1\n", "t.toml:4:1", "not available", ""},
     {"", "t.toml", "the scene has no body", "[[body]]"},
