@@ -7,23 +7,22 @@
 
 #include "sandbox/report/json_report.h"
 #include "sandbox/report/statistics.h"
+#include "sandbox/scene/words.h"
 
 namespace shatterbox::sandbox::report {
 
 namespace {
 
-constexpr std::size_t kMostRows = 5;
+using scene::counted;
 
-std::string plural(long count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
+constexpr std::size_t kMostRows = 5;
 
 std::string bodies_line(const RunRecord& record) {
   return fmt::format(
-      "{:g} s of \"{}\" in {} steps: {} at the start, {} at the end, {} of them born of breaks; at most "
+      "{:g} s of \"{}\" in {}: {} at the start, {} at the end, {} of them born of breaks; at most "
       "{} triangles\n",
-      record.simulated_seconds, record.scene, record.world.steps,
-      plural(record.world.bodies_start, "body", "bodies"), record.bodies_end, record.pieces,
+      record.simulated_seconds, record.scene, counted(record.world.steps, "step"),
+      counted(record.world.bodies_start, "body", "bodies"), record.bodies_end, record.pieces,
       record.world.triangles_most);
 }
 
@@ -35,8 +34,8 @@ std::string impact_lines(const RunRecord& record) {
                    [](const auto* a, const auto* b) { return a->ratio > b->ratio; });
   if (rows.size() > kMostRows) rows.resize(kMostRows);
   std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->time < b->time; });
-  std::string text = fmt::format("{} evaluated",
-                                 plural(static_cast<long>(record.world.impacts.size()), "impact", "impacts"));
+  std::string text = fmt::format(
+      "{} evaluated", counted(static_cast<long>(record.world.impacts.size()), "impact", "impacts"));
   if (record.world.solver.skipped > 0)
     text += fmt::format(", {} too weak to matter", record.world.solver.skipped);
   text += rows.empty() ? "\n" : ", the hardest:\n";
@@ -51,15 +50,15 @@ std::string impact_lines(const RunRecord& record) {
 std::string break_lines(const RunRecord& record) {
   const auto& breaks = record.world.breaks;
   if (breaks.empty()) return "nothing broke\n";
-  std::string text = fmt::format("{}{}\n", plural(static_cast<long>(breaks.size()), "break", "breaks"),
+  std::string text = fmt::format("{}{}\n", counted(static_cast<long>(breaks.size()), "break", "breaks"),
                                  breaks.size() > kMostRows ? ", the first:" : ":");
   for (std::size_t i = 0; i < std::min(breaks.size(), kMostRows); ++i) {
     const world::BreakRow& row = breaks[i];
     text += fmt::format(
-        "  {:7.3f} s  {:<16} {:>4} pieces, {:.3g} cm2 of new area ({:.0f} % on grain boundaries), {:.3g} "
+        "  {:7.3f} s  {:<16} {:>4} {}, {:.3g} cm2 of new area ({:.0f} % on grain boundaries), {:.3g} "
         "of {:.3g} mJ spent{}{}\n",
-        row.time, row.body, row.pieces, 1e4 * row.new_area, 100.0 * row.grain_share,
-        1e3 * row.fracture_energy, 1e3 * row.elastic_energy,
+        row.time, row.body, row.pieces, row.pieces == 1 ? "piece" : "pieces", 1e4 * row.new_area,
+        100.0 * row.grain_share, 1e3 * row.fracture_energy, 1e3 * row.elastic_energy,
         row.energy_guard_active ? ", stopped by the energy" : "",
         row.generation_bound_active ? ", stopped by the bound on generations" : "");
   }
@@ -122,8 +121,8 @@ std::string crossing_line(const RunRecord& record) {
   const std::size_t shown = std::min<std::size_t>(contact.crossing_names.size(), 3);
   std::string names;
   for (std::size_t i = 0; i < shown; ++i) names += (i > 0 ? ", " : "") + contact.crossing_names[i];
-  return fmt::format("{} pairs crossed when they were first seen and may pass until they are apart: {}{}\n",
-                     contact.crossing_pairs, names,
+  return fmt::format("{} crossed when first seen and may pass until apart: {}{}\n",
+                     counted(contact.crossing_pairs, "pair"), names,
                      contact.crossing_pairs > static_cast<long>(shown) ? ", ..." : "");
 }
 
@@ -133,7 +132,7 @@ std::string parted_line(const RunRecord& record) {
   return fmt::format(
       "{} lay exactly in each other: the second of each was set aside by a hundred thousandth of its size: "
       "{}{}\n",
-      plural(static_cast<long>(names.size()), "pair", "pairs"), names.front(),
+      counted(static_cast<long>(names.size()), "pair", "pairs"), names.front(),
       names.size() > 1 ? ", ..." : "");
 }
 
@@ -166,15 +165,15 @@ std::string audit_line(const RunRecord& record) {
   if (!record.has_audit) return {};
   const audit::AuditReport& a = record.audit;
   std::string text =
-      fmt::format("audit of {}: {}, {}", plural(a.steps, "step", "steps"),
-                  plural(a.crossings, "crossing", "crossings"), plural(a.passages, "passage", "passages"));
+      fmt::format("audit of {}: {}, {}", counted(a.steps, "step", "steps"),
+                  counted(a.crossings, "crossing", "crossings"), counted(a.passages, "passage", "passages"));
   if (a.first_time >= 0.0) text += fmt::format(", the first at {:.4f} s", a.first_time);
   if (a.exempt_pairs > 0)
     text += fmt::format("; apart: {} crossed from the start or from birth",
-                        plural(a.exempt_pairs, "pair", "pairs"));
+                        counted(a.exempt_pairs, "pair", "pairs"));
   if (a.group_pairs > 0)
-    text +=
-        fmt::format("; apart: up to {} of one group crossed at once", plural(a.group_pairs, "pair", "pairs"));
+    text += fmt::format("; apart: up to {} of one group crossed at once",
+                        counted(a.group_pairs, "pair", "pairs"));
   text += fmt::format("; {:.1f} s on the clock\n", 1e-3 * record.audit_time);
   std::size_t shown = 0;
   for (std::size_t i = 0; i < a.findings.size() && shown < kMostRows; ++i) {

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "sandbox/run/doubts.h"
 #include "sandbox/run/job.h"
 #include "sandbox/run/run.h"
 #include "sandbox/scene/find_scene.h"
+#include "sandbox/scene/words.h"
 #include "sandbox/study/study.h"
 
 namespace shatterbox::sandbox::run {
@@ -22,10 +24,14 @@ int check_one(const Options& options) {
   if (!built) return refuse(problems);
   for (const std::string& note : built->plan.notes) fmt::print("note: {}\n", note);
   for (const std::string& warning : scene->warnings) fmt::print("warning: {}\n", warning);
+  for (const scene::Problem& doubt : find_doubts(*scene, *built))
+    fmt::print("warning: {}\n", scene::describe(doubt));
   std::size_t triangles = 0;
   for (const body::Body& body : built->world.bodies()) triangles += body.shape->surface.triangles.size();
-  fmt::print("{}: fine. {} bodies, {} triangles, {} events, {:g} s at {} steps a second\n", file,
-             built->world.bodies().size(), triangles, scene->events.size(), scene->seconds,
+  fmt::print("{}: fine. {}, {}, {}, {:g} s at {} steps a second\n", file,
+             scene::counted(static_cast<long>(built->world.bodies().size()), "body", "bodies"),
+             scene::counted(static_cast<long>(triangles), "triangle"),
+             scene::counted(static_cast<long>(scene->events.size()), "event"), scene->seconds,
              scene->world.steps_per_second);
   return kDone;
 }

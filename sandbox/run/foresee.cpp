@@ -9,6 +9,7 @@
 #include "engine/core/clock.h"
 #include "sandbox/run/projector.h"
 #include "sandbox/scene/parts.h"
+#include "sandbox/scene/words.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -206,9 +207,9 @@ std::string describe(const Foreseen& f) {
                               : fmt::format("meets \"{}\" with {:.3g} m/s", f.other, f.speed);
   if (f.pieces > 0)
     return fmt::format(
-        "{}: {} at {:.3f} s and breaks, {:.3g} times as stressed as it bears: {} pieces after "
+        "{}: {} at {:.3f} s and breaks, {:.3g} times as stressed as it bears: {} after "
         "{:g} s; that took {:.0f} ms, then {:.3g} ms a step{}",
-        who, met, f.time, f.ratio, f.pieces, kAftermath, f.break_ms, f.later_ms,
+        who, met, f.time, f.ratio, scene::counted(f.pieces, "piece"), kAftermath, f.break_ms, f.later_ms,
         f.bytes < 1e5 ? "" : fmt::format(", {:.2g} MB more", f.bytes / 1e6));
   if (f.was_given_up)
     return fmt::format("{}: holds until {:.2f} s, {}; the trial was given up there after {:g} s", who, f.time,

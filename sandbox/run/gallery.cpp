@@ -9,6 +9,7 @@
 #include "render/output/image_file.h"
 #include "render/output/video_reader.h"
 #include "sandbox/report/text_file.h"
+#include "sandbox/scene/words.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -84,12 +85,13 @@ std::string numbers_of(const nlohmann::json& shot) {
     return frame.contains(key) && frame[key].is_number() ? frame[key].get<double>() : 0.0;
   };
   return fmt::format(
-      "{} pieces of {} breaks, {} triangles at most, {} steps; {:.3g} s of film in {:.3g} s; a frame {:.1f} "
+      "{} of {}, {} triangles at most, {}; {:.3g} s of film in {:.3g} s; a frame {:.1f} "
       "ms "
       "(median; worst {:.0f})",
-      shot.value("pieces", 0L), shot["breaks"].size(), shot["triangles"].value("max", 0L),
-      shot.value("steps", 0L), number("video_seconds"), number("wall_seconds"), of_frame("median"),
-      of_frame("max"));
+      scene::counted(shot.value("pieces", 0L), "piece"),
+      scene::counted(static_cast<long>(shot["breaks"].size()), "break"), shot["triangles"].value("max", 0L),
+      scene::counted(shot.value("steps", 0L), "step"), number("video_seconds"), number("wall_seconds"),
+      of_frame("median"), of_frame("max"));
 }
 
 std::string entry_of(const Exhibit& exhibit, const std::string& fault) {

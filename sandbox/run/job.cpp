@@ -7,6 +7,7 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
+#include "sandbox/run/doubts.h"
 #include "sandbox/run/exports.h"
 #include "sandbox/scene/find_scene.h"
 
@@ -39,6 +40,8 @@ void describe_job(const Job& job, report::RunRecord& record) {
   record.asked_seconds = scene.seconds;
   record.warnings = scene.warnings;
   record.warnings.insert(record.warnings.end(), job.built->plan.notes.begin(), job.built->plan.notes.end());
+  for (const scene::Problem& doubt : find_doubts(scene, *job.built))
+    record.warnings.push_back(scene::describe(doubt));
 }
 
 }  // namespace

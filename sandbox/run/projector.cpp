@@ -51,6 +51,7 @@ bool Projector::step(double film) {
   world::World& world = built_.world;
   for (std::string& fault : script_.play(built_, [this] { return look(); }))
     recorder_.record.warnings.push_back(std::move(fault));
+  throws_.add(script_.take_throws());
   const view::Moment moment = now();
   for (const scene::Cue& cue : script_.take_cues()) {
     if (const auto* change = std::get_if<scene::CameraChange>(&cue.event->action))
@@ -64,6 +65,7 @@ bool Projector::step(double film) {
   inspector_.begin_step(world);
   if (!world.step()) return false;
   inspector_.end_step(world);
+  throws_.look(world);
   return true;
 }
 
@@ -95,6 +97,8 @@ std::optional<view::Moment> Projector::next() {
 void Projector::finish() {
   const auto last_step = static_cast<long>(scene_.seconds * scene_.world.steps_per_second + 0.5);
   while (built_.world.steps() < last_step && !is_interrupted()) (void)step(1e300);
+  if (is_interrupted()) return;
+  for (std::string& sentence : throws_.missed()) recorder_.record.warnings.push_back(std::move(sentence));
 }
 
 }  // namespace shatterbox::sandbox::run

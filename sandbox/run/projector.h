@@ -8,6 +8,7 @@
 
 #include "sandbox/run/inspector.h"
 #include "sandbox/run/recorder.h"
+#include "sandbox/run/throws.h"
 #include "sandbox/scene/build_world.h"
 #include "sandbox/script/script.h"
 #include "sandbox/view/view.h"
@@ -29,7 +30,8 @@ class Projector {
   /// The world's time that the frame after the last one will show first, s, unless the script changes that.
   double time_ahead() const;
 
-  /// Steps on to the end of the scene: the last frame's picture shows its begin.
+  /// Steps on to the end of the scene: the last frame's picture shows its begin. Then it is known what hit
+  /// nothing.
   void finish();
 
  private:
@@ -49,6 +51,7 @@ class Projector {
   script::Script script_;
   view::CameraRig rig_;  // as the script sees it: at step borders, whatever frames there are
   Inspector inspector_;
+  Throws throws_;
   int frames_per_second_, slots_;
   int slot_ = -1;                   // of the last moment, counted through all frames
   std::vector<body::Body> before_;  // before the last step, if a frame shows a moment within it

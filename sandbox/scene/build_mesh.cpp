@@ -190,8 +190,9 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
     const Bounds bounds = bounds_of(built.mesh.positions);
     const double across = (bounds.most - bounds.least).maxCoeff();
     if (across > kHardlyMeant)
-      notes.push_back(fmt::format("{}: {:.3g} m across; if the file is in millimetres, write scale = 0.001",
-                                  files->files.front(), across));
+      notes.push_back(
+          describe(Problem{place, fmt::format("the mesh {} is {:.3g} m across", files->files.front(), across),
+                           "if the file is in millimetres, write scale = 0.001"}));
   }
   return built;
 }

@@ -190,9 +190,13 @@ std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& pr
   std::vector<std::string> groups;
   const std::size_t before = problems.size();
   for (const BodyEntry& body : scene.bodies) {
-    if (auto planned = plan_body(body, scene, groups, plan.notes, problems)) {
+    std::vector<std::string> notes;
+    if (auto planned = plan_body(body, scene, groups, notes, problems)) {
       plan.bodies.push_back(std::move(*planned));
     }
+    for (std::string& note : notes)  // many bodies may be of one mesh
+      if (std::find(plan.notes.begin(), plan.notes.end(), note) == plan.notes.end())
+        plan.notes.push_back(std::move(note));
   }
   if (problems.size() > before) return std::nullopt;
   return plan;

@@ -70,6 +70,7 @@ void read_lens(TableReader& reader, SceneDescription& scene) {
 void read_camera(const TomlValue& table, SceneDescription& scene, Problems& problems) {
   CameraEntry& camera = scene.camera;
   TableReader reader(table, "[camera]", problems);
+  camera.place = table.place;
   camera.position = reader.vector("position", coordinate());
   camera.target = reader.vector("target", coordinate());
   camera.up = reader.vector("up", between(-1e6, 1e6)).value_or(camera.up);

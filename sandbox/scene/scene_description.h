@@ -167,6 +167,7 @@ struct CameraKey {
   double fov = 35.0;  // degrees, vertical
 };
 struct CameraEntry {
+  Place place;
   std::optional<Vec3> position, target;  // nothing: chosen so that everything breakable is seen
   Vec3 up = Vec3::UnitY();
   double fov = 35.0;            // degrees, vertical

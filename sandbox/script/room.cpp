@@ -142,7 +142,47 @@ bool is_far(const body::Body& body, const Placed& form) {
   return (nearest - body.pose.translation).norm() > body.shape->bounding_radius;
 }
 
+/// A little smaller, about the middle of its bounds; planes stay.
+Placed shrunk(Placed form) {
+  constexpr double kShrunk = 0.98;
+  const Vec3 middle = form.kind == ShapeKind::sphere || form.kind == ShapeKind::box
+                          ? form.pose.translation
+                          : Vec3(0.5 * (form.least + form.most));
+  form.half_extent *= kShrunk;
+  form.radius *= kShrunk;
+  for (Vec3& p : form.surface.positions) p = middle + kShrunk * (p - middle);
+  form.least = middle + kShrunk * (form.least - middle);
+  form.most = middle + kShrunk * (form.most - middle);
+  return form;
+}
+
 }  // namespace
+
+bool lie_in_each_other(const body::Body& a, const body::Body& b) {
+  const Placed form = placed(a), other = placed(b);
+  // What touches only does so until one of them is shrunk; what is nested closely does not until then.
+  const auto has_hollows = [](const Placed& f) {
+    return f.kind == ShapeKind::shell || f.kind == ShapeKind::solid;
+  };
+  if ((has_hollows(form) || has_hollows(other)) && !cross(form, other)) return false;
+  return cross(shrunk(form), other) && cross(form, shrunk(other));
+}
+
+bool holds(const body::Body& body, const Vec3& point) {
+  const Placed form = placed(body);
+  const Vec3 own = form.pose.apply_inverse(point);
+  switch (form.kind) {
+    case ShapeKind::plane:
+      return own.y() < 0.0;
+    case ShapeKind::box:
+      return (own.cwiseAbs().array() < form.half_extent.array()).all();
+    case ShapeKind::sphere:
+      return own.norm() < form.radius;
+    default:
+      return (point.array() > form.least.array()).all() && (point.array() < form.most.array()).all() &&
+             std::abs(winding_number(form.surface, point)) > 0.5;
+  }
+}
 
 std::string find_obstacle(const world::World& world, const world::BodyDescription& description) {
   const Placed form = placed(description);

@@ -13,4 +13,10 @@ namespace shatterbox::sandbox::script {
 /// nor is what it is inside of when that is a shell: shells have no inside.
 std::string find_obstacle(const world::World& world, const world::BodyDescription& description);
 
+/// Whether two bodies lie in each other by more than a hundredth of their size: what only touches does not.
+bool lie_in_each_other(const body::Body& a, const body::Body& b);
+
+/// Whether a point (m, world) is inside a body; of a shell, if that is all round it.
+bool holds(const body::Body& body, const Vec3& point);
+
 }  // namespace shatterbox::sandbox::script

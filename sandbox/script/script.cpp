@@ -163,6 +163,7 @@ std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& 
   const auto id = built.world.add_body(description.value());
   if (!id) return id.error();
   built.origins[id.value()] = {event.body, count - 1};
+  if (std::holds_alternative<scene::Projectile>(event.action)) thrown_.push_back({id.value(), &event});
   return {};
 }
 

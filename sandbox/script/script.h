@@ -23,6 +23,12 @@ struct Sight {
   Vec3 right = Vec3::UnitX(), up = Vec3::UnitY();  // m, at the target: a height of the picture
 };
 
+/// A body that an event has thrown.
+struct Throw {
+  body::BodyId body = 0;
+  const scene::EventEntry* event = nullptr;  // never null; of the scene
+};
+
 class Script {
  public:
   /// `scene` must outlive the script.
@@ -39,6 +45,9 @@ class Script {
 
   /// Events for the picture that were played since the last call.
   std::vector<scene::Cue> take_cues() { return std::exchange(cues_, {}); }
+
+  /// What was thrown since the last call.
+  std::vector<Throw> take_throws() { return std::exchange(thrown_, {}); }
 
   /// What the film shows when.
   const FilmClock& clock() const { return clock_; }
@@ -75,6 +84,7 @@ class Script {
   Forces forces_;
   FilmClock clock_;
   std::vector<scene::Cue> cues_;
+  std::vector<Throw> thrown_;
   std::vector<int> throws_;  // per [[body]]: how often it was brought in
 };
 

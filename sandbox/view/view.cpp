@@ -7,6 +7,7 @@
 
 #include "engine/core/elementary.h"
 #include "sandbox/scene/parts.h"
+#include "sandbox/scene/words.h"
 #include "sandbox/view/looks.h"
 #include "sandbox/view/to_glm.h"
 
@@ -188,8 +189,9 @@ std::string View::standard_caption(const Moment& moment) const {
   const auto pieces =
       std::count_if(moment.bodies.begin(), moment.bodies.end(),
                     [this](const body::Body& body) { return built_.world.ancestry(body.id).parent != 0; });
-  std::string text = fmt::format("{:.2f} s   {} bodies", moment.time, moment.bodies.size());
-  if (pieces > 0) text += fmt::format("   {} pieces", pieces);
+  std::string text = fmt::format("{:.2f} s   {}", moment.time,
+                                 scene::counted(static_cast<long>(moment.bodies.size()), "body", "bodies"));
+  if (pieces > 0) text += "   " + scene::counted(static_cast<long>(pieces), "piece");
   if (std::abs(moment.factor - 1.0) > 5e-4) text += fmt::format("   speed {:.3g}", moment.factor);
   return text;
 }

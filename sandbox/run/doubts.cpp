@@ -1,0 +1,212 @@
+#include "sandbox/run/doubts.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "sandbox/scene/parts.h"
+#include "sandbox/script/room.h"
+#include "sandbox/script/script.h"
+#include "sandbox/view/camera_rig.h"
+#include "sandbox/view/view.h"
+
+namespace shatterbox::sandbox::run {
+
+namespace {
+
+using body::Body;
+using body::ShapeKind;
+
+constexpr double kThick = 0.25;          // of the greatest extent: a shell that is thicker hardly is one
+constexpr long kMostTriangles = 300000;  // of the pairs that are looked at: a fraction of a second
+constexpr std::size_t kMostTold = 5;     // pairs
+
+const scene::BodyEntry& entry_of(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                                 const Body& body) {
+  return scene.bodies[static_cast<std::size_t>(built.origins.at(body.id).entry)];
+}
+
+void doubt_thickness(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                     scene::Problems& doubts) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const auto* shell = std::get_if<world::ShellDescription>(&built.plan.bodies[i].description.form);
+    if (shell == nullptr) continue;
+    Vec3 least = shell->mesh.positions.front(), most = least;
+    for (const Vec3& p : shell->mesh.positions) {
+      least = least.cwiseMin(p);
+      most = most.cwiseMax(p);
+    }
+    const double across = (most - least).maxCoeff();
+    if (shell->thickness <= kThick * across) continue;
+    scene::book(doubts, scene.bodies[i].place,
+                fmt::format("the shell \"{}\" is {:.3g} m thick, and {:.3g} m across", scene.bodies[i].name,
+                            shell->thickness, across),
+                "thickness is in metres, 2 mm are 0.002; what is thick throughout is kind = \"solid\"");
+  }
+}
+
+/// Bodies whose bounding balls meet, and of which one at least can move; planes meet everything.
+std::vector<std::pair<const Body*, const Body*>> near_pairs(std::span<const Body> bodies) {
+  std::vector<const Body*> planes, others;
+  for (const Body& body : bodies) (body.shape->kind == ShapeKind::plane ? planes : others).push_back(&body);
+  const auto low = [](const Body* b) { return b->pose.translation.x() - b->shape->bounding_radius; };
+  std::stable_sort(others.begin(), others.end(),
+                   [&](const Body* a, const Body* b) { return low(a) < low(b); });
+  std::vector<std::pair<const Body*, const Body*>> pairs;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const Body& a = *others[i];
+    for (const Body* plane : planes)
+      if (a.is_dynamic()) pairs.emplace_back(&a, plane);
+    for (std::size_t j = i + 1; j < others.size(); ++j) {
+      const Body& b = *others[j];
+      if (low(&b) > a.pose.translation.x() + a.shape->bounding_radius) break;
+      const double reach = a.shape->bounding_radius + b.shape->bounding_radius;
+      const bool can_meet = (a.is_dynamic() || b.is_dynamic()) && (a.group < 0 || a.group != b.group);
+      if (can_meet && (a.pose.translation - b.pose.translation).norm() < reach) pairs.emplace_back(&a, &b);
+    }
+  }
+  return pairs;
+}
+
+void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                scene::Problems& doubts) {
+  long triangles = 0;
+  std::set<std::pair<std::string, std::string>> told;  // of many copies the first
+  for (const auto& [a, b] : near_pairs(built.world.bodies())) {
+    triangles += static_cast<long>(a->shape->surface.triangles.size() + b->shape->surface.triangles.size());
+    if (triangles > kMostTriangles || told.size() == kMostTold) return;
+    if (!script::lie_in_each_other(*a, *b)) continue;
+    const scene::BodyEntry &own = entry_of(scene, built, *a), &other = entry_of(scene, built, *b);
+    if (!told.emplace(own.name, other.name).second) continue;
+    const bool is_floor = b->shape->kind == ShapeKind::plane;
+    const scene::BodyEntry& later = own.place.line > other.place.line || is_floor ? own : other;
+    scene::book(
+        doubts, later.place,
+        fmt::format("\"{}\" begins inside {}\"{}\"", a->name, is_floor ? "the plane " : "", b->name),
+        "they pass each other until they have come apart: move one of them, or give copies more spacing");
+  }
+}
+
+/// The camera's own places, and those that events cut or go to.
+void doubt_camera(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                  scene::Problems& doubts) {
+  const auto look = [&](const Vec3& place, bool is_at_start, const scene::Place& where) {
+    for (const Body& body : built.world.bodies()) {
+      const scene::BodyEntry& entry = entry_of(scene, built, body);
+      const bool is_room = body.shape->kind == ShapeKind::shell && !scene::can_break(entry);
+      const bool is_wall = body.shape->kind == ShapeKind::plane && !view::is_drawn_as_ground(body);
+      if (is_room || is_wall || entry.look.name == "hidden") continue;
+      if (!is_at_start && (body.is_dynamic() || body.is_driven()) && !body.script.path) continue;
+      if (!is_at_start && body.script.path) continue;
+      if (!script::holds(body, place)) continue;
+      const bool is_floor = body.shape->kind == ShapeKind::plane;
+      scene::book(
+          doubts, where,
+          fmt::format("the camera is {} \"{}\" at [{:.3g}, {:.3g}, {:.3g}]",
+                      is_floor ? "below the floor" : "inside", body.name, place.x(), place.y(), place.z()),
+          "move its position out of it, or leave position out: then everything is in view");
+      return;
+    }
+  };
+  const scene::CameraEntry& camera = scene.camera;
+  view::CameraRig rig(camera, view::find_subject(scene, built.plan));
+  const auto where = [&](int entry) { return scene::centre_of(built, built.world.bodies(), entry); };
+  look(rig.view_at({0.0, 0.0, 1.0, built.world.bodies()}, where).position, true, camera.place);
+  for (const scene::CameraKey& key : camera.path)
+    if (key.at > 0.0) look(key.position, false, camera.place);
+  for (const scene::EventEntry& event : scene.events)
+    if (const auto* change = std::get_if<scene::CameraChange>(&event.action); change && change->position)
+      look(*change->position, false, event.place);
+}
+
+/// How far the flight passes from a body, m: below 0 if it may meet it. One that can move may have fallen by
+/// then, as far as `floor` (m).
+class Flight {
+ public:
+  Flight(const Vec3& from, const Vec3& velocity, const Vec3& gravity, double at, double seconds,
+         double radius)
+      : from_(from), velocity_(velocity), gravity_(gravity), at_(at), seconds_(seconds), radius_(radius) {}
+
+  double distance(const Body& body, double floor) const {
+    constexpr int kSamples = 2000;
+    double nearest = 1e300;
+    for (int i = 0; i <= kSamples; ++i) {
+      const double time = seconds_ * i / kSamples, now = at_ + time;
+      const Vec3 place = from_ + time * velocity_ + 0.5 * time * time * gravity_;
+      const Vec3 speed = velocity_ + time * gravity_;
+      double reach = body.shape->bounding_radius + radius_ + speed.norm() * seconds_ / kSamples;
+      Vec3 offset = place - body.pose.translation;
+      if (body.is_dynamic()) {
+        // It may lie, fall, or roll a little where it fell to.
+        reach += 2.0 * body.shape->bounding_radius + body.velocity.norm() * now;
+        const double fallen = std::clamp(-offset.y(), 0.0, std::max(0.0, body.pose.translation.y() - floor));
+        offset.y() += fallen;
+      }
+      nearest = std::min(nearest, offset.norm() - reach);
+    }
+    return nearest;
+  }
+
+ private:
+  Vec3 from_, velocity_, gravity_;
+  double at_, seconds_, radius_;
+};
+
+/// Where what is to be hit is can be told only where nothing but what stands there from the start is to be
+/// hit.
+bool can_foretell(const scene::SceneDescription& scene) {
+  const Vec3& g = scene.world.gravity;
+  if (g.y() > 0.0 || g.x() != 0.0 || g.z() != 0.0) return false;
+  for (const scene::BodyEntry& body : scene.bodies)
+    if (body.motion == body::Motion::scripted || body.repeat.every > 0.0) return false;
+  return std::all_of(scene.events.begin(), scene.events.end(), [](const scene::EventEntry& event) {
+    return std::holds_alternative<scene::Projectile>(event.action) || scene::is_for_picture(event) ||
+           std::holds_alternative<scene::Speed>(event.action);
+  });
+}
+
+void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                  scene::Problems& doubts) {
+  if (!can_foretell(scene)) return;
+  double floor = -1e300;
+  for (const Body& body : built.world.bodies())
+    if (view::is_drawn_as_ground(body)) floor = std::max(floor, body.pose.translation.y());
+  for (const scene::EventEntry& event : scene.events) {
+    const auto* thrown = std::get_if<scene::Projectile>(&event.action);
+    const Vec3* target = thrown == nullptr ? nullptr : std::get_if<Vec3>(&thrown->target);
+    if (target == nullptr || !thrown->from || event.when != scene::When::time) continue;
+    if (event.at >= scene.seconds) continue;
+    const Vec3 way = *target - *thrown->from;
+    const Vec3 velocity = script::aim(*thrown->from, *target, thrown->speed, scene.world.gravity)
+                              .value_or(Vec3(way.normalized() * thrown->speed));
+    const Flight flight(*thrown->from, velocity, scene.world.gravity, event.at, scene.seconds - event.at,
+                        built.plan.bodies[static_cast<std::size_t>(event.body)].bounding_radius);
+    double nearest = 1e300;
+    const Body* whom = nullptr;
+    for (const Body& body : built.world.bodies()) {
+      if (body.shape->kind == ShapeKind::plane) continue;
+      const double distance = flight.distance(body, floor);
+      if (distance < nearest) whom = &body;
+      nearest = std::min(nearest, distance);
+    }
+    if (whom == nullptr || nearest <= 0.0) continue;
+    scene::book(doubts, event.place,
+                fmt::format("event \"{}\" throws past everything: {:.2g} m beside \"{}\" at the nearest",
+                            event.name, nearest, whom->name),
+                fmt::format("at_body = \"{}\" aims at it", entry_of(scene, built, *whom).name));
+  }
+}
+
+}  // namespace
+
+scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
+  scene::Problems doubts;
+  doubt_thickness(scene, built, doubts);
+  doubt_room(scene, built, doubts);
+  doubt_camera(scene, built, doubts);
+  doubt_throws(scene, built, doubts);
+  return doubts;
+}
+
+}  // namespace shatterbox::sandbox::run

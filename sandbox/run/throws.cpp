@@ -1,0 +1,47 @@
+#include "sandbox/run/throws.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace shatterbox::sandbox::run {
+
+void Throws::add(const std::vector<script::Throw>& thrown) {
+  for (const script::Throw& one : thrown) flights_.push_back({one});
+}
+
+void Throws::look(const world::World& world) {
+  std::erase_if(flights_, [&world](Flight& flight) {
+    // Of what broke, each piece.
+    const auto is_of = [&](body::BodyId id) { return world.ancestry(id).original == flight.thrown.body; };
+    for (const body::LoggedImpulse& hit : world.impulse_log()) {
+      const bool is_a = is_of(hit.body_a), is_b = is_of(hit.body_b);
+      if (is_a == is_b) continue;
+      const body::BodyId id = is_a ? hit.body_b : hit.body_a;
+      const auto bodies = world.bodies();  // ascending
+      const auto other =
+          std::lower_bound(bodies.begin(), bodies.end(), id,
+                           [](const body::Body& b, body::BodyId wanted) { return b.id < wanted; });
+      const bool is_floor =
+          other == bodies.end() || other->id != id || other->shape->kind == body::ShapeKind::plane;
+      if (!is_floor) return true;
+      flight.has_hit_floor = true;
+    }
+    return false;
+  });
+}
+
+std::vector<std::string> Throws::missed() const {
+  std::vector<std::string> sentences;
+  for (const Flight& flight : flights_) {
+    const scene::EventEntry& event = *flight.thrown.event;
+    sentences.push_back(scene::describe(scene::Problem{
+        event.place,
+        fmt::format("what event \"{}\" threw hit nothing{}", event.name,
+                    flight.has_hit_floor ? " but the floor" : ""),
+        "look where its target is by then: at_body = \"name\" aims at a body wherever that is"}));
+  }
+  return sentences;
+}
+
+}  // namespace shatterbox::sandbox::run

@@ -1,0 +1,93 @@
+// What a scene can hardly mean is told with its place, and what it may well mean is not.
+#include <catch2/catch.hpp>
+
+#include "sandbox/run/doubts.h"
+#include "sandbox/run/projector.h"
+#include "tests/sandbox/script/building.h"
+
+using namespace shatterbox::sandbox;
+
+namespace {
+
+/// All doubts, as a person sees them.
+std::string doubts_of(const std::string& text) {
+  const auto reading = scene::read(text);
+  const auto built = build(reading);
+  return scene::describe(run::find_doubts(*reading.scene, *built));
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+constexpr const char* kFloor = "[[body]]\nname = \"floor\"\nkind = \"plane\"\n";
+constexpr const char* kCrate =
+    "[[body]]\nname = \"crate\"\nkind = \"box\"\nsize = 0.2\nposition = [0, 0.1, 0]\n";
+
+}  // namespace
+
+TEST_CASE("a shell that is nearly as thick as wide is doubted") {
+  const std::string bowl = "[[body]]\nname = \"cup\"\nkind = \"shell\"\nshape = \"bowl\"\nthickness = ";
+  CHECK(has(doubts_of(bowl + "3\n"), "t.toml:1:1: the shell \"cup\" is 3 m thick, and 0.16 m across"));
+  CHECK(doubts_of(bowl + "0.003\n").empty());
+}
+
+TEST_CASE("bodies that begin in each other or in the floor are doubted, what touches or is nested is not") {
+  const std::string floor = kFloor, crate = kCrate;
+  CHECK(doubts_of(floor + crate).empty());  // it stands on the floor, exactly
+  CHECK(doubts_of(floor + crate + "repeat = {count = [2, 2, 1], spacing = 0.2}\n").empty());
+  CHECK(has(doubts_of(floor + crate + "repeat = {count = 2, spacing = [0.1, 0, 0]}\n"),
+            "t.toml:4:1: \"crate[1]\" begins inside \"crate[2]\""));
+  CHECK(has(doubts_of(floor + crate + "rotation = [45, 0, 0]\n"),
+            "t.toml:4:1: \"crate\" begins inside the plane \"floor\""));
+  const std::string bowls =
+      "[[body]]\nname = \"bowl\"\nkind = \"shell\"\nshape = \"bowl\"\nthickness = 0.001\nposition = [0, 0.2, "
+      "0]\n";
+  CHECK(doubts_of(bowls + "repeat = {count = 2, spacing = [0, 0.004, 0]}\n").empty());
+  CHECK(has(doubts_of(bowls + "repeat = {count = 2, spacing = [0.02, 0, 0]}\n"), "begins inside"));
+  CHECK(doubts_of(crate + "motion = \"static\"\n[[body]]\nkind = \"sphere\"\nmotion = \"static\"\n").empty());
+}
+
+TEST_CASE("a camera in a body is doubted, at its start, on its path and where events put it") {
+  const std::string scene = std::string(kFloor) + kCrate + "motion = \"static\"\n";
+  const std::string camera = scene + "[camera]\ntarget = [0, 0, 5]\nposition = ";
+  CHECK(has(doubts_of(camera + "[0.05, 0.1, 0]\n"),
+            "t.toml:10:1: the camera is inside \"crate\" at [0.05, 0.1, 0]"));
+  CHECK(has(doubts_of(camera + "[1, -0.5, 0]\n"), "below the floor"));
+  CHECK(doubts_of(camera + "[1, 0.5, 0]\n").empty());
+  CHECK(has(doubts_of(camera + "[1, 0.5, 0]\npath = [{at = 0}, {at = 1, position = [0, 0.1, 0.05]}]\n"),
+            "inside \"crate\""));
+  CHECK(has(
+      doubts_of(scene + "[[event]]\nat = 1\ndo = \"camera\"\nmove = \"cut\"\nposition = [0, 0.1, 0.05]\n"),
+      "t.toml:10:1: the camera is inside"));
+}
+
+TEST_CASE("a throw that can meet nothing is doubted before the run, and told after it") {
+  const std::string scene = std::string("[scene]\nseconds = 0.8\n") + kFloor + kCrate;
+  const auto shot = [&scene](const std::string& aim) {
+    return scene +
+           "[[event]]\nname = \"shot\"\nat = 0.1\ndo = \"projectile\"\nfrom = [0, 1, 3]\nspeed = 10\n" + aim;
+  };
+  const auto after = [](const std::string& text) {
+    const auto reading = scene::read(text);
+    auto built = build(reading);
+    run::Recorder recorder;
+    run::Projector projector(*reading.scene, *built, recorder, false, 60);
+    while (projector.next()) {
+    }
+    projector.finish();
+    std::string all;
+    for (const std::string& warning : recorder.record.warnings) all += warning + "\n";
+    return all;
+  };
+  const std::string miss = shot("at_point = [4, 0.1, 0]\n"), hit = shot("at_point = [0, 0.1, 0]\n");
+  CHECK(has(doubts_of(miss), "t.toml:11:1: event \"shot\" throws past everything: "));
+  CHECK(has(doubts_of(miss), "at_body = \"crate\" aims at it"));
+  CHECK(has(after(miss), "t.toml:11:1: what event \"shot\" threw hit nothing but the floor"));
+  CHECK(doubts_of(hit).empty());
+  CHECK(after(hit).empty());
+  CHECK(doubts_of(shot("at_body = \"crate\"\n")).empty());
+  // Who falls, or may be pushed away, is where nobody can tell.
+  CHECK(
+      doubts_of(miss + "[[event]]\nat = 0\ndo = \"push\"\nbody = \"crate\"\nimpulse = [9, 0, 0]\n").empty());
+}
