@@ -71,7 +71,7 @@ std::string joint_line(const RunRecord& record) {
   const auto opened =
       std::count_if(joints.begin(), joints.end(), [](const auto& joint) { return joint.opened >= 0.0; });
   std::string text = fmt::format("{}, {} of them opened",
-                                 plural(static_cast<long>(joints.size()), "joint", "joints"), opened);
+                                 counted(static_cast<long>(joints.size()), "joint", "joints"), opened);
   const world::JointRow* hardest = nullptr;
   for (const world::JointRow& joint : joints)
     if (joint.opened < 0.0 && (hardest == nullptr || joint.most_ratio > hardest->most_ratio))
