@@ -13,25 +13,25 @@ namespace {
 
 constexpr double kAgainst = -0.99985;  // cosine of the angle between the normals
 
-struct Facet {
+struct NearTriangle {
   std::array<Vec3, 3> corners;
   Vec3 normal;
   Box box;
 };
 
 // The triangles that come near the box of the other mesh.
-std::vector<Facet> list_facets(const TriangleMesh& mesh, const Box& other, double gap) {
-  std::vector<Facet> facets;
+std::vector<NearTriangle> list_near_triangles(const TriangleMesh& mesh, const Box& other, double gap) {
+  std::vector<NearTriangle> near;
   for (const auto& t : mesh.triangles) {
-    Facet f;
+    NearTriangle f;
     for (std::size_t k = 0; k < 3; ++k) f.corners[k] = mesh.positions[static_cast<std::size_t>(t[k])];
     const Vec3 across = (f.corners[1] - f.corners[0]).cross(f.corners[2] - f.corners[0]);
     if (!(across.squaredNorm() > 0.0)) continue;
     f.normal = across.normalized();
     for (const Vec3& p : f.corners) f.box.include(p);
-    if (overlaps(f.box, other, gap)) facets.push_back(f);
+    if (overlaps(f.box, other, gap)) near.push_back(f);
   }
-  return facets;
+  return near;
 }
 
 Box box_of(const TriangleMesh& mesh) {
@@ -41,7 +41,7 @@ Box box_of(const TriangleMesh& mesh) {
 }
 
 // What of b's triangle lies over a's, in the plane of a.
-std::vector<Vec3> common_polygon(const Facet& a, const Facet& b) {
+std::vector<Vec3> common_polygon(const NearTriangle& a, const NearTriangle& b) {
   std::vector<Vec3> polygon;
   for (const Vec3& p : b.corners) polygon.emplace_back(p - a.normal.dot(p - a.corners[0]) * a.normal);
   for (std::size_t k = 0; k < 3 && !polygon.empty(); ++k) {
@@ -59,7 +59,7 @@ std::vector<Vec3> common_polygon(const Facet& a, const Facet& b) {
   return polygon;
 }
 
-struct Part {
+struct Patch {
   std::array<Vec3, 3> corners;
   double area = 0.0;
 };
@@ -88,9 +88,9 @@ std::vector<Vec2> hull_of(std::vector<Vec2> points) {
 }
 
 // Centre, principal axes and moments of the parts, whose normals sum up to `normal`.
-FacingArea measure(const std::vector<Part>& parts, const Vec3& normal) {
+FacingArea measure(const std::vector<Patch>& parts, const Vec3& normal) {
   FacingArea result;
-  for (const Part& part : parts) {
+  for (const Patch& part : parts) {
     result.area += part.area;
     result.centre += part.area / 3.0 * (part.corners[0] + part.corners[1] + part.corners[2]);
   }
@@ -100,7 +100,7 @@ FacingArea measure(const std::vector<Part>& parts, const Vec3& normal) {
   x.cwiseAbs().minCoeff(&least);
   const Vec3 u = x.cross(Vec3::Unit(least)).normalized(), v = x.cross(u);
   Mat2 second = Mat2::Zero();
-  for (const Part& part : parts) {
+  for (const Patch& part : parts) {
     Vec2 sum = Vec2::Zero();
     Mat2 squares = Mat2::Zero();
     for (const Vec3& corner : part.corners) {
@@ -115,7 +115,7 @@ FacingArea measure(const std::vector<Part>& parts, const Vec3& normal) {
   const Vec3 y = along.x() * u + along.y() * v;
   result.axes << x, y, x.cross(y);
   result.moments = {principal.eigenvalues()[0], principal.eigenvalues()[1]};
-  for (const Part& part : parts) {
+  for (const Patch& part : parts) {
     for (const Vec3& corner : part.corners)
       result.outline.emplace_back(y.dot(corner - result.centre),
                                   result.axes.col(2).dot(corner - result.centre));
@@ -127,20 +127,20 @@ FacingArea measure(const std::vector<Part>& parts, const Vec3& normal) {
 }  // namespace
 
 FacingArea find_facing_area(const TriangleMesh& a, const TriangleMesh& b, double gap) {
-  const std::vector<Facet> facets_a = list_facets(a, box_of(b), gap),
-                           facets_b = list_facets(b, box_of(a), gap);
-  std::vector<Part> parts;
+  const std::vector<NearTriangle> near_a = list_near_triangles(a, box_of(b), gap),
+                                  near_b = list_near_triangles(b, box_of(a), gap);
+  std::vector<Patch> parts;
   Vec3 normal = Vec3::Zero();
   double reach = 0.0;
-  for (const Facet& fa : facets_a) {
-    for (const Facet& fb : facets_b) {
+  for (const NearTriangle& fa : near_a) {
+    for (const NearTriangle& fb : near_b) {
       if (fa.normal.dot(fb.normal) > kAgainst || !overlaps(fa.box, fb.box, gap)) continue;
       const Vec3 middle = (fb.corners[0] + fb.corners[1] + fb.corners[2]) / 3.0;
       const double distance = fa.normal.dot(middle - fa.corners[0]);
       if (std::abs(distance) > gap) continue;
       const std::vector<Vec3> polygon = common_polygon(fa, fb);
       for (std::size_t k = 2; k < polygon.size(); ++k) {
-        Part part{{polygon[0], polygon[k - 1], polygon[k]}, 0.0};
+        Patch part{{polygon[0], polygon[k - 1], polygon[k]}, 0.0};
         const Vec3 across = (part.corners[1] - part.corners[0]).cross(part.corners[2] - part.corners[0]);
         part.area = 0.5 * across.norm();
         for (Vec3& corner : part.corners) corner += 0.5 * distance * fa.normal;
@@ -151,7 +151,7 @@ FacingArea find_facing_area(const TriangleMesh& a, const TriangleMesh& b, double
     }
   }
   double area = 0.0;
-  for (const Part& part : parts) area += part.area;
+  for (const Patch& part : parts) area += part.area;
   // Edges that only touch have no area but that of rounding.
   if (!(area > 1e-9 * reach * reach) || !(normal.norm() > 0.1 * area)) return {};
   return measure(parts, normal);

@@ -95,6 +95,9 @@ struct BottleSizes {
 };
 core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& meshing);
 
+/// Outer side and bottom of the same as one sheet, open at the top, for shells; `wall` rounds its edge only.
+core::Result<TriangleMesh> make_bottle_sheet(const BottleSizes& sizes, const Meshing& meshing);
+
 /// An egg: half an ellipsoid above the plane y = 0 and a longer or shorter half below; closed.
 struct EggSizes {
   double radius = 0.022;          // m, at y = 0, where it is widest
@@ -102,6 +105,11 @@ struct EggSizes {
   double pointed_height = 0.032;  // m, above
 };
 core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing);
+
+/// An upright animal in bands of armour: feet on y = 0, looking along z, 0.85 as wide as high. From an
+/// implicit surface; closed. Edges are at most an eightieth of its height; `Meshing::jitter` and `seed` do not
+/// apply.
+core::Result<TriangleMesh> make_figure(double height, const Meshing& meshing);
 
 /// An open hull, double-ended: keel along x through the origin's height, bow at +x, gunwales up. A lattice of
 /// stations and strakes, the same on all four quarters; `Meshing::jitter` and `seed` do not apply. An edge

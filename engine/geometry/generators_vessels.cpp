@@ -86,6 +86,37 @@ std::optional<std::string> find_fault_of(const char* thing, const std::array<Nam
   return std::nullopt;
 }
 
+std::optional<std::string> find_bottle_fault(const BottleSizes& sizes) {
+  return find_fault_of("a bottle's", std::array<NamedSize, 5>{
+                                         {{"wall", sizes.wall, 0.0},
+                                          {"neck_radius", sizes.neck_radius, 2.0 * sizes.wall},
+                                          {"radius", sizes.radius, sizes.neck_radius},
+                                          {"neck_length", sizes.neck_length, sizes.wall},
+                                          {"height", sizes.height, 2.0 * sizes.radius + sizes.neck_length}}});
+}
+
+/// Radius of the rounded edge of the bottom.
+double bottle_edge(const BottleSizes& sizes) {
+  return 1.5 * sizes.wall;
+}
+
+std::vector<ProfileSegment> bottle_bottom(const BottleSizes& sizes) {
+  const double edge = bottle_edge(sizes);
+  std::vector<ProfileSegment> bottom{
+      {ProfileSegment::Kind::line, {0.0, 0.0}, {sizes.radius - edge, 0.0}, Vec2::Zero(), Part::body}};
+  add_quarter(bottom, {sizes.radius, edge}, {sizes.radius - edge, edge});
+  return bottom;
+}
+
+WallProfile bottle_side(const BottleSizes& sizes, double low, double inset) {
+  const double shoulder_end = sizes.height - sizes.neck_length;
+  WallProfile profile({sizes.radius, low}, inset);
+  profile.add_line(sizes.radius, shoulder_end - 1.5 * (sizes.radius - sizes.neck_radius));
+  profile.add_shoulder(sizes.neck_radius, shoulder_end);
+  profile.add_line(sizes.neck_radius, sizes.height - 0.5 * sizes.wall);
+  return profile;
+}
+
 }  // namespace
 
 core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& meshing) {
@@ -113,30 +144,20 @@ core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& mesh
 }
 
 core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& meshing) {
+  if (const auto fault = find_bottle_fault(sizes)) return core::Error{*fault};
   const double wall = sizes.wall;
-  if (const auto fault = find_fault_of(
-          "a bottle's",
-          std::array<NamedSize, 5>{{{"wall", wall, 0.0},
-                                    {"neck_radius", sizes.neck_radius, 2.0 * wall},
-                                    {"radius", sizes.radius, sizes.neck_radius},
-                                    {"neck_length", sizes.neck_length, wall},
-                                    {"height", sizes.height, 2.0 * sizes.radius + sizes.neck_length}}}))
-    return core::Error{*fault};
-  const double top = sizes.height - 0.5 * wall;
-  const double shoulder_end = sizes.height - sizes.neck_length;
-  const double shoulder_begin = shoulder_end - 1.5 * (sizes.radius - sizes.neck_radius);
-  const double edge = 1.5 * wall;  // radius of the rounded edge of the bottom
-  const auto side = [&](double low, double inset) {
-    WallProfile profile({sizes.radius, low}, inset);
-    profile.add_line(sizes.radius, shoulder_begin);
-    profile.add_shoulder(sizes.neck_radius, shoulder_end);
-    profile.add_line(sizes.neck_radius, top);
-    return profile;
-  };
-  std::vector<ProfileSegment> bottom{
-      {ProfileSegment::Kind::line, {0.0, 0.0}, {sizes.radius - edge, 0.0}, Vec2::Zero(), Part::body}};
-  add_quarter(bottom, {sizes.radius, edge}, {sizes.radius - edge, edge});
-  return close_vessel(std::move(bottom), side(edge, 0.0), side(2.0 * wall, wall), wall, meshing);
+  return close_vessel(bottle_bottom(sizes), bottle_side(sizes, bottle_edge(sizes), 0.0),
+                      bottle_side(sizes, 2.0 * wall, wall), wall, meshing);
+}
+
+core::Result<TriangleMesh> make_bottle_sheet(const BottleSizes& sizes, const Meshing& meshing) {
+  if (const auto fault = find_bottle_fault(sizes)) return core::Error{*fault};
+  std::vector<ProfileSegment> profile = bottle_bottom(sizes);
+  const WallProfile side = bottle_side(sizes, bottle_edge(sizes), 0.0);
+  profile.insert(profile.end(), side.segments().begin(), side.segments().end());
+  core::Result<PartedMesh> sheet = make_surface_of_revolution(profile, meshing);
+  if (!sheet) return core::Error{sheet.error()};
+  return std::move(sheet.value().mesh);
 }
 
 core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing) {

@@ -15,7 +15,8 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 constexpr double kUsualTriangles = 5000.0;
-constexpr double kStationsOfBoat = 15.0;  // 300 triangles
+constexpr double kTrianglesOfFigure = 20000.0;  // fingers and armour want more
+constexpr double kStationsOfBoat = 15.0;        // 300 triangles
 constexpr double kHardlyMeant = 10.0;  // m, across what is to break: more likely its file is in millimetres
 
 geometry::PartedMesh one_part(geometry::TriangleMesh mesh) {
@@ -56,6 +57,12 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const geometry::EggSizes& sizes) const {
     return with_parts(geometry::make_egg(sizes, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const BottleSheet& sheet) const {
+    return with_parts(geometry::make_bottle_sheet(sheet.sizes, meshing));
+  }
+  core::Result<geometry::PartedMesh> operator()(const FigureShape& figure) const {
+    return with_parts(geometry::make_figure(figure.height, meshing));
+  }
   core::Result<geometry::PartedMesh> operator()(const SlabShape& slab) const {
     return one_part(geometry::make_box_surface(0.5 * slab.size));
   }
@@ -73,6 +80,8 @@ double coarse_edge(const MeshShape& shape) {
   if (const auto* slab = std::get_if<SlabShape>(&shape)) return slab->size.maxCoeff();
   if (const auto* vase = std::get_if<geometry::VaseSizes>(&shape)) return 0.2 * vase->neck_radius;
   if (const auto* bottle = std::get_if<geometry::BottleSizes>(&shape)) return 0.2 * bottle->neck_radius;
+  if (const auto* sheet = std::get_if<BottleSheet>(&shape)) return 0.2 * sheet->sizes.neck_radius;
+  if (const auto* figure = std::get_if<FigureShape>(&shape)) return figure->height / 40.0;
   if (const auto* egg = std::get_if<geometry::EggSizes>(&shape)) return 0.2 * egg->radius;
   const auto& pane = std::get<PaneShape>(shape);
   return 0.1 * std::min(pane.width, pane.height);
@@ -90,7 +99,8 @@ core::Result<geometry::PartedMesh> generate(const MeshForm& form) {
       std::holds_alternative<SlabShape>(form.shape))
     return coarse;
   const double area = geometry::surface_area(coarse.value().mesh);
-  const double triangle_area = area / kUsualTriangles;
+  const bool is_figure = std::holds_alternative<FigureShape>(form.shape);
+  const double triangle_area = area / (is_figure ? kTrianglesOfFigure : kUsualTriangles);
   generator.meshing.edge_length = core::sqrt(triangle_area * 4.0 / core::sqrt(3.0));
   return std::visit(generator, form.shape);
 }

@@ -115,6 +115,10 @@ void apply_override(TomlValue& scene, const std::string& change, Problems& probl
          "set it as a whole");
     return;
   }
+  // A body has a mesh or a shape: who is given the one drops the other.
+  const std::string rival = path.back() == "mesh" ? "shape" : path.back() == "shape" ? "mesh" : "";
+  if (path.size() == 2)
+    std::erase_if(table->entries, [&](const TomlEntry& entry) { return entry.key == rival; });
   if (TomlValue* old = table->find(path.back())) {
     *old = *value;
   } else {

@@ -17,8 +17,8 @@ struct Shapes {
   const char* kind;
   std::vector<std::string> known, later;
 };
-const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "egg"}, {}};
-const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg"}, {"bricks"}};
+const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "bottle", "egg"}, {}};
+const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg", "figure"}, {"bricks"}};
 const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
                                           "foot_radius", "foot_height",  "height",        "width",
                                           "edge_length", "length",       "beam",          "depth",
@@ -77,14 +77,14 @@ struct NamedSize {
 };
 
 /// A size and others that follow it in proportion, unless they are given.
-void read_scaled(TableReader& reader, NamedSize lead, std::initializer_list<NamedSize> others) {
+void read_scaled(TableReader& reader, NamedSize lead, const std::vector<NamedSize>& others) {
   const double usual = *lead.size;
   *lead.size = reader.number(lead.key, positive("m")).value_or(usual);
   for (const NamedSize& other : others)
     *other.size = reader.number(other.key, positive("m")).value_or(*other.size * (*lead.size / usual));
 }
 
-MeshShape read_shape(TableReader& reader, const std::string& shape) {
+MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_sheet) {
   if (shape == "slab") return read_slab(reader);
   const auto set = [&reader](const char* key, double& target, const Range& range) {
     target = reader.number(key, range).value_or(target);
@@ -140,11 +140,19 @@ MeshShape read_shape(TableReader& reader, const std::string& shape) {
   }
   if (shape == "bottle") {
     geometry::BottleSizes sizes;
-    read_scaled(reader, {"height", &sizes.height},
-                {{"radius", &sizes.radius},
-                 {"neck_radius", &sizes.neck_radius},
-                 {"neck_length", &sizes.neck_length},
-                 {"wall", &sizes.wall}});
+    std::vector<NamedSize> others{
+        {"radius", &sizes.radius}, {"neck_radius", &sizes.neck_radius}, {"neck_length", &sizes.neck_length}};
+    // A sheet's wall is its thickness; here it only rounds the edge of the bottom.
+    double edge = sizes.wall * reader.number("height", positive("m")).value_or(sizes.height) / sizes.height;
+    if (!is_sheet) others.push_back({"wall", &sizes.wall});
+    read_scaled(reader, {"height", &sizes.height}, others);
+    if (!is_sheet) return sizes;
+    sizes.wall = edge;
+    return BottleSheet{sizes};
+  }
+  if (shape == "figure") {
+    FigureShape sizes;
+    set("height", sizes.height, positive("m"));
     return sizes;
   }
   if (shape == "egg") {
@@ -191,7 +199,7 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
           fmt::format("add mesh = \"file.obj\", or shape = one of {}", quoted_list(shapes.known)));
     }
     reader.value("mesh");
-    form.shape = read_shape(reader, shape.value_or("sphere"));
+    form.shape = read_shape(reader, shape.value_or("sphere"), &shapes == &kShellShapes);
     form.edge_length = reader.number("edge_length", positive("m"));
     if (shape) {
       reader.foreign(kShapeKeys, fmt::format("it is no size of shape \"{}\"", *shape));

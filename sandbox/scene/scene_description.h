@@ -46,9 +46,16 @@ struct PaneShape {
 struct SlabShape {
   Vec3 size = Vec3::Ones();  // m
 };
+struct FigureShape {
+  double height = 0.5;  // m
+};
+/// The bottle of a shell: one sheet.
+struct BottleSheet {
+  geometry::BottleSizes sizes;
+};
 using MeshShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
                                PaneShape, geometry::BoatSizes, SlabShape, geometry::VaseSizes,
-                               geometry::BottleSizes, geometry::EggSizes>;
+                               geometry::BottleSizes, geometry::EggSizes, FigureShape, BottleSheet>;
 
 // Kinds of bodies.
 struct PlaneForm {};

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "engine/geometry/edge_topology.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_diagnosis.h"
@@ -178,4 +179,49 @@ TEST_CASE("solid diagnosis: hollows face into themselves, what is in them faces 
   for (Triangle& t : other.triangles) std::swap(t[1], t[2]);
   append(two, other);
   CHECK(enclosed_volume(mend_solid(two).mesh) == Approx(16.0));
+}
+TEST_CASE("the figure is one closed surface of the height and about the edges asked for") {
+  for (const double edge : {0.0125, 0.01}) {
+    const TriangleMesh figure = make_figure(1.0, fine(edge)).value();
+    const EdgeTopology topology = build_edge_topology(figure.triangles);
+    double mean = 0.0;
+    for (const auto& [a, b] : topology.edges)
+      mean += (figure.positions[static_cast<std::size_t>(a)] - figure.positions[static_cast<std::size_t>(b)])
+                  .norm() /
+              static_cast<double>(topology.edges.size());
+    CAPTURE(edge, mean, figure.triangles.size(), least_angle(figure));
+    CHECK(mean == Approx(edge).epsilon(0.15));
+    CHECK(least_angle(figure) > 0.1);
+    CHECK(static_cast<int>(figure.positions.size()) - static_cast<int>(topology.edges.size()) +
+              static_cast<int>(figure.triangles.size()) ==
+          2);
+    CHECK(mend_solid(figure).diagnosis.findings.empty());
+    double low = 1.0, high = 0.0;
+    for (const Vec3& p : figure.positions) {
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+    CHECK(low == Approx(0.0).margin(1e-12));
+    CHECK(high == Approx(1.0));
+  }
+  CHECK_FALSE(make_figure(0.0, fine(0.1)));
+  CHECK_FALSE(make_figure(1.0, fine(1e-4)));
+}
+
+TEST_CASE("a bottle's sheet is open at its mouth only") {
+  const TriangleMesh sheet = make_bottle_sheet({}, fine(0.006)).value();
+  const EdgeTopology topology = build_edge_topology(sheet.triangles);
+  int border = 0;
+  double mouth = 0.0;
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    if (!topology.is_boundary(static_cast<int>(e))) continue;
+    const auto [a, b] = topology.edges[e];
+    const Vec3 &p = sheet.positions[static_cast<std::size_t>(a)],
+               &q = sheet.positions[static_cast<std::size_t>(b)];
+    mouth += (p - q).norm();
+    CHECK(p.y() == Approx(BottleSizes{}.height - 0.5 * BottleSizes{}.wall));
+    ++border;
+  }
+  CHECK(border > 5);
+  CHECK(mouth == Approx(2.0 * core::kPi * BottleSizes{}.neck_radius).epsilon(0.05));
 }

@@ -116,6 +116,17 @@ TEST_CASE("the option --set changes named bodies, materials, events and tables")
   CHECK(scene.camera.fov == 50.0);
 }
 
+TEST_CASE("the option --set puts a shape in place of a mesh and a mesh in place of a shape") {
+  const std::string figure = "[[body]]\nname = \"figure\"\nkind = \"solid\"\nshape = \"figure\"\n";
+  const Reading sphere = read(figure, {"figure.shape=\"sphere\"", "figure.radius=0.2"});
+  INFO(sphere.text);
+  REQUIRE(sphere.scene.has_value());
+  CHECK(std::holds_alternative<SphereShape>(find_mesh_form(sphere.scene->bodies[0].form)->shape));
+  const Reading mesh = read(figure, {"figure.mesh=\"none.obj\""});
+  REQUIRE(mesh.problems.size() == 1);  // and not that it has both
+  CHECK(mesh.text.find("there is no mesh file") != std::string::npos);
+}
+
 TEST_CASE("the option --set is checked with the scene's own words, and named as the place") {
   const auto refused = [](const char* change, const char* part) {
     const Reading reading = read(kScene, {change});
