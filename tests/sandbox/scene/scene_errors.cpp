@@ -72,7 +72,7 @@ const Broken kCorpus[] = {
     {"[[body]]\nname = \"camera\"\nkind = \"sphere\"\n", "t.toml:2:8", "nothing can be named \"camera\"", ""},
     // Choices.
     {"[[body]]\nkind = \"spere\"\n", "t.toml:2:8", "unknown kind \"spere\"", "did you mean \"sphere\"?"},
-    {"[[body]]\nkind = \"shell\"\nshape = \"bottle\"\n", "t.toml:3:9", "\"bottle\" is the shape of a solid",
+    {"[[body]]\nkind = \"shell\"\nshape = \"vase\"\n", "t.toml:3:9", "\"vase\" is the shape of a solid",
      "write kind = \"solid\""},
     {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nstrength = 1e9\n", "t.toml:4:1",
      "\"strength\" does not belong here", "[[material]]"},
