@@ -88,7 +88,8 @@ TEST_CASE("a file's mesh of a hundred metres is built, with a word on millimetre
     return notes;
   };
   REQUIRE(notes_at(1.0).size() == 1);
-  CHECK(notes_at(1.0)[0].find("150 m across; if the file is in millimetres") != std::string::npos);
+  CHECK(notes_at(1.0)[0].find("150 m across\n") != std::string::npos);
+  CHECK(notes_at(1.0)[0].find("if the file is in millimetres") != std::string::npos);
   CHECK(notes_at(0.001).empty());
 }
 
