@@ -36,14 +36,18 @@ core::Result<geometry::TriangleMesh> read_by_ending(const std::filesystem::path&
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  const auto reader = ending == ".obj"   ? read_obj
-                      : ending == ".ply" ? read_ply
-                      : ending == ".stl" ? read_stl
-                                         : nullptr;
+  const auto reader = ending == ".obj"                        ? read_obj
+                      : ending == ".ply"                      ? read_ply
+                      : ending == ".stl"                      ? read_stl
+                      : ending == ".3ds"                      ? read_3ds
+                      : ending == ".glb" || ending == ".gltf" ? read_gltf
+                                                              : nullptr;
   core::Result<std::string> bytes = read_bytes(path);
   if (!bytes) return core::Error{bytes.error()};
   if (!reader)
-    return mesh_fault(path, 0, "meshes are read from .obj, .ply and .stl files; convert it to one of them");
+    return mesh_fault(
+        path, 0,
+        "meshes are read from .obj, .ply, .stl, .glb, .gltf and .3ds files; convert it to one of them");
   return reader(bytes.value(), path, notes);
 }
 

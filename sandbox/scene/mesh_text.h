@@ -33,9 +33,14 @@ core::Result<geometry::TriangleMesh> cut_polygons(std::vector<Vec3> positions, c
 core::Result<geometry::TriangleMesh> read_obj(const std::string& text, const std::filesystem::path& path,
                                               std::vector<std::string>* notes);
 
-/// The triangles of a PLY or STL file's bytes; positions equal to the bit are welded.
+/// The triangles of such a file's bytes; positions equal to the bit are welded.
 core::Result<geometry::TriangleMesh> read_ply(const std::string& bytes, const std::filesystem::path& path,
                                               std::vector<std::string>* notes);
+core::Result<geometry::TriangleMesh> read_3ds(const std::string& bytes, const std::filesystem::path& path,
+                                              std::vector<std::string>* notes);
+/// Text or .glb; buffers that are files of their own lie beside `path`.
+core::Result<geometry::TriangleMesh> read_gltf(const std::string& bytes, const std::filesystem::path& path,
+                                               std::vector<std::string>* notes);
 core::Result<geometry::TriangleMesh> read_stl(const std::string& bytes, const std::filesystem::path& path,
                                               std::vector<std::string>* notes);
 

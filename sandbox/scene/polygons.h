@@ -1,4 +1,4 @@
-// What the readers of PLY and STL gather: vertices, and polygons over them.
+// What the readers of PLY, STL, glTF and 3DS gather: vertices, and polygons over them.
 #pragma once
 
 #include <string>

@@ -55,7 +55,7 @@ std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDes
       reader.add_problem(name->place, fmt::format("there is no mesh file {}", shape.files.back()),
                          shape.files.back().starts_with(kGlmarkFolder)
                              ? "it comes with Debian's package: sudo apt install glmark2-data"
-                             : "files are looked for beside the scene; .obj, .ply and .stl are read");
+                             : "files are looked for beside the scene; .obj, .ply, .stl, .glb, .gltf and .3ds are read");
     }
   }
   if (names.empty()) reader.add_problem_at("mesh", "mesh names no file");

@@ -9,8 +9,12 @@ using namespace shatterbox::sandbox;
 
 int fuzz::run_one(std::string_view bytes) {
   if (bytes.empty()) return 0;
-  const auto reader = bytes[0] == 'p' ? scene::read_ply : bytes[0] == 's' ? scene::read_stl : scene::read_obj;
-  // PLY and STL say themselves what they are; an OBJ may begin with anything.
+  const auto reader = bytes[0] == 'p'                      ? scene::read_ply
+                      : bytes[0] == 's'                    ? scene::read_stl
+                      : bytes[0] == 'g' || bytes[0] == '{' ? scene::read_gltf
+                      : bytes[0] == 'M'                    ? scene::read_3ds
+                                                           : scene::read_obj;
+  // All but OBJ say themselves what they are; that may begin with anything.
   const std::string text(bytes);
   try {
     const auto mesh = reader(text, "fuzz", nullptr);

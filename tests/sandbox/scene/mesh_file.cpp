@@ -80,6 +80,57 @@ TEST_CASE("OBJ, STL and PLY of one tetrahedron have its volume and four vertices
   }
 }
 
+TEST_CASE("glTF and 3DS of one tetrahedron have its volume, where their nodes put it") {
+  const MeshFileFolder folder;
+  // A node mirrors it, another one, about that, moves it.
+  const std::string head =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+          "nodes":[{"children":[1],"translation":[1,2,3]},{"mesh":0,"scale":[1,1,-2]}],
+          "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+          "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+                       {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+          "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},
+                         {"buffer":0,"byteOffset":48,"byteLength":24}],
+          "buffers":[{"byteLength":72)";
+  const float corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::uint16_t faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  const std::string buffer = number_bytes(corners, 48) + number_bytes(faces, 24);
+  const auto whole = [](std::size_t number) {
+    const auto small = static_cast<std::uint32_t>(number);
+    return number_bytes(&small, 4);
+  };
+  std::string text = head + "}]}";
+  text += std::string((4 - text.size() % 4) % 4, ' ');
+  const std::string glb = "glTF" + whole(2) + whole(28 + text.size() + buffer.size()) + whole(text.size()) +
+                          "JSON" + text + whole(buffer.size()) + std::string("BIN\0", 4) + buffer;
+  folder.write("a b.bin", buffer);
+  const auto chunk = [&](std::uint16_t kind, const std::string& content) {
+    return number_bytes(&kind, 2) + whole(6 + content.size()) + content;
+  };
+  const std::uint16_t four = 4, no_flags = 0;
+  std::string list = number_bytes(&four, 2);
+  for (int f = 0; f < 4; ++f) list += number_bytes(faces + 3 * f, 6) + number_bytes(&no_flags, 2);
+  const std::string mesh_chunk =
+      chunk(0x4100, chunk(0x4110, number_bytes(&four, 2) + number_bytes(corners, 48)) + chunk(0x4120, list));
+  const std::string studio = chunk(
+      0x4d4d, chunk(0x0002, whole(3)) + chunk(0x3d3d, chunk(0x4000, std::string("tetra\0", 6) + mesh_chunk)));
+  const std::string inside =
+      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
+      "AAACAAEAAAABAAMAAQACAAMAAAADAAIA";
+  for (const auto& path :
+       {folder.write("t.glb", glb), folder.write("beside.gltf", head + R"(,"uri":"a%20b.bin"}]})"),
+        folder.write("in.GLTF", head + ",\"uri\":\"" + inside + "\"}]}"), folder.write("t.3ds", studio)}) {
+    INFO(path);
+    const auto mesh = read_mesh(path);
+    REQUIRE((mesh.ok() ? "" : mesh.error()) == std::string());
+    CHECK(mesh.value().positions.size() == 4);
+    CHECK(mesh.value().triangles.size() == 4);
+    const bool is_moved = path.extension() != ".3ds";
+    CHECK(geometry::enclosed_volume(mesh.value()) == Approx(is_moved ? 2.0 / 6.0 : 1.0 / 6.0).epsilon(1e-12));
+    if (is_moved) CHECK(mesh.value().positions[3] == Vec3(1.0, 2.0, 1.0));
+  }
+}
+
 TEST_CASE("polygons are cut into triangles that cover them") {
   const MeshFileFolder folder;
   // A quad, a concave arrow head and a hexagon, with negative numbers and a continued line.

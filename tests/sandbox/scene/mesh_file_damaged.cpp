@@ -30,7 +30,7 @@ TEST_CASE("what is no file is refused") {
   check_says(fault_of(folder.path()), "folder");
   for (const char* name : {"empty.obj", "empty.ply", "empty.stl"})
     check_says(fault_of(folder.write(name, "")), "empty");
-  check_says(fault_of(folder.write("mesh.docx", "hello")), ".obj, .ply and .stl");
+  check_says(fault_of(folder.write("mesh.docx", "hello")), ".obj, .ply, .stl, .glb");
 }
 
 TEST_CASE("faults of an OBJ are told with their line") {
@@ -122,6 +122,31 @@ TEST_CASE("a PLY is read from bytes of either order, with more than it needs, in
     CHECK(mesh.value().positions[2] == Vec3(0.0, -2.5, 0.0));
     CHECK(mesh.value().triangles == std::vector<geometry::Triangle>{{0, 1, 2}});
   }
+}
+
+TEST_CASE("faults of glTF and 3DS are told, and no number of theirs is believed") {
+  const MeshFileFolder folder;
+  const auto gltf = [&](const std::string& text) { return fault_of(folder.write("a.gltf", text)); };
+  check_says(gltf("hello"), "no JSON");
+  check_says(gltf("{}"), "no triangles");
+  check_says(gltf(R"({"scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}]})"), "in itself");
+  check_says(gltf(R"({"scenes":[{"nodes":[7]}]})"), "no number 7 in \"nodes\"");
+  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+                     "accessors":[{"bufferView":0,"componentType":5126,"count":4000000000}],
+                     "bufferViews":[{"buffer":0,"byteLength":9}],"buffers":[{"uri":"data:;base64,AAAA"}]})"),
+             "makes no sense");
+  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+                     "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
+                     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":"data:;base64,AAAA"}]})"),
+             "beyond its buffer");
+  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0},
+                     "extensions":{"KHR_draco_mesh_compression":{}}}]}]})"),
+             "Draco");
+  check_says(fault_of(folder.write("a.glb", "glTF\2")), "no glTF 2.0");
+  check_says(fault_of(folder.write("a.3ds", "hello, this is a letter")), "no 3DS");
+  std::string studio("MM\x20\0\0\0<=\xff\0\0\0", 12);
+  studio.resize(32, ' ');
+  check_says(fault_of(folder.write("a.3ds", studio)), "beyond what it is in");
 }
 
 TEST_CASE("files damaged at random never bring the reader down") {
