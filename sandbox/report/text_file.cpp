@@ -12,6 +12,9 @@ namespace shatterbox::sandbox::report {
 
 std::string write_text(const std::string& path, const std::string& text) {
   const std::string part = path + ".part";
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    return fmt::format("{} cannot be written: it is no plain file", path);
   errno = 0;
   {
     std::ofstream stream(part, std::ios::binary);

@@ -12,6 +12,7 @@
 #include "sandbox/run/rendering.h"
 #include "sandbox/run/run.h"
 #include "sandbox/run/study.h"
+#include "sandbox/scene/find_scene.h"
 #include "sandbox/scene/nearest_name.h"
 
 namespace shatterbox::sandbox::run {
@@ -172,8 +173,41 @@ bool is_known_verb(const std::string& verb) {
                                        "diff", "golden", "study", "bench", "list"};
   if (verb.empty() || verb[0] == '-' || std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
     return true;
+  scene::Problems ignored;
+  const bool is_scene = !scene::find_scene(verb, ignored).empty();
   std::fprintf(stderr, "there is no verb \"%s\"\n    %s\n", verb.c_str(),
-               scene::hint_for_name(verb, verbs, "verbs").c_str());
+               is_scene ? ("it is a scene: shatterbox run " + verb).c_str()
+                        : scene::hint_for_name(verb, verbs, "verbs").c_str());
+  return false;
+}
+
+/// What is left over on the command line, in words, with the nearest option that there is.
+int refuse_rest(const CLI::App& app, const std::vector<std::string>& rest) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  std::vector<std::string> known;
+  for (const CLI::Option* option : verb->get_options())
+    if (!option->get_positional())
+      known.push_back(option->get_single_name().size() > 1 ? "--" + option->get_single_name()
+                                                           : "-" + option->get_single_name());
+  const auto stranger =
+      std::find_if(rest.begin(), rest.end(), [](const std::string& word) { return word[0] == '-'; });
+  if (stranger != rest.end())
+    std::fprintf(
+        stderr, "%s has no option %s\n    %s\n", verb->get_name().c_str(), stranger->c_str(),
+        scene::hint_for_name(stranger->substr(0, stranger->find('=')), known, "its options").c_str());
+  else
+    std::fprintf(stderr, "%s is one word too many for %s\n    shatterbox %s --help tells what it takes\n",
+                 rest.front().c_str(), verb->get_name().c_str(), verb->get_name().c_str());
+  return kBadInput;
+}
+
+/// The verbs of a verb.
+bool is_known_second(const std::string& verb, const std::string& second) {
+  const std::vector<std::string> seconds{"make", "check"};
+  if (verb != "golden" || second[0] == '-' || second == seconds[0] || second == seconds[1]) return true;
+  std::fprintf(stderr, "golden does not \"%s\"\n    %s\n", second.c_str(),
+               scene::hint_for_name(second, seconds, "it does").c_str());
   return false;
 }
 
@@ -181,6 +215,7 @@ bool is_known_verb(const std::string& verb) {
 
 int run_command_line(int argc, char** argv) {
   if (argc > 1 && !is_known_verb(argv[1])) return kBadInput;
+  if (argc > 2 && argv[2][0] != '\0' && !is_known_second(argv[1], argv[2])) return kBadInput;
   Options options;
   CLI::App app("Shatterbox: throw things, watch them break, keep the video and the numbers.", "shatterbox");
   app.require_subcommand(1);
@@ -228,6 +263,8 @@ int run_command_line(int argc, char** argv) {
   }
   try {
     app.parse(own, argv);
+  } catch (const CLI::ExtrasError&) {
+    return refuse_rest(app, app.remaining(true));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }

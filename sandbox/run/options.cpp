@@ -22,6 +22,8 @@ std::string file_fault(const std::string& file) {
   const fs::path path(file);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (fs::is_directory(path, code)) return "is a folder";
+  // It is written beside itself and takes the name when it is whole: a device or a pipe would be gone.
+  if (fs::exists(path, code) && !fs::is_regular_file(path, code)) return "is no plain file";
   if (!fs::is_directory(folder, code)) return fmt::format("there is no folder {}", folder.string());
   if (access(folder.c_str(), W_OK) != 0)
     return fmt::format("folder {}: {}", folder.string(), std::strerror(errno));

@@ -1,7 +1,9 @@
 #include "sandbox/run/run.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -141,7 +143,9 @@ int conclude(std::vector<Shot>& shots, const Options& options, std::string fault
     fmt::print("{}", report::make_summary(*record));
     breaches += record->audit.crossings + record->audit.passages;
   }
-  std::fflush(stdout);
+  // Who does not listen any more is no fault of the run; a full disk is.
+  if (std::fflush(stdout) != 0 && errno != EPIPE && fault.empty())
+    fault = fmt::format("the closing words cannot be written: {}", std::strerror(errno));
   if (!fault.empty()) {
     fmt::print(stderr, "failed: {}\n", fault);
     return kFailed;

@@ -183,7 +183,7 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
                                     std::vector<std::string>& notes) {
   std::optional<geometry::PartedMesh> parted;
   if (const auto* files = std::get_if<MeshFileShape>(&form.shape)) {
-    parted = read_files(*files, place, problems, notes);
+    parted = read_files(*files, files->place, problems, notes);
     if (!parted) return std::nullopt;
   } else {
     auto generated = generate(form);
@@ -200,9 +200,9 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
     const Bounds bounds = bounds_of(built.mesh.positions);
     const double across = (bounds.most - bounds.least).maxCoeff();
     if (across > kHardlyMeant)
-      notes.push_back(
-          describe(Problem{place, fmt::format("the mesh {} is {:.3g} m across", files->files.front(), across),
-                           "if the file is in millimetres, write scale = 0.001"}));
+      notes.push_back(describe(
+          Problem{files->place, fmt::format("the mesh {} is {:.3g} m across", files->files.front(), across),
+                  "if the file is in millimetres, write scale = 0.001"}));
   }
   return built;
 }

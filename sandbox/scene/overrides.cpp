@@ -37,13 +37,19 @@ const TomlValue* parse_value(const std::string& text, const Place& place, TomlVa
                              Problems& problems) {
   Problems faults;
   storage = parse_toml("value = " + text, place.file, faults);
+  // The shell takes quotes for its own: a word that is no other value is a text.
+  const std::string word = without_outer_blanks(text);
+  const bool is_word = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/' || c == '.' || c == '#';
+  });
+  if (is_word && !faults.empty()) {
+    faults.clear();
+    storage = parse_toml("value = \"" + word + "\"", place.file, faults);
+  }
   if (!faults.empty() || storage.entries.size() != 1) {
-    std::string hint = "values are TOML: 1.5, true, [0, 1, 0], and texts in quotes";
-    const bool is_word = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-      return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '/' || c == '.';
-    });
-    if (is_word) hint = "if you mean a text, quote it twice, for the shell and for TOML: '\"" + text + "\"'";
-    book(problems, place, "\"" + text + "\" is not a value", hint);
+    book(problems, place, "\"" + text + "\" is not a value",
+         "values are TOML: 1.5, true, [0, 1, 0], and texts, which need quotes where they are more than a "
+         "word");
     return nullptr;
   }
   move_to(storage, place);

@@ -36,6 +36,7 @@ std::string find_mesh_file(const std::string& file, const std::string& scene_fil
 std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDescription& scene) {
   const TomlValue* value = reader.value("mesh");
   MeshFileShape shape;
+  shape.place = value->place;
   std::vector<const TomlValue*> names;
   if (value->is_array()) {
     for (const TomlValue& item : value->items) names.push_back(&item);

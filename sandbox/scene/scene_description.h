@@ -35,6 +35,7 @@ struct PairEntry {
 
 // Shapes of shells and solids.
 struct MeshFileShape {
+  Place place;                     // where they are asked for
   std::vector<std::string> files;  // as found from the scene's folder; several are one body
 };
 struct SphereShape {

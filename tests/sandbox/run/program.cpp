@@ -17,6 +17,13 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   };
   refused("", "");
   refused("runn good.toml", "did you mean \"run\"?");
+  refused("good.toml", "it is a scene: shatterbox run good.toml");
+  refused("run good.toml --reprot r.json", "did you mean \"--report\"?");
+  refused("run good.toml --size=64x48 --qualty=full", "did you mean \"--quality\"?");
+  refused("check good.toml --report r.json", "check has no option --report");
+  refused("run good.toml again", "again is one word too many for run");
+  refused("golden chek g", "did you mean \"check\"?");
+  refused("golden make g --reasn x", "did you mean \"--reason\"?");
   refused("study", "study needs a NAME");
   refused("study moton", "did you mean \"motion\"?");
   refused("study motion -o good.toml", "good.toml");
@@ -58,6 +65,31 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("run good.toml --export film.gltf", ".glb");
   refused("run good.toml --export no/such/film.glb", "there is no folder");
   refused("run reel --export film.glb", "shots");
+}
+
+TEST_CASE("what is wrong with a mesh file is told with its line, and the scene's line that asked for it") {
+  const Folder folder;
+  folder.write("bad mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  folder.write("my scene.toml", "\xEF\xBB\xBF[[body]]\nkind = \"shell\"\nmesh = \"bad mesh.obj\"\n");
+  const Outcome outcome = program(folder, "check 'my scene.toml'");
+  CHECK(outcome.status == 2);
+  CHECK(outcome.err.find("my scene.toml:3:8: bad mesh.obj:4: this face names vertex 9") == 0);
+}
+
+TEST_CASE("a reader that goes away, and a full device, are told with their status") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string run = SHATTERBOX_PROGRAM " run good.toml --no-render --seconds 0.1 ";
+  const Outcome piped = shell(folder, run + "--report r.json | true; [ -s r.json ]");
+  CHECK(piped.status == 0);  // the report is there, whoever listens
+  const Outcome full = shell(folder, run + "> /dev/full");
+  CHECK(full.status == 3);
+  CHECK(full.err.find("No space left") != std::string::npos);
+  // What is no plain file would be replaced by one.
+  const Outcome pipe = shell(folder, "mkfifo p; " + run + "--report p");
+  CHECK(pipe.status == 2);
+  CHECK(pipe.err.find("p cannot be written: is no plain file") != std::string::npos);
+  CHECK(fs::is_fifo(folder / "p"));
 }
 
 TEST_CASE("check and list say what there is") {

@@ -80,7 +80,7 @@ TEST_CASE("a file's mesh of a hundred metres is built, with a word on millimetre
   const std::string file = folder.write("tent.obj", "v 0 0 0\nv 150 0 0\nv 0 120 0\nf 1 2 3\n").string();
   const auto notes_at = [&](double scale) {
     ShellForm form;
-    form.shape = MeshFileShape{{file}};
+    form.shape = MeshFileShape{{}, {file}};
     form.scale = Vec3::Constant(scale);
     Problems problems;
     std::vector<std::string> notes;

@@ -138,7 +138,9 @@ TEST_CASE("the option --set is checked with the scene's own words, and named as 
   refused("ball.radius=-1", "greater than 0 m");
   refused("ball.radios=1", "did you mean \"radius\"?");
   refused("bal.radius=1", "did you mean \"ball\"?");
-  refused("ball.material=steel", "'\"steel\"'");
+  refused("ball.material=stel", "did you mean \"steel\"?");
+  refused("ball.radius=big", "radius must be a number");
+  refused("ball.name=a b", "is not a value");
   refused("ball.radius=", "is not a value");
   refused("ball=1", "NAME.key=value");
   refused("ball.radius", "NAME.key=value");
@@ -146,6 +148,17 @@ TEST_CASE("the option --set is checked with the scene's own words, and named as 
   refused("ball.radius.size=1", "not a table");
   refused("ball.radius=nan", "must be finite");
   refused("scene.seconds=1 seed=2", "is not a value");
+}
+
+TEST_CASE("a word behind --set is a text, with or without the quotes that the shell takes away") {
+  for (const char* change :
+       {"ball.look=steel", "ball.look=\"steel\"", "ball.look='steel'", "ball.look = steel "}) {
+    const Reading reading = read(kScene, {change, "ball.colour=#ff0000"});
+    INFO(change << "\n" << reading.text);
+    REQUIRE(reading.scene.has_value());
+    CHECK(reading.scene->bodies[1].look.name == "steel");
+    CHECK(reading.scene->bodies[1].look.colours.size() == 1);
+  }
 }
 
 TEST_CASE("bodies without a name are called by their number") {
