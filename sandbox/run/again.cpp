@@ -51,9 +51,10 @@ WorkFolder::~WorkFolder() {
 }
 
 pid_t start_again(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& log) {
-  return start(arguments, [&] {
+  return start(arguments, [&, parent = getpid()] {
     setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGTERM);  // who started it may be killed; nobody would wait for it then
+    prctl(PR_SET_PDEATHSIG, SIGTERM);     // who started it may be killed; nobody would wait for it then
+    if (getppid() != parent) _exit(127);  // it was, just before
     if (chdir(folder.c_str()) != 0) _exit(127);
     say_to(log);
   });

@@ -35,11 +35,14 @@ std::vector<std::string> Throws::missed() const {
   std::vector<std::string> sentences;
   for (const Flight& flight : flights_) {
     const scene::EventEntry& event = *flight.thrown.event;
+    const bool is_at_body = std::holds_alternative<int>(std::get<scene::Projectile>(event.action).target);
     sentences.push_back(scene::describe(scene::Problem{
         event.place,
         fmt::format("what event \"{}\" threw hit nothing{}", event.name,
                     flight.has_hit_floor ? " but the floor" : ""),
-        "look where its target is by then: at_body = \"name\" aims at a body wherever that is"}));
+        is_at_body
+            ? "it is aimed at where its target is when it is thrown: throw it faster, from nearer, or later"
+            : "look where its target is by then: at_body = \"name\" aims at a body wherever that is"}));
   }
   return sentences;
 }
