@@ -173,3 +173,54 @@ TEST_CASE("a hit opens the mortar about it and no other and bits repeat") {
   CHECK(run(again) == opened);
   CHECK(once == again);
 }
+
+TEST_CASE("a joint of a body that broke goes on with the nearest piece in the same place") {
+  const auto shape = std::make_shared<body::Shape>();
+  body::Body parent;
+  parent.id = 3;
+  parent.shape = shape;
+  parent.pose = {Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())), Vec3(1, 2, 3)};
+  std::vector<body::Body> bodies(2, parent);
+  for (int i = 0; i < 2; ++i) {
+    bodies[static_cast<std::size_t>(i)].id = static_cast<body::BodyId>(7 + i);
+    bodies[static_cast<std::size_t>(i)].pose.translation = parent.pose.apply(Vec3(i == 0 ? -0.1 : 0.1, 0, 0));
+  }
+  dynamics::Joint joint;
+  joint.body_a = 2;
+  joint.body_b = 3;
+  joint.frame_b = {Quat(Eigen::AngleAxisd(0.3, Vec3::UnitY())), Vec3(0.12, 0.05, 0.0)};
+  std::vector<dynamics::Joint> joints{joint};
+  world::rehang(joints, parent, {7, 8}, bodies);
+  CHECK(joints[0].body_a == 2);
+  REQUIRE(joints[0].body_b == 8);
+  const Pose& piece = bodies[1].pose;
+  CHECK(piece.apply(joints[0].frame_b.translation).isApprox(parent.pose.apply(joint.frame_b.translation)));
+  CHECK((piece.rotation * joints[0].frame_b.rotation)
+            .isApprox(parent.pose.rotation * joint.frame_b.rotation, 1e-12));
+}
+
+TEST_CASE("a pivot bears a weight up to its strength and goes with its body") {
+  for (const double share : {1.02, 0.98}) {
+    world::World world = make_world(240, false);
+    const int stone = world.add_material(*material::find_preset("brick")).value();
+    const auto held = add_brick(world, stone, Vec3(0, 2, 0), body::Motion::fixed);
+    const auto free = add_brick(world, stone, Vec3(0, 1, 0), body::Motion::dynamic);
+    const double weight = kDensity * kLength * kHeight * kWidth * 9.81, area = 1e-4;
+    world::JointDescription joint;
+    joint.body_a = held;
+    joint.body_b = free;
+    joint.form = world::PivotDescription{Vec3(0, 1.5, 0), area};
+    joint.strength = share * weight / area;
+    REQUIRE(world.add_joint(joint).value() == 1);
+    while (world.time() < 0.2) world.step();
+    const world::JointRow& row = world.report().joints.front();
+    CAPTURE(row.verdict);
+    CHECK((row.opened >= 0.0) == (share < 1.0));
+    const double height = world.bodies()[1].pose.translation.y();
+    if (share > 1.0) CHECK(height == Approx(1.0).epsilon(1e-6));
+    if (share < 1.0) CHECK(height < 0.95);
+    REQUIRE(world.remove_body(held));
+    world.step();
+    CHECK(world.bodies().front().velocity.y() < 0.0);
+  }
+}
