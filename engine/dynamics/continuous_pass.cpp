@@ -29,8 +29,9 @@ constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 // Share of the kept gap to which hits are opened: less would be used up in the next steps.
 constexpr double kOpening = 0.5, kLastOpening = 0.05;
-constexpr int kPatience = 2;         // rounds without fewer hits
-constexpr int kMostPartialCuts = 5;  // before whole steps are taken back
+constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with the one before
+constexpr int kPatience = 2;          // rounds without fewer hits
+constexpr int kMostPartialCuts = 5;   // before whole steps are taken back
 
 double wanted_separation(double gap, double kept_gap) {
   const double safe = kSafe * kept_gap;
@@ -226,8 +227,9 @@ class Guard {
     }
     if (std::find(is_dirty.begin(), is_dirty.end(), 1) == is_dirty.end()) return false;
     build_islands(work_);
+    const std::vector<Way> before = note_ways();
     solve_islands(bodies_, settings_, is_dirty, work_);
-    mark_due_with(is_dirty);
+    mark_due_since(before);
     return true;
   }
 
@@ -275,6 +277,42 @@ class Guard {
       spare -= moved;
       pair.moved += moved;
       return moved > 0.0 && spare <= 0.0;
+    });
+  }
+
+  // How bodies went before they were solved anew.
+  struct Way {
+    Pose end;
+    bool is_straight = false;
+  };
+  std::vector<Way> note_ways() const {
+    std::vector<Way> ways;
+    ways.reserve(work_.bodies.size());
+    for (const WorkBody& w : work_.bodies) ways.push_back({w.end, w.straight_parts == 1});
+    return ways;
+  }
+
+  // Pairs whose last test leaves more than their ends moved against each other are free still.
+  void mark_due_since(const std::vector<Way>& before) {
+    std::vector<double> turns(work_.bodies.size());
+    std::vector<Vec3> shifts(work_.bodies.size());
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      const WorkBody& w = work_.bodies[i];
+      const bool is_straight = before[i].is_straight && w.straight_parts == 1;
+      turns[i] = is_straight ? turn_bound(before[i].end.rotation, w.end.rotation, w.reach) : kElsewhere;
+      shifts[i] = w.end.translation - before[i].end.translation;
+    }
+    mark_due([&](WorkPair& pair, double& spare) {
+      const double moved =
+          (shifts[at(pair.a)] - shifts[at(pair.b)]).norm() + turns[at(pair.a)] + turns[at(pair.b)];
+      if (moved == 0.0) return false;
+      if (moved >= kElsewhere) {
+        pair.free_until.clear();
+        return true;
+      }
+      spare -= moved * (1.0 + 1e-9);
+      pair.moved += moved * (1.0 + 1e-9);
+      return spare <= 0.0;
     });
   }
 
