@@ -288,8 +288,12 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   }
   if (!anything_moves) return;
   list_joints(state, work);
-  for (WorkBody& w : work.bodies) look_about(settings, w.predicted, w);
-  match_pairs(bodies, find_pairs(bodies, work), work, state);
+  std::vector<char> is_active;
+  for (WorkBody& w : work.bodies) {
+    look_about(settings, w.predicted, w);
+    is_active.push_back(w.is_active ? 1 : 0);
+  }
+  match_pairs(bodies, find_pairs(bodies, work, is_active), work, state);
 
   struct Needs {
     bool place = false, boxes = false, swept = false;
@@ -351,7 +355,7 @@ void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& s
     return std::pair(x.a, x.b) < std::pair(y.a, y.b);
   };
   std::sort(known.begin(), known.end(), comes_before);
-  for (const auto& found : find_pairs(bodies, work)) {
+  for (const auto& found : find_pairs(bodies, work, has_strayed)) {
     if (!has_strayed[at(found.a)] && !has_strayed[at(found.b)]) continue;
     if (!std::binary_search(known.begin(), known.end(), found, comes_before))
       add_pair(bodies, settings, found, state, work);

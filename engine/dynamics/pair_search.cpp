@@ -92,12 +92,13 @@ bool is_within_looked(const ContactSettings& settings, const WorkBody& w) {
          (end.high.array() + gap <= w.looked.high.array()).all();
 }
 
-std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work) {
+std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionWork& work,
+                                  const std::vector<char>& is_wanted) {
   std::vector<collision::SweptBound> bounds(work.bodies.size());
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const WorkBody& w = work.bodies[i];
     if (w.shape->kind == ShapeKind::plane) continue;  // they have their own loop
-    bounds[i] = {w.looked, w.is_active};
+    bounds[i] = {w.looked, is_wanted[i] != 0};
   }
   auto near = collision::find_overlapping_pairs(bounds);
   add_pairs_with_planes(work, near);

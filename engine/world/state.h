@@ -13,6 +13,7 @@
 #include "engine/dynamics/paper_motion.h"
 #include "engine/dynamics/step_motion.h"
 #include "engine/world/acts.h"
+#include "engine/world/factor_shelf.h"
 #include "engine/world/forms.h"
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
@@ -65,6 +66,7 @@ struct World::State {
   std::map<body::BodyId, Ancestry> ancestry;
   std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;
   WorldReport report;
+  FactorShelf factors;
   core::StopQuestion wants_to_stop;  // empty: nobody asks
   StepBegin begin;                   // of the present step
   long steps = 0;

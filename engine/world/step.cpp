@@ -199,6 +199,7 @@ bool World::step() {
   s.ways = std::move(contact.ways);
   book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
   book_scripted(s.moving.bodies, s.report.scripted);
+  s.factors.clear_out(s.moving.fragiles, s.ancestry);
   ++s.steps;
   s.report.steps = s.steps;
   s.hash = s.report.stages.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
@@ -232,6 +233,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
         }
       }
       const auto impacts = judge_impacts(given);
+      for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
       const std::size_t known_breaks = s.report.breaks.size();
       if (timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); })) {
         ++pass;

@@ -5,6 +5,7 @@
 
 #include "engine/fracture/shell_subject.h"
 #include "engine/geometry/generators.h"
+#include "engine/world/factor_shelf.h"
 #include "engine/world/forms.h"
 
 using namespace shatterbox;
@@ -82,5 +83,30 @@ TEST_CASE("an impact that was borne is not solved again, however near it came, b
     CHECK(hit.figures.skipped == 3);
     CHECK(hit.judge(1.1 / std::min(1.0, verdict.ratio) * speed, side).size() == 1);
     CHECK(hit.judge(speed, Vec3(-side)).size() == 1);
+  }
+}
+
+TEST_CASE("a piece that gives up its factors is judged as before, and a whole body keeps its own") {
+  for (const body::BodyId parent : {body::BodyId{0}, body::BodyId{7}}) {
+    Hit hit(1e9);
+    const auto count = [&] {
+      return std::get<fracture::ShellSubject>(hit.fragiles.at(kStruck)->subject).systems->count();
+    };
+    const Vec3 side(0.04, 0.0, 0.0);
+    const auto before = hit.judge(1.0, side);
+    REQUIRE(before.size() == 1);
+    REQUIRE(count() > 0);
+    world::FactorShelf ample, none(0.0);
+    for (world::FactorShelf* shelf : {&ample, &none}) shelf->note_use(kStruck, 3);
+    const std::map<body::BodyId, world::Ancestry> ancestry = {{kStruck, {parent, kStruck, 0.0}}};
+    ample.clear_out(hit.fragiles, ancestry);
+    CHECK(count() > 0);
+    none.clear_out(hit.fragiles, ancestry);
+    CHECK((count() == 0) == (parent != 0));
+    hit.borne = {};
+    const auto after = hit.judge(1.0, side);
+    REQUIRE(after.size() == 1);
+    CHECK(after[0].figures().verdict.stress == before[0].figures().verdict.stress);
+    CHECK(after[0].figures().verdict.duration == before[0].figures().verdict.duration);
   }
 }
