@@ -24,8 +24,8 @@ namespace {
 
 using core::Clock;
 using core::milliseconds_since;
-// So many frames the world may be ahead of the pictures: while it takes its time over one in which much breaks,
-// those before it are drawn.
+// So many frames the world may be ahead of the pictures: while it takes its time over one in which much
+// breaks, those before it are drawn.
 constexpr std::size_t kMostWaiting = 8;
 
 struct Waiting {
@@ -91,6 +91,7 @@ struct Painter::Room {
   bool is_ending = false;
   std::vector<Picture> pictures;  // written
   std::string error;
+  std::string opening_fault;  // of the video; never changes once the thread runs
   std::atomic<int> finished{0};
   std::thread thread;
 
@@ -199,7 +200,7 @@ Painter::Painter(PainterSettings settings) : room_(std::make_unique<Room>()) {
     video.frames_per_second = s.frames_per_second;
     video.keep = static_cast<long>(s.kept.size());
     room_->video.emplace(s.video, video);
-    if (!room_->video->status()) room_->error = room_->video->status().error;
+    if (!room_->video->status()) room_->error = room_->opening_fault = room_->video->status().error;
   }
   room_->thread = std::thread([room = room_.get()] {
     try {
@@ -251,6 +252,10 @@ std::vector<Picture> Painter::pictures() const {
 std::string Painter::error() const {
   const std::lock_guard lock(room_->mutex);
   return room_->error;
+}
+
+const std::string& Painter::opening_fault() const {
+  return room_->opening_fault;
 }
 
 const Painted& Painter::painted() const {

@@ -59,6 +59,8 @@ class Painter {
   /// All that are written so far, those that were kept with them.
   std::vector<Picture> pictures() const;
   std::string error() const;
+  /// Why the video cannot be begun; empty if it can. Known from the start, unlike what fails in drawing.
+  const std::string& opening_fault() const;
   /// After finish().
   const Painted& painted() const;
 

@@ -164,12 +164,11 @@ int render_recording(const RenderOptions& options) {
   const PainterSettings settings = painter_settings(options, reader->settings(), problems);
   if (!problems.empty()) return refuse(problems);
   Painter painter(settings);
-  std::string fault = painter.error();
-  if (!fault.empty()) {
-    scene::book(problems, scene::Place{"-o", 0, 0}, fault);
+  if (!painter.opening_fault().empty()) {
+    scene::book(problems, scene::Place{"-o", 0, 0}, painter.opening_fault());
     return refuse(problems);
   }
-  fault = paint_frames(*reader, range.first, range.second, painter);
+  std::string fault = paint_frames(*reader, range.first, range.second, painter);
   (void)painter.finish();
   const double seconds = core::milliseconds_since(start) / 1000.0;
   if (fault.empty() && !options.report.empty())

@@ -186,8 +186,8 @@ int play_all(std::vector<Shot>& shots) {
   std::optional<Painter> painter;
   if (options.has_pictures && !(settings.video + settings.frames_folder + settings.truth_folder).empty()) {
     painter.emplace(settings);
-    if (!painter->error().empty()) {
-      scene::book(problems, scene::Place{"-o", 0, 0}, painter->error());
+    if (!painter->opening_fault().empty()) {
+      scene::book(problems, scene::Place{"-o", 0, 0}, painter->opening_fault());
       return refuse(problems);
     }
   }

