@@ -4,6 +4,7 @@
 
 #include "engine/geometry/generators.h"
 #include "engine/world/world.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 
@@ -32,7 +33,7 @@ world::World make_scene(bool is_breakable, bool has_grains, bool has_shell = tru
   for (int copy = 0; copy < 3; ++copy) {
     world::BodyDescription ball;
     world::ShellDescription shell;
-    shell.mesh = geometry::make_sphere(0.04, {0.008, 0.0, 1}).value();
+    shell.mesh = geometry::make_sphere(0.04, {test::kIsSanitized ? 0.012 : 0.008, 0.0, 1}).value();
     shell.thickness = 0.0006;
     shell.is_breakable = is_breakable;
     ball.form = shell;
