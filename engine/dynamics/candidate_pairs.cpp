@@ -356,7 +356,6 @@ void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& s
   };
   std::sort(known.begin(), known.end(), comes_before);
   for (const auto& found : find_pairs(bodies, work, has_strayed)) {
-    if (!has_strayed[at(found.a)] && !has_strayed[at(found.b)]) continue;
     if (!std::binary_search(known.begin(), known.end(), found, comes_before))
       add_pair(bodies, settings, found, state, work);
   }

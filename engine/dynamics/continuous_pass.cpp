@@ -272,12 +272,7 @@ class Guard {
     }
     // Pairs whose last test leaves more than both bodies moved are free still.
     const std::vector<double> moves = open_gaps(openings, settings_.time_step, yielding, work_);
-    mark_due([&](WorkPair& pair, double& spare) {
-      const double moved = moves[at(pair.a)] + moves[at(pair.b)];
-      spare -= moved;
-      pair.moved += moved;
-      return moved > 0.0 && spare <= 0.0;
-    });
+    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
   }
 
   // How bodies went before they were solved anew.
@@ -302,35 +297,37 @@ class Guard {
       turns[i] = is_straight ? turn_bound(before[i].end.rotation, w.end.rotation, w.reach) : kElsewhere;
       shifts[i] = w.end.translation - before[i].end.translation;
     }
-    mark_due([&](WorkPair& pair, double& spare) {
-      const double moved =
-          (shifts[at(pair.a)] - shifts[at(pair.b)]).norm() + turns[at(pair.a)] + turns[at(pair.b)];
-      if (moved == 0.0) return false;
-      if (moved >= kElsewhere) {
-        pair.free_until.clear();
-        return true;
-      }
-      spare -= moved * (1.0 + 1e-9);
-      pair.moved += moved * (1.0 + 1e-9);
-      return spare <= 0.0;
+    mark_due([&](const WorkPair& pair) {
+      const double shift = (shifts[at(pair.a)] - shifts[at(pair.b)]).norm();
+      return (shift + turns[at(pair.a)] + turns[at(pair.b)]) * (1.0 + 1e-9);
     });
   }
 
-  template <class IsDue>
-  void mark_due(const IsDue& is_due) {
+  static bool is_due(WorkPair& pair, double moved, double& spare) {
+    if (moved == 0.0) return false;
+    if (moved >= kElsewhere) {
+      pair.free_until.clear();
+      return true;
+    }
+    spare -= moved;
+    pair.moved += moved;
+    return spare <= 0.0;
+  }
+
+  // By how far (m) the ends of each pair may have moved against each other; kElsewhere or more: anywhere.
+  template <class MovedBy>
+  void mark_due(const MovedBy& moved_by) {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const bool has_hit = must_test_[p] && !hits_[p].empty();
-      must_test_[p] = is_due(work_.pairs[p], spare_[p]) || has_hit ? 1 : 0;
+      must_test_[p] = is_due(work_.pairs[p], moved_by(work_.pairs[p]), spare_[p]) || has_hit ? 1 : 0;
       hits_[p].clear();
     }
     resize();
   }
 
   void mark_due_with(const std::vector<char>& has_moved) {
-    mark_due([&](WorkPair& pair, double&) {
-      if (!has_moved[at(pair.a)] && !has_moved[at(pair.b)]) return false;
-      pair.free_until.clear();
-      return true;
+    mark_due([&](const WorkPair& pair) {
+      return has_moved[at(pair.a)] || has_moved[at(pair.b)] ? kElsewhere : 0.0;
     });
   }
 

@@ -33,14 +33,15 @@ bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& 
   return a.collides_with(b);
 }
 
-void add_pairs_with_planes(const MotionWork& work, std::vector<collision::IndexPair>& pairs) {
+void add_pairs_with_planes(const MotionWork& work, const std::vector<char>& is_wanted,
+                           std::vector<collision::IndexPair>& pairs) {
   for (std::size_t p = 0; p < work.bodies.size(); ++p) {
     if (work.bodies[p].shape->kind != ShapeKind::plane) continue;
     const Vec3 normal = work.bodies[p].start.rotation * Vec3::UnitY();
     const double level = std::max(normal.dot(work.bodies[p].start.translation),
                                   normal.dot(work.bodies[p].predicted.translation));
     for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-      if (work.bodies[i].shape->kind == ShapeKind::plane) continue;
+      if (work.bodies[i].shape->kind == ShapeKind::plane || (!is_wanted[p] && !is_wanted[i])) continue;
       const auto& box = work.bodies[i].looked;
       const double lowest =
           normal.dot(0.5 * (box.low + box.high)) - normal.cwiseAbs().dot(0.5 * (box.high - box.low));
@@ -101,7 +102,7 @@ std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionW
     bounds[i] = {w.looked, is_wanted[i] != 0};
   }
   auto near = collision::find_overlapping_pairs(bounds);
-  add_pairs_with_planes(work, near);
+  add_pairs_with_planes(work, is_wanted, near);
   std::erase_if(near, [&](const collision::IndexPair& pair) {
     return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
                      work.bodies[at(pair.b)]) ||

@@ -21,7 +21,7 @@ void look_about(const ContactSettings& settings, const Pose& end, WorkBody& body
 bool is_within_looked(const ContactSettings& settings, const WorkBody& body);
 
 /// All pairs that may meet if their bodies end within their reserves of where they were looked for,
-/// ascending; between surfaces only those with a body that `is_wanted` (per body).
+/// ascending; only those with a body that `is_wanted` (per body).
 std::vector<FoundPair> find_pairs(const std::vector<body::Body>& bodies, const MotionWork& work,
                                   const std::vector<char>& is_wanted);
 
