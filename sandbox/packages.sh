@@ -8,7 +8,7 @@ BUILD_PACKAGES=("${ENGINE_PACKAGES[@]}" pkg-config libosmesa6-dev libglm-dev lib
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev)
 
 # EGL is the second way to draw (--gl egl): tests hold both to the same bits.
-TEST_PACKAGES=("${BUILD_PACKAGES[@]}" libegl-dev libgl1-mesa-dri ffmpeg gnuplot-nox libgmp-dev)
+TEST_PACKAGES=("${BUILD_PACKAGES[@]}" libegl-dev libgl1-mesa-dri ffmpeg gnuplot-nox libgmp-dev mold)
 
 # install_packages WHAT-FOR NAME...: installs those that are missing; says how where it cannot.
 install_packages() {

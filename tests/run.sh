@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs, builds and passes all tests: the engine alone (without GL, FFmpeg or JSON) under the address and
-# undefined-behaviour sanitizers, then the whole program. tests/README.md says what each label is.
+# Installs, builds and passes all tests: the engine and the readers of files under the address and undefined-behaviour
+# sanitizers, then the whole program. tests/README.md says what each label is.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 start=$(date +%s)
@@ -19,7 +19,7 @@ test_preset() {
   echo "== $preset"
   local unity=()
   [ -e "build/$preset/CMakeCache.txt" ] || unity=(-DCMAKE_UNITY_BUILD=ON)
-  cmake --preset "$preset" -DSHATTERBOX_TESTS=ON "${unity[@]}" "${launcher[@]}" >/dev/null
+  cmake --preset "$preset" -DSHATTERBOX_TESTS=ON "${unity[@]}" "${launcher[@]}" -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold >/dev/null
   cmake --build "build/$preset" -j "$jobs" --target "${@/#/tests_}"
   echo "== $preset built in $((SECONDS - begin)) s"
   local labels
@@ -28,8 +28,8 @@ test_preset() {
   echo "== $preset passed in $((SECONDS - begin)) s"
 }
 
-test_preset asan unit robustness structure  # -DSHATTERBOX_RENDER=OFF, so the engine alone is built here
-test_preset release unit structure physics scene image robustness
+test_preset asan unit robustness structure readers  # no picture is drawn here
+test_preset release unit structure physics program scene image robustness
 
 seconds=$(($(date +%s) - start))
 echo "== all passed in $((seconds / 60)) min $((seconds % 60)) s"

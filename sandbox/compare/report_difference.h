@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sandbox/compare/difference_report.h"
+#include "sandbox/compare/junit.h"
 
 namespace shatterbox::sandbox::compare {
 

@@ -253,15 +253,16 @@ TEST_CASE("without gravity and with a thousand times it a stack stands and carri
     add(w, plane());
     const double gap = kKeptGap * 0.2 * std::sqrt(3.0);
     for (int k = 0; k < 3; ++k) add(w, box(0.1, Vec3(0.0, 0.1 + gap + (0.2 + gap) * k, 0.0)));
-    run(w, 1.0);
+    const int steps = settings.steps_per_second / static_cast<int>(test::how_many(1, 8));
+    for (int i = 0; i < steps; ++i) w.step();
     double below = 0.0;
-    for (int i = 0; i < settings.steps_per_second; ++i) {
+    for (int i = 0; i < steps; ++i) {
       w.step();
       for (const body::LoggedImpulse& entry : w.impulse_log())
         if (std::min(entry.body_a, entry.body_b) == 1) below += std::abs(entry.impulse_world.y());
     }
     CAPTURE(g);
-    CHECK(below == Approx(3.0 * 20.0 * g).epsilon(1e-4).margin(1e-12));
+    CHECK(below == Approx(3.0 * 20.0 * g * steps / settings.steps_per_second).epsilon(1e-4).margin(1e-12));
     for (int k = 0; k < 3; ++k)
       CHECK((w.bodies()[static_cast<std::size_t>(k + 1)].pose.translation -
              Vec3(0.0, 0.1 + gap + (0.2 + gap) * k, 0.0))

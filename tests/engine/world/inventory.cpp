@@ -89,7 +89,7 @@ TEST_CASE(
     w.prepare();
     CHECK(part(w, "factors").count > 0);
     CHECK(part(w, "factors").bytes > 1e5);
-    for (int i = 0; i < 12; ++i) w.step();
+    for (long i = 0; i < test::how_many(12, 4); ++i) w.step();
     CHECK(w.report().breaks.size() > 0);
     for (const char* stage : {"snapshot", "stress", "fracture"}) CHECK(has_stage(w, stage));
     CHECK_FALSE(has_stage(w, "hands"));

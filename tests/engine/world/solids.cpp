@@ -151,6 +151,7 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
 }
 
 TEST_CASE("solids: a break has the same bits for any number of threads") {
+  if (test::kIsSanitized) return;  // the break is that of the test above; who shares its work is tsan's
   const auto hash = [](int threads) {
     core::set_thread_count(threads);
     const std::uint64_t bits = drop_slab(1.0).state_hash();
@@ -178,7 +179,7 @@ TEST_CASE("a solid on its foot keeps what holds on to it when it is hit") {
   ball.pose.translation = Vec3(0.02, 0.05, 0.2);
   ball.velocity = Vec3(0.0, 0.0, -20.0);
   REQUIRE(w.add_body(ball).ok());
-  for (int step = 0; step < 24; ++step) w.step();
+  for (long step = 0; step < test::how_many(24, 4); ++step) w.step();
   REQUIRE_FALSE(w.report().breaks.empty());
   int held = 0, loose = 0;
   for (const body::Body& body : w.bodies()) {
