@@ -18,6 +18,7 @@
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
 #include "engine/world/joints.h"
+#include "engine/world/moment.h"
 #include "engine/world/verdict.h"
 #include "engine/world/world.h"
 
@@ -34,11 +35,14 @@ struct MovingState {
   body::BodyId next_id = 1;
 };
 
+/// Pa, of the elements of what was judged, by body.
+using ElementStress = std::map<body::BodyId, std::shared_ptr<const std::vector<double>>>;
+
 /// The state at the begin of the present step, for a step that is asked to stop. Rows of the report only
 /// grow.
 struct StepBegin {
   std::optional<MovingState> moving;  // nothing yet: the present part's snapshot is it
-  std::optional<std::map<body::BodyId, std::shared_ptr<const std::vector<double>>>> element_stress;
+  std::optional<ElementStress> element_stress;
   std::vector<dynamics::Hand> hands;
   ConservationFigures conservation;
   SolverFigures solver;
@@ -64,10 +68,11 @@ struct World::State {
   int next_hand = 1;
   std::vector<body::Way> ways;  // of the last step
   std::map<body::BodyId, Ancestry> ancestry;
-  std::map<body::BodyId, std::shared_ptr<const std::vector<double>>> element_stress;
+  ElementStress element_stress;
   WorldReport report;
   FactorShelf factors;
   core::StopQuestion wants_to_stop;  // empty: nobody asks
+  Watcher watcher;                   // empty: nobody watches
   StepBegin begin;                   // of the present step
   long steps = 0;
   std::uint64_t hash = 0;

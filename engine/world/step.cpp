@@ -7,6 +7,7 @@
 
 #include "engine/core/stop.h"
 #include "engine/dynamics/scripted_motion.h"
+#include "engine/world/bits.h"
 #include "engine/world/pieces.h"
 #include "engine/world/replace.h"
 #include "engine/world/state.h"
@@ -123,34 +124,6 @@ void book_scripted(const std::vector<body::Body>& bodies, std::vector<ScriptedRo
   }
 }
 
-std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t previous) {
-  core::Hash hash(previous);
-  hash.add(static_cast<std::uint64_t>(steps));
-  for (const body::Body& body : moving.bodies) {
-    hash.add(std::uint64_t{body.id}).add(body.pose.rotation).add(body.pose.translation);
-    hash.add(body.velocity).add(body.angular_velocity).add(std::uint64_t{body.is_awake}).add(body.quiet_time);
-    if (body.script.path) hash.add(body.script.time).add(body.script.pace).add(body.script.wait);
-  }
-  for (const auto& [id, memory] : moving.memories) {
-    hash.add(std::uint64_t{id})
-        .add(memory.event_duration)
-        .add(memory.tested_contact)
-        .add(memory.tested_growth);
-    hash.add(static_cast<std::uint64_t>(memory.generation));
-    for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
-    for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);
-  }
-  for (const auto& [number, memory] : moving.joint_memories) {
-    hash.add(static_cast<std::uint64_t>(number)).add(memory.event_duration).add(memory.event_time);
-    hash.add(memory.event_impulse).add(memory.event_couple);
-    for (const JointMemory::Load& load : memory.contact)
-      hash.add(load.time).add(load.impulse).add(load.couple);
-  }
-  dynamics::add_to_hash(moving.contact, hash);
-  dynamics::add_to_hash(moving.paper_contact, hash);
-  return hash.value();
-}
-
 }  // namespace
 
 dynamics::ContactReport World::move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log) {
@@ -215,10 +188,12 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   for (int pass = 0; part.number < part.count;) {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     body::ImpulseLog given = act(part);
+    tell_watcher("acts", part, pass);
     const std::vector<body::Body> before = s.moving.bodies;
     body::ImpulseLog log;
     dynamics::ContactReport moved = move_bodies(part, log);
     given.insert(given.end(), log.begin(), log.end());
+    tell_watcher("motion", part, pass);
     if (may_break) {
       if (const int parts = count_parts_instead(part, moved); parts > part.count) {
         s.moving = std::move(snapshot);
@@ -227,7 +202,9 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
       }
       if (has_joints) {
         const bool may_go_back = s.settings.after_break == AfterBreak::go_back && pass + 1 < kMostPasses;
-        if (open_joints(judge_joints(part, given), snapshot, may_go_back)) {
+        const bool goes_back = open_joints(judge_joints(part, given), snapshot, may_go_back);
+        tell_watcher("joints", part, pass);
+        if (goes_back) {
           ++pass;
           continue;
         }
@@ -235,7 +212,9 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
       const auto impacts = judge_impacts(given);
       for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
       const std::size_t known_breaks = s.report.breaks.size();
-      if (timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); })) {
+      const bool goes_back = timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); });
+      tell_watcher("fracture", part, pass);
+      if (goes_back) {
         ++pass;
         inherit_ways(before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies, contact.ways);
         if (part.number == 0) part.count = std::max(part.count, count_parts());
@@ -255,6 +234,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     timer.time("sleep",
                [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   }
+  tell_watcher("sleep", {part.count - 1, part.count}, 0);
 }
 
 std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log) {

@@ -16,6 +16,7 @@
 #include "engine/material/material.h"
 #include "engine/world/description.h"
 #include "engine/world/inventory.h"
+#include "engine/world/moment.h"
 #include "engine/world/report.h"
 #include "engine/world/settings.h"
 
@@ -95,6 +96,9 @@ class World {
   /// very much, a step can take minutes.
   void set_stop(core::StopQuestion wants_to_stop);
 
+  /// From now on the watcher is called behind every stage of a step; none: no longer. Changes no result.
+  void watch(Watcher watcher);
+
   /// Advances by one step of 1 / steps_per_second seconds. False if it was asked to stop: then everything is
   /// as before the step, but for the times of its stages and pictures of stress, and it can be taken again.
   bool step();
@@ -127,6 +131,8 @@ class World {
   StepBegin note_begin() const;
   void keep_begin(const MovingState& snapshot);
   void put_back(MovingState&& snapshot);
+
+  void tell_watcher(const char* stage, const dynamics::StepPart& part, int pass) const;
 
   /// All parts of the step, up to sleep. `snapshot`: at the begin of the part that is taken.
   void take_parts(dynamics::ContactReport& contact, MovingState& snapshot);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "sandbox/compare/trace_difference.h"
+
 namespace shatterbox::sandbox::compare {
 
 namespace {
@@ -106,9 +108,44 @@ class Comparison {
   FieldDifference& found_;
 };
 
+std::string in_words(const ValueDifference& value) {
+  const std::string relative =
+      value.relative ? fmt::format(" ({:.3g} %)", 100.0 * *value.relative) : std::string();
+  return fmt::format("{}: {} and {}{}", value.place, value.expected, value.actual, relative);
+}
+
+/// One value: where they part. A run need not be traced, and with a tolerance its bits may differ.
+void compare_traces(const std::string& name, const Json* a, const Json* b, ReportDifference& difference) {
+  if (a == nullptr || b == nullptr || difference.tolerance > 0.0) return;
+  FieldDifference field{name, 1, {}};
+  if (auto first = find_first_difference(*a, *b)) {
+    if (name != "trace") first->place = name.substr(0, name.find('.')) + ", " + first->place;
+    field.differences.push_back(std::move(*first));
+  }
+  difference.fields.push_back(std::move(field));
+}
+
+bool is_trace(const FieldDifference& field) {
+  return field.name.ends_with("trace");
+}
+
+/// Which state is another one first, if the reports can tell.
+std::string tell_parting(const ReportDifference& difference) {
+  bool is_traced = false, has_other_state = false;
+  for (const FieldDifference& field : difference.fields) {
+    is_traced |= is_trace(field);
+    has_other_state |= field.name.ends_with("state_hash") && !field.differences.empty();
+    if (is_trace(field) && !field.differences.empty())
+      return fmt::format("    first    {}\n", in_words(field.differences.front()));
+  }
+  if (is_traced || !has_other_state) return {};
+  return "    run both with --trace to learn in which step, stage and body they first differ\n";
+}
+
 /// The fields of one report, each under its own name.
 void compare_fields(const std::string& prefix, const Json& a, const Json& b, ReportDifference& difference) {
   const auto compare_field = [&](const std::string& name, const Json* one, const Json* other) {
+    if (name == "trace") return compare_traces(prefix + name, one, other, difference);
     FieldDifference field{prefix + name, 0, {}};
     Comparison comparison(difference.tolerance, field);
     if (comparison.is_aside(name)) return;
@@ -128,12 +165,6 @@ const Json& shots_of(const Json& report) {
   static const Json kNone = Json::array();
   const auto shots = report.find("shots");
   return shots != report.end() ? *shots : kNone;
-}
-
-std::string in_words(const ValueDifference& value) {
-  const std::string relative =
-      value.relative ? fmt::format(" ({:.3g} %)", 100.0 * *value.relative) : std::string();
-  return fmt::format("{}: {} and {}{}", value.place, value.expected, value.actual, relative);
 }
 
 }  // namespace
@@ -187,9 +218,11 @@ std::string describe(const ReportDifference& difference) {
                        difference.tolerance > 0.0 ? ", within the tolerance" : "");
   std::string text = fmt::format("reports: {} of {} values differ{}\n", differing, difference.compared(),
                                  differing == 1 ? "s" : "");
+  text += tell_parting(difference);
   std::size_t told = 0;
   const ValueDifference* greatest = nullptr;
   for (const FieldDifference& field : difference.fields) {
+    if (is_trace(field)) continue;
     for (const ValueDifference& value : field.differences) {
       if (told++ < kMostTold) text += fmt::format("    {}\n", in_words(value));
       if (value.relative && (greatest == nullptr || *value.relative > *greatest->relative)) greatest = &value;

@@ -162,6 +162,14 @@ Json make_spread(const std::vector<double>& values) {
   return {{"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
 }
 
+Json make_trace(const Trace& trace) {
+  Json json = {{"quantities", trace_quantities()}, {"names", Json::object()}, {"rows", Json::array()}};
+  for (const auto& [id, name] : trace.names) json["names"][std::to_string(id)] = name;
+  for (const TraceRow& row : trace.rows)
+    json["rows"].push_back({row.step, row.part, row.parts, row.pass, row.stage, row.changed});
+  return json;
+}
+
 Json make_json(const RunRecord& record) {
   const world::WorldReport& w = record.world;
   Json json;
@@ -229,6 +237,7 @@ Json make_json(const RunRecord& record) {
   for (const auto& [name, milliseconds] : record.load) json["load_ms"][name] = number(milliseconds);
   json["peak_memory_mb"] = number(record.peak_memory);
   json["warnings"] = record.warnings;
+  if (!record.trace.rows.empty()) json["trace"] = make_trace(record.trace);
   return json;
 }
 

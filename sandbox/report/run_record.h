@@ -10,6 +10,7 @@
 #include "engine/audit/audit.h"
 #include "engine/world/inventory.h"
 #include "engine/world/report.h"
+#include "sandbox/report/trace.h"
 
 namespace shatterbox::sandbox::report {
 
@@ -51,6 +52,7 @@ struct RunRecord {
   audit::AuditReport audit;
   double audit_time = 0.0;               // ms, in no frame's time
   std::vector<std::string> audit_names;  // of the findings' two bodies, in turn
+  Trace trace;                           // no rows unless it was asked for
   double peak_memory = 0.0;              // MB
   std::vector<std::string> outputs;
   std::vector<std::string> warnings;

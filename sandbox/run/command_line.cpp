@@ -76,6 +76,8 @@ void add_run_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(0, 256));
   command.add_flag("--audit", options.has_audit,
                    "check after every step that nothing crosses; status 1 if it does");
+  command.add_flag("--trace", options.has_trace,
+                   "hashes behind every stage in the report: diff of two tells where they part");
   command.add_flag("--resume", options.resumes, "go on from where a run with these options was cut short");
   command.add_flag("!--no-render", options.has_pictures, "simulate only");
 }

@@ -98,6 +98,9 @@ void prepare_outputs(const Options& options, scene::Problems& problems) {
   }
   check_file("-o", options.video, problems);
   check_file("--report", options.report, problems);
+  if (options.has_trace && options.report.empty())
+    scene::book(problems, scene::Place{"--trace", 0, 0}, "is kept in the report, and none is asked for",
+                "add --report FILE");
   make_folder("--frames", options.frames_folder, problems);
 }
 

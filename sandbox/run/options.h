@@ -40,7 +40,8 @@ struct Options {
   std::string script;
   bool has_pictures = true;
   bool has_audit = false;
-  bool resumes = false;  // goes on from what an earlier run has left
+  bool has_trace = false;  // in the report
+  bool resumes = false;    // goes on from what an earlier run has left
 };
 
 /// The size of "640x360"; nothing, with a problem, if it is none (16 to 8192 each, even for video).

@@ -63,7 +63,10 @@ bool Projector::step(double film) {
     steps_before_ = world.steps();
   }
   inspector_.begin_step(world);
-  if (!world.step()) return false;
+  if (!world.step()) {
+    recorder_.note_broken_off(world);
+    return false;
+  }
   inspector_.end_step(world);
   throws_.look(world);
   return true;

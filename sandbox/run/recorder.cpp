@@ -6,6 +6,14 @@
 
 namespace shatterbox::sandbox::run {
 
+void Recorder::watch(world::World& world) {
+  world.watch([this](const world::Moment& moment) { tracer_.note(moment); });
+}
+
+void Recorder::note_broken_off(const world::World& world) {
+  tracer_.drop_step(world.steps() + 1);
+}
+
 void Recorder::note_step(const world::World& world) {
   most_contacts_ = std::max(most_contacts_, world.report().contact.contacts);
   hits_ += world.report().contact.hits;
@@ -62,6 +70,7 @@ void Recorder::finish(const world::World& world, double wall_seconds) {
   record.state_hash = world.state_hash();
   record.world = world.report();
   record.inventory = world.inventory();
+  record.trace = std::move(tracer_.trace);
   for (const body::Body& body : world.bodies()) {
     ++record.bodies_end;
     record.has_sleepers |= body.is_dynamic() && !body.is_awake;

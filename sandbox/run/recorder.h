@@ -13,6 +13,10 @@ class Recorder {
  public:
   report::RunRecord record;
 
+  /// Keeps a trace of that world, which is to live as long.
+  void watch(world::World& world);
+  /// A step of it was broken off.
+  void note_broken_off(const world::World& world);
   /// After one step.
   void note_step(const world::World& world);
   /// After the steps of one frame, which took `simulate` ms, and the audit of them `audit` ms more.
@@ -24,6 +28,7 @@ class Recorder {
   void finish(const world::World& world, double wall_seconds);
 
  private:
+  report::Tracer tracer_;
   int most_contacts_ = 0;  // in this frame
   int hits_ = 0;           // in this frame
   std::size_t impacts_ = 0, breaks_ = 0;

@@ -17,7 +17,9 @@ Showing::Showing(Job& job, Recorder& recorder, int shot)
                  exposure_.slots()),
       view_(*job.scene, *job.built, shot),
       stills_(job.options.stills),
-      has_all_(stills_.empty()) {}
+      has_all_(stills_.empty()) {
+  if (job.options.has_trace) recorder.watch(job.built->world);
+}
 
 bool Showing::takes(double ahead) {
   return std::erase_if(stills_, [ahead](double time) { return time < ahead - 1e-9; }) > 0 || has_all_;

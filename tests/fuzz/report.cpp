@@ -7,7 +7,8 @@ using namespace shatterbox::sandbox;
 
 int fuzz::run_one(std::string_view bytes) {
   static const auto kOther = compare::parse_report(R"({"report_version": 1, "pieces": 2, "goal": "",
-    "breaks": [{"time": 0.5, "pieces": 2, "place": [0, 1, 2]}], "shots": [{"pieces": 1}]})");
+    "breaks": [{"time": 0.5, "pieces": 2, "place": [0, 1, 2]}], "shots": [{"pieces": 1}],
+    "trace": {"quantities": ["position"], "names": {"2": "ball"}, "rows": [[1, 1, 1, 1, "acts", "2 0:1a2b3c4d"]]}})");
   const auto report = compare::parse_report(bytes);
   if (!report) {
     require(!report.error().empty(), "a sentence");

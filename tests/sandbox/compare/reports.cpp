@@ -144,3 +144,72 @@ TEST_CASE("tolerances of reports") {
     CHECK_FALSE(problem.empty());
   }
 }
+
+namespace {
+
+/// Two bodies over a step of two stages, as a report keeps it.
+Json make_traced() {
+  Json report = make_report();
+  report["trace"] = Json::parse(R"({"quantities": ["position", "velocity", "contacts"],
+    "names": {"3": "pane", "17": "ball"},
+    "rows": [[1, 1, 1, 1, "acts", "3 0:0000000a 1:0000000b;17 0:0000000c 1:0000000d"],
+             [1, 1, 1, 1, "motion", "0 2:00000001;3 1:0000001b;17 0:0000001c 1:0000001d"],
+             [2, 1, 2, 1, "motion", "17 0:0000002c"]]})");
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("traces tell the first step and stage and body and quantity in which two runs part") {
+  const Json a = make_traced();
+  Json b = a;
+  CHECK(compare_reports(a, b, 0.0).is_same());
+  b["state_hash"] = "00000000000000bb";
+  b["trace"]["rows"][1][5] = "0 2:00000002;3 1:0000001b;17 0:0000001c 1:0000002d";
+  b["trace"]["rows"][2][5] = "17 0:0000003c";
+  CHECK(places(compare_reports(a, b, 0.0)) ==
+        Places{"state_hash", "step 1, stage motion (part 1 of 1, pass 1), body 17 \"ball\", velocity"});
+  CHECK(describe(compare_reports(a, b, 0.0))
+            .find("first    step 1, stage motion (part 1 of 1, pass 1), body 17 "
+                  "\"ball\", velocity: 0000001d and 0000002d\n") != std::string::npos);
+
+  // More bodies in the same stage, one of which did not change at all.
+  b["trace"]["rows"][1][5] = "3 1:0000001b 0:0000005a;17 0:0000001c";
+  CHECK(places(compare_reports(a, b, 0.0)).back() ==
+        "step 1, stage motion (part 1 of 1, pass 1), body 3 \"pane\", position (and 1 more body)");
+  // Only what is between the bodies.
+  b = a;
+  b["trace"]["rows"][1][5] = "0 2:00000009;3 1:0000001b;17 0:0000001c 1:0000001d";
+  CHECK(places(compare_reports(a, b, 0.0)).back() ==
+        "step 1, stage motion (part 1 of 1, pass 1), all bodies together, contacts");
+  // Another stage, and an end.
+  b = a;
+  b["trace"]["rows"][2][2] = 4;
+  ReportDifference difference = compare_reports(a, b, 0.0);
+  CHECK(places(difference) == Places{"step 2"});
+  CHECK(describe(difference)
+            .find("stage motion (part 1 of 2, pass 1) and stage motion (part 1 of 4, pass 1)") !=
+        std::string::npos);
+  b["trace"]["rows"].erase(2);
+  difference = compare_reports(a, b, 0.0);
+  CHECK(describe(difference).find("step 2: stage motion (part 1 of 2, pass 1) and nothing") !=
+        std::string::npos);
+}
+
+TEST_CASE("who has no traces is told to make them and a trace alone is no difference") {
+  const Json a = make_report();
+  Json b = a;
+  b["state_hash"] = "00000000000000bb";
+  CHECK(describe(compare_reports(a, b, 0.0)).find("run both with --trace") != std::string::npos);
+  CHECK(describe(compare_reports(make_traced(), b, 0.0)).find("run both with --trace") != std::string::npos);
+  CHECK(compare_reports(make_traced(), a, 0.0).is_same());
+  Json c = make_traced();
+  c["trace"]["rows"][0][5] = "";
+  CHECK(compare_reports(make_traced(), c, 0.1).is_same());
+  CHECK_FALSE(compare_reports(make_traced(), c, 0.0).is_same());
+  for (const char* trace : {"3", "[]", "{\"rows\": 1}", "{\"rows\": [1, [2]], \"names\": []}"}) {
+    c["trace"] = Json::parse(trace);
+    CHECK(compare_reports(c, c, 0.0).is_same());
+    (void)describe(compare_reports(make_traced(), c, 0.0));
+  }
+}

@@ -30,6 +30,7 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("diff one.png", "ACTUAL");
   refused("diff none.png none.png", "none.png: there is no such file");
   refused("diff good.toml good.toml", "good.toml");
+  refused("run good.toml --trace", "add --report FILE");
   refused("diff a b --tolerance exakt", "did you mean \"exact\"?");
   refused("golden", "subcommand");
   refused("golden check none", "there is no golden in this folder");
@@ -276,6 +277,25 @@ TEST_CASE("diff: 0 for the same, 1 and the place for a difference, of pictures, 
   const Outcome cut = program(folder, "diff cut.mp4 a.mp4");
   CHECK(cut.status == 2);
   CHECK(cut.err.find("cut.mp4") == 0);  // and nothing of what the decoder mutters
+}
+
+TEST_CASE("two runs that part are told by step and stage and body and traced ones are the same runs") {
+  const Folder folder;
+  folder.write("s.toml", kSmallScene);
+  const auto run = [&folder](const std::string& arguments) {
+    REQUIRE(program(folder, "run s.toml --no-render " + arguments).status == 0);
+  };
+  run("--report plain.json");
+  run("--report a.json --trace --threads 1");
+  run("--report b.json --trace --threads 3");
+  run("--report c.json --trace --set crate.velocity='[0, 0, 1e-13]'");
+  CHECK(program(folder, "diff plain.json a.json").status == 0);
+  CHECK(program(folder, "diff a.json b.json").status == 0);
+  const Outcome outcome = program(folder, "diff a.json c.json");
+  CHECK(outcome.status == 1);
+  CHECK(
+      outcome.out.find("first    step 1, stage acts (part 1 of 1, pass 1), body 10 \"crate\", velocity: ") !=
+      std::string::npos);
 }
 
 TEST_CASE("diff: two reports of one scene are the same and those of two seeds are not") {
