@@ -57,6 +57,19 @@ TEST_CASE("a solid needs a closed mesh") {
   CHECK(problems[0].message.find("open border") != std::string::npos);
 }
 
+TEST_CASE("a mesh that is beyond mending is refused with what is wrong") {
+  const MeshFileFolder folder;
+  const std::string flat = folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  const Reading reading = read("[[body]]\nkind = \"shell\"\nmesh = \"" + flat + "\"\n");
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  CHECK(!build_world(*reading.scene, problems).has_value());
+  REQUIRE(problems.size() == 1);
+  INFO(describe(problems));
+  CHECK(problems[0].message.find("flat.obj cannot be used") != std::string::npos);
+  CHECK_FALSE(problems[0].hint.empty());
+}
+
 TEST_CASE("size stretches to a box, up = z turns") {
   const Reading reading = read(
       "[[body]]\nkind = \"shell\"\nshape = \"pane\"\nwidth = 1\nheight = 2\nup = \"z\"\nsize = [3, 1, 4]\n"
@@ -203,6 +216,10 @@ TEST_CASE("bodies that cannot be are refused at their place") {
   };
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nsupport = \"edge\"\n", "no open border");
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nedge_length = 1e-9\n", "");
+  refused(
+      "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [1, 1, 1]\nsupport = {box = [[5, 5, 5], [6, 6, "
+      "6]]}\n",
+      "the support's box is beside the mesh");
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 1\nscale = 1e6\n", "scale = 0.001");
 }
 

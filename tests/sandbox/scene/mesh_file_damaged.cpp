@@ -50,6 +50,9 @@ TEST_CASE("faults of an OBJ are told with their line") {
   check_says(fault_of(folder.write("a.obj", three + "f -1 -2 -4\n")), "a.obj:4:");
   check_says(fault_of(folder.write("a.obj", three + "f 1 2\n")), "a.obj:4: a face needs at least three");
   check_says(fault_of(folder.write("a.obj", three + "f 1 a 2\n")), "a.obj:4: the corner \"a\"");
+  std::string fan = three + "f";
+  for (int i = 0; i < 100000; ++i) fan += " 1";
+  check_says(fault_of(folder.write("a.obj", fan + "\n")), "a.obj:4: a face of 100000 corners is more than");
   check_says(fault_of(folder.write("a.obj", three)), "no face");
   check_says(fault_of(folder.write("a.obj", "hello, this is a letter\n")), "no vertex");
   check_says(fault_of(folder.write("a.obj", std::string("\x7f"
@@ -142,6 +145,16 @@ TEST_CASE("faults of glTF and 3DS are told, and no number of theirs is believed"
   check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0},
                      "extensions":{"KHR_draco_mesh_compression":{}}}]}]})"),
              "Draco");
+  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+                     "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
+                     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":"none.bin"}]})"),
+             "none.bin is not there");
+  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+                     "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
+                     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":3}]})"),
+             "\"uri\" is no text");
+  check_says(gltf(R"({"scenes":[{"nodes":[0]}],"nodes":[{"rotation":[0,0,0,0]}]})"),
+             "\"rotation\" is all zeros");
   check_says(fault_of(folder.write("a.glb", "glTF\2")), "no glTF 2.0");
   check_says(fault_of(folder.write("a.3ds", "hello, this is a letter")), "no 3DS");
   std::string studio("MM\x20\0\0\0<=\xff\0\0\0", 12);

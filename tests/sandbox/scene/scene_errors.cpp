@@ -259,6 +259,49 @@ const Broken kCorpus[] = {
      "greater than 0 Pa", ""},
     {"[scene]\ncontact = \"papre\"\n", "t.toml:2:11", "\"papre\"", "\"paper\""},
     {"[[material]]\nname = \"m\"\nlike = \"steel\"\nplasticity = 1\n", "t.toml:4:1", "not available", ""},
+    // Bodies that contradict themselves.
+    {"[[body]]\nkind = \"box\"\norientation = [1, 0, 0]\n", "t.toml:3:15", "must be four numbers",
+     "[w, x, y, z]"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nbreakable = false\nsupport = \"foot\"\n", "t.toml:5:1",
+     "only a breakable body has a support", "motion = \"static\""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nsupport = {box = [[0, 0], [1, 1, 1]]}\n",
+     "t.toml:4:", "the first corner of the box", "[x, y, z]"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nmesh = \"bowl.obj\"\n", "t.toml:3:9",
+     "either a mesh or a shape, not both", "remove one"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nscale = 2\nsize = [1, 1, 1]\n", "t.toml:5:8",
+     "either a scale or a size, not both", "remove one"},
+    {"[[body]]\nkind = \"box\"\nmotion = \"scripted\"\nkeyframes = [1, 2]\n", "t.toml:4:14",
+     "must be a table", "write {at = 1.5"},
+    {"[[body]]\nkind = \"box\"\nmotion = \"scripted\"\norientation = [1, 0, 0, 0]\nkeyframes = [{at = 0}, "
+     "{at = "
+     "1}]\n",
+     "t.toml:4:1", "has angles, not an orientation", "rotation = [x, y, z]"},
+    {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nsupport = \"foot\"\nmotion = \"scripted\"\n"
+     "keyframes = [{at = 0}, {at = 1}]\n",
+     "t.toml:5:1", "cannot follow a path", "remove motion or support"},
+    {"[[event]]\nat = 1\ndo = \"drop\"\nbody = {kind = \"sphere\", motion = \"scripted\", keyframes = [{at = "
+     "0}, {at = 1}]}\n",
+     "t.toml:4:", "events cannot bring it in", "first keyframe be later"},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = [2, 2, 1], spacing = 1, layer = [2, 2]}\n",
+     "t.toml:3:", "a grid has no layers", "count = 100, layer"},
+    {"[[joint]]\nbetween = [\"a\", \"late\"]\n[[body]]\nname = \"a\"\nkind = \"box\"\n[[body]]\nname = "
+     "\"late\"\n"
+     "kind = \"box\"\n[[event]]\nat = 1\ndo = \"drop\"\nbody = \"late\"\n",
+     "t.toml:2:17", "is not there from the start, and cannot be joined", "no event"},
+    {"[scene]\ncontact = \"paper\"\n[[joint]]\nbetween = [\"a\"]\n[[body]]\nname = \"a\"\nkind = \"box\"\n"
+     "repeat = {count = 2, spacing = [1, 0, 0]}\n",
+     "t.toml:3:", "the paper's contact knows no joints", "remove contact"},
+    // Cameras that see nothing.
+    {"[camera]\nfollow = \"a\"\noffset = [0, 0, 0]\n[[body]]\nname = \"a\"\nkind = \"box\"\n", "t.toml:3:1",
+     "cannot be where it looks at", "[0, 0.3, 1]"},
+    {"[camera]\nup = [0, 0, 0]\n[[body]]\nkind = \"box\"\n", "t.toml:2:6", "points nowhere", "[0, 1, 0]"},
+    {"[[event]]\nat = 1\ndo = \"camera\"\nposition = [1, 1, 1]\ntarget = [1, 1, 1]\n[[body]]\nkind = "
+     "\"box\"\n",
+     "t.toml:5:1", "the camera looks at itself", "move position or target"},
+    {"[[event]]\nat = 1\ndo = \"camera\"\nmove = \"follow\"\nbody = \"a\"\noffset = [0, 0, "
+     "0]\n[[body]]\nname = "
+     "\"a\"\nkind = \"box\"\n",
+     "t.toml:6:1", "cannot be where it looks at", "[0, 0.3, 1]"},
     {"", "t.toml", "the scene has no body", "[[body]]"},
 };
 
