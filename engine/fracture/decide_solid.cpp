@@ -45,6 +45,7 @@ class SolidDecider {
     verdict.force = force_.hardest().first_force;
     solve_stresses(model().mesh, model().contacts);
     std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
+    find_dent();
     if (!(verdict.ratio > 1.0)) {
       verdict.outcome = Outcome::held;
       return std::move(decision_);
@@ -123,6 +124,16 @@ class SolidDecider {
     Vec3 centroid = a;
     for (int i = 0; i < 3; ++i) centroid += part.centroid(i) * (mesh.positions[at(t[at(i + 1)])] - a);
     return centroid;
+  }
+
+  void find_dent() {
+    const material::Material& material = subject_.material;
+    if (!(material.yield > 0.0)) return;
+    YieldFinding finding = find_yield(model(), material, force_.struck_displacement(),
+                                      {force_.struck_energy(), force_.lost_energy()});
+    decision_.verdict.von_mises = finding.stress;
+    decision_.verdict.yield = material.yield;
+    decision_.dent = std::move(finding.dent);
   }
 
   SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) const {

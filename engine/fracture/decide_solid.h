@@ -10,6 +10,7 @@
 
 #include "engine/fracture/decision_figures.h"
 #include "engine/fracture/fracture_settings.h"
+#include "engine/fracture/solid_dent.h"
 #include "engine/fracture/solid_flaws.h"
 #include "engine/fracture/solid_model.h"
 #include "engine/geometry/solid_complex.h"
@@ -35,7 +36,8 @@ struct SolidSubject {
 struct SolidDecision : DecisionFigures {
   std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null unless it broke
   int part_count = 1;                                     // that the cut complex falls into
-  int iterations = 0;                                     // of conjugate gradients, of all solves
+  int iterations = 0;                     // of conjugate gradients, of all solves
+  std::shared_ptr<const SolidDent> dent;  // of the uncut elements; null: none
 };
 
 /// Fills in what is kept between impacts where it is null.

@@ -25,6 +25,8 @@ struct ImpactLoad {
   double other_inverse_mass = 0.0;  // 1/kg, of the other body there; 0 for a floor
   double hertz_compliance = 0.0;    // m/N, of the contact itself
   double hertz_radius = 0.0;        // m, of the contact at its peak
+  double restitution = 0.0;  // Newton's, of the pair: what it gives back nothing plastic has taken
+  bool is_resting = false;   // contact that goes on: it dents nothing
 };
 
 struct Impact {
@@ -46,6 +48,8 @@ struct Verdict {
   double strength = 0.0;      // Pa, there
   double ratio = 0.0;         // stress / strength; below 1 the body holds
   Vec3 place = Vec3::Zero();  // m, material space
+  double von_mises = 0.0;     // Pa, greatest, under the collisions alone; 0: not asked for
+  double yield = 0.0;         // Pa; 0: the material does not yield, or it was not asked
 };
 
 inline bool is_collision(const ImpactLoad& load) {

@@ -77,7 +77,8 @@ SolidFlawField draw_solid_flaws(const geometry::SolidElements& elements, const m
   const double exponent = 1.0 / material.weibull_modulus;
   const double per_volume =
       std::min(kFlawsPerVolume, kMostSolidFlaws * flaw_volume / std::max(volume, 1e-300));
-  field.greatest_strength = material.strength * core::pow(per_volume, exponent);
+  const double strength = material::failure_stress(material);
+  field.greatest_strength = strength * core::pow(per_volume, exponent);
   if (!(per_volume > 0.0) || !(volume > 0.0)) return field;
   const SpacePoints points(core::pow(kPointsPerCube * flaw_volume / per_volume, 1.0 / 3.0), seed);
 
@@ -101,7 +102,7 @@ SolidFlawField draw_solid_flaws(const geometry::SolidElements& elements, const m
             if ((place - low).minCoeff() < 0.0 || (high - place).minCoeff() < 0.0) return;
             if (!holds(mesh, tetrahedron, place)) return;
             const double level = (random.uniform() + 0x1.0p-54) * per_volume;
-            found[t].push_back({static_cast<int>(t), place, material.strength * core::pow(level, exponent)});
+            found[t].push_back({static_cast<int>(t), place, strength * core::pow(level, exponent)});
           });
     std::stable_sort(found[t].begin(), found[t].end(),
                      [](const SolidFlaw& a, const SolidFlaw& b) { return a.strength < b.strength; });

@@ -105,6 +105,8 @@ std::optional<SolidForce::Bound> SolidForce::harmless_bound() const {
   const double constant = kSolidSpinSafety * spin_stress() +
                           stress::bending_bound(model.width, model.width, model.reach, contact_force);
   const double per_root_volume = stress::stress_bound(*model.stiffness, 1.0, root_energy * root_energy);
+  // Of two stresses von Mises' is at most sqrt(3) times the greater.
+  const double flow = subject_.material.yield > 0.0 ? subject_.material.yield / core::sqrt(3.0) : 1e300;
   Bound worst;
   for (Size c = 0; c < model.mesh.cells.size(); ++c) {
     const double volume = model.stressed_volumes[c];
@@ -113,6 +115,7 @@ std::optional<SolidForce::Bound> SolidForce::harmless_bound() const {
     // The weakest is the first; whether it lies in this cell of its element does not matter to a bound.
     if (const auto flaws = subject_.flaws->of_element(model.mesh.cells[c].element); !flaws.empty())
       strength = std::min(strength, flaws.front().strength);
+    strength = std::min(strength, flow);
     const double stress = per_root_volume / core::sqrt(volume) + constant;
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
@@ -234,6 +237,36 @@ void SolidForce::settle_force(SolidPress& press) {
     press.first_force = load.impulse / press.duration;
   }
   press.force = press.first_force;
+}
+
+VecX SolidForce::struck_displacement() const {
+  VecX sum = VecX::Zero(system_->dof_count());
+  for (const SolidPress& press : presses_)
+    if (!press.load->is_resting) sum += press.force * press.displacement;
+  return sum;
+}
+
+namespace {
+
+double energy_of(const SolidPress& press) {
+  if (press.load->is_resting) return 0.0;
+  return is_collision(*press.load) ? collision_energy(*press.load)
+                                   : 0.5 * press.force * press.force * press.elastic_compliance;
+}
+
+}  // namespace
+
+double SolidForce::struck_energy() const {
+  double sum = 0.0;
+  for (const SolidPress& press : presses_) sum += energy_of(press);
+  return sum;
+}
+
+double SolidForce::lost_energy() const {
+  double sum = 0.0;
+  for (const SolidPress& press : presses_)
+    sum += (1.0 - press.load->restitution * press.load->restitution) * energy_of(press);
+  return sum;
 }
 
 void SolidForce::complete(SolidDecision& decision) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "engine/core/elementary.h"
+
 namespace shatterbox::material {
 namespace {
 
@@ -19,6 +21,8 @@ std::vector<Preset> make_presets() {
   aluminium.poisson = 0.33;
   aluminium.strength = 290e6;
   aluminium.fracture_energy = 1.1e4;
+  aluminium.yield = 250e6;
+  aluminium.elongation = 0.08;
   aluminium.weibull_modulus = 40.0;
   aluminium.flaw_area = 1e-2;
   aluminium.friction = 0.4;
@@ -144,7 +148,9 @@ std::vector<Preset> make_presets() {
   steel.young = 210e9;
   steel.poisson = 0.3;
   steel.strength = 360e6;
-  steel.fracture_energy = 1e4;
+  steel.fracture_energy = 2e5;
+  steel.yield = 235e6;
+  steel.elongation = 0.26;
   steel.weibull_modulus = 40.0;
   steel.flaw_area = 1e-2;
   steel.friction = 0.4;
@@ -167,9 +173,10 @@ std::vector<Preset> make_presets() {
 
   return {
       {aluminium,
-       "Aluminium alloy EN AW-6082 T6: density, E, nu and tensile strength 290 MPa by [EN1999]; K_Ic near 29 "
-       "MPa "
-       "sqrt(m); it breaks as if brittle (no yield here): meant for what hits"},
+       "Aluminium alloy EN AW-6082 T6: density, E, nu, tensile strength 290 MPa, proof strength 250 MPa and "
+       "elongation 8 % by [EN1999] (extruded, up to 5 mm); K_Ic near 29 MPa sqrt(m); shells of it break as "
+       "if "
+       "brittle"},
       {brick,
        "Fired clay brick: density 1600 to 2000 kg/m3, bending strength 3 to 6 MPa, E 5 to 20 GPa as commonly "
        "reported for clay bricks, here mid-range; K_Ic near 0.8 MPa sqrt(m); Weibull modulus and flaw_area "
@@ -214,10 +221,10 @@ std::vector<Preset> make_presets() {
        "2200 to "
        "2300 kg/m3, 60 GPa and 50 to 90 MPa); K_Ic near 1.3 MPa sqrt(m); flaw_area, crack_spacing estimated"},
       {steel,
-       "Structural steel S235: density, E, nu by [EN1993], tensile strength 360 MPa by the same; fracture "
-       "energy an "
-       "order of magnitude for tearing of sheet; as a shell it breaks as if brittle (no yield here): meant "
-       "for what hits"},
+       "Structural steel S235: density, E, nu, tensile strength 360 MPa and yield strength 235 MPa by "
+       "[EN1993], "
+       "elongation 26 % by [EN10025]; fracture energy of the order of what tearing of mild steel takes, 100 "
+       "to 300 kJ/m2; shells of it break as if brittle"},
       {terracotta,
        "Unglazed earthenware: density, E and bending strength 10 to 15 MPa as commonly reported for "
        "terracotta, K_Ic "
@@ -241,6 +248,9 @@ constexpr Range kRanges[] = {
     {"poisson", &Material::poisson, 0.0, 0.4999, true, ""},
     {"strength", &Material::strength, 0.0, 1e15, false, " Pa"},
     {"fracture_energy", &Material::fracture_energy, 0.0, 1e12, false, " J/m2"},
+    {"yield", &Material::yield, 0.0, 1e15, true, " Pa"},
+    {"elongation", &Material::elongation, 0.0, 10.0, false, ""},
+    {"plasticity", &Material::plasticity, 0.0, 100.0, true, ""},
     {"weibull_modulus", &Material::weibull_modulus, 1.0, 1000.0, true, ""},
     {"flaw_area", &Material::flaw_area, 0.0, 1e12, false, " m2"},
     {"crack_spacing", &Material::crack_spacing, 0.0, 10.0, true, ""},
@@ -263,6 +273,16 @@ std::optional<Material> find_preset(std::string_view name) {
   for (const Preset& preset : presets())
     if (preset.material.name == name) return preset.material;
   return std::nullopt;
+}
+
+double shear_modulus(const Material& material) {
+  return 0.5 * material.young / (1.0 + material.poisson);
+}
+
+double failure_stress(const Material& material) {
+  if (!(material.yield > 0.0)) return material.strength;
+  const double excess = 6.0 * shear_modulus(material) * material.elongation / material.yield;
+  return std::max(material.strength, material.yield * core::sqrt(1.0 + excess));
 }
 
 std::optional<std::string> find_fault(const Material& material) {

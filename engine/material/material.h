@@ -15,6 +15,9 @@ struct Material {
   double poisson = 0.22;          // Poisson's ratio, in [0, 0.5)
   double strength = 50e6;         // tensile strength (mean flaw), Pa
   double fracture_energy = 8.0;   // energy of new crack area, J/m2
+  double yield = 0.0;             // von Mises stress at which it flows, Pa; 0: it breaks and does not yield
+  double elongation = 0.2;        // of what yields: plastic strain at which it tears, dimensionless
+  double plasticity = 1.0;        // of what yields: dents are so many times as deep as energy says
   double weibull_modulus = 5.0;   // scatter of the flaws' strengths, dimensionless: larger is more even
   double flaw_area = 1e-2;        // area that holds one flaw below the strength on average, m2
   double crack_spacing = 0.5;     // how far cracks keep apart, share of the shielded length; smaller is finer
@@ -37,6 +40,14 @@ const std::vector<Preset>& presets();
 
 /// The preset of that name, or nothing.
 std::optional<Material> find_preset(std::string_view name);
+
+/// Shear modulus, Pa.
+double shear_modulus(const Material& material);
+
+/// The stress (Pa) of a linear solve at which the material fails: its strength; of what yields the stress
+/// whose energy density is that of flow at the yield strength as far as the elongation (equivalent strain
+/// energy, [MG81]).
+double failure_stress(const Material& material);
 
 /// A sentence that says what is wrong with a material (a value outside its range, with the range), or
 /// nothing.

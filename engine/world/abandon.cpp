@@ -17,6 +17,7 @@ StepBegin World::note_begin() const {
   begin.joints = s.report.joints;
   begin.impacts = s.report.impacts.size();
   begin.breaks = s.report.breaks.size();
+  begin.dents = s.report.dents.size();
   begin.triangles_most = s.report.triangles_most;
   begin.tetrahedra_end = s.report.tetrahedra_end;
   begin.tetrahedra_most = s.report.tetrahedra_most;
@@ -45,6 +46,7 @@ void World::put_back(MovingState&& snapshot) {
   s.report.joints = std::move(begin.joints);
   s.report.impacts.resize(begin.impacts);
   s.report.breaks.resize(begin.breaks);
+  s.report.dents.resize(begin.dents);
   s.report.triangles_most = begin.triangles_most;
   s.report.tetrahedra_end = begin.tetrahedra_end;
   s.report.tetrahedra_most = begin.tetrahedra_most;

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/fracture/solid_dent.h"
 #include "engine/stress/contact_duration.h"
 
 namespace shatterbox::world {
@@ -26,14 +28,23 @@ struct Load {
   double spread = 0.0;                // m, radius of the disc over which a blast came
 };
 
+/// What an impact leaves when it is over.
+struct ComingDent {
+  std::shared_ptr<const fracture::SolidDent> dent;
+  double von_mises = 0.0, yield = 0.0;  // Pa
+  Vec3 place = Vec3::Zero();            // m, material space: of the hit
+};
+
 /// What a fragile body remembers of its impacts between steps. Part of the state.
 struct ImpactMemory {
-  std::vector<Load> event;      // collision sums of the event that is under way
-  double event_duration = 0.0;  // s, of the event's impact as last evaluated
-  std::vector<Load> contact;    // contact impulses of the last 1/60 s, one entry a step and place
-  double tested_contact = 0.0;  // N: total contact force at which the body was last found to hold
-  double tested_growth = 1.1;   // times that force, at which it is tested again
-  int generation = 0;           // breaks since the event began from which this piece comes
+  std::vector<Load> event;        // collision sums of the event that is under way
+  double event_duration = 0.0;    // s, of the event's impact as last evaluated
+  std::vector<Load> contact;      // contact impulses of the last 1/60 s, one entry a step and place
+  std::vector<ComingDent> dents;  // of events that are over; the last one of `event`, as last evaluated, if
+  bool has_open_dent = false;     // that is so
+  double tested_contact = 0.0;    // N: total contact force at which the body was last found to hold
+  double tested_growth = 1.1;     // times that force, at which it is tested again
+  int generation = 0;             // breaks since the event began from which this piece comes
 
   /// s, when a break made this piece: what presses on it is known on average only contact_average later.
   double born = -1e9;

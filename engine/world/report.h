@@ -25,6 +25,8 @@ struct ImpactRow {
   double stress = 0.0;        // Pa, greatest principal, the pulse's peak
   double strength = 0.0;      // Pa, there
   double ratio = 0.0;         // stress / strength
+  double von_mises = 0.0;     // Pa, greatest; of what can yield
+  double yield = 0.0;         // Pa; 0: it does not yield, or was not asked
   std::string verdict;        // "broke", "held: 0.62 of its strength", "not evaluated: ..."
   Vec3 place = Vec3::Zero();  // m, world, at that time
 };
@@ -61,6 +63,24 @@ struct BreakRow {
 
 /// Pairs of triangles of different pieces that cross at the birth, counted when asked for.
 long count_overlaps(const BreakRow& row);
+
+/// One dent that an impact left.
+struct DentRow {
+  double time = 0.0;  // s
+  std::string body;
+  body::BodyId id = 0;         // that it had until then
+  body::BodyId born = 0;       // that it has since; 0: there was no room for a dent
+  double depth = 0.0;          // m: farthest that a point of its surface moved
+  double volume_change = 0.0;  // relative
+  double energy = 0.0;         // J, of plastic flow
+  double flowed_volume = 0.0;  // m3
+  double von_mises = 0.0;      // Pa, greatest
+  double yield = 0.0;          // Pa
+  double share = 1.0;          // of the dent for which there was room; 0: none
+  bool is_cut = false;         // all of it would have crushed elements
+  double mass_error = 0.0;     // relative
+  Vec3 place = Vec3::Zero();   // m, world: where the hit was
+};
 
 /// One joint: the most that it ever bore, and whether it is open.
 struct JointRow {
@@ -120,6 +140,7 @@ struct SolverFigures {
 struct WorldReport {
   std::vector<ImpactRow> impacts;
   std::vector<BreakRow> breaks;
+  std::vector<DentRow> dents;
   std::vector<JointRow> joints;  // by number
   ContactFigures contact;
   std::vector<ScriptedRow> scripted;  // ascending ids

@@ -47,7 +47,7 @@ struct StepBegin {
   ConservationFigures conservation;
   SolverFigures solver;
   std::vector<JointRow> joints;
-  std::size_t impacts = 0, breaks = 0;
+  std::size_t impacts = 0, breaks = 0, dents = 0;
   long triangles_most = 0, tetrahedra_end = 0, tetrahedra_most = 0;
   double last_energy = 0.0;
   bool is_disturbed = true;

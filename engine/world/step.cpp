@@ -19,6 +19,15 @@ namespace {
 /// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
 constexpr int kMostPasses = 12;
 
+/// "60 MPa of 235": of the yield strength.
+std::string format_yield(const fracture::Verdict& verdict) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%s: %.3g MPa of %.3g",
+                verdict.von_mises > verdict.yield ? "yielded" : "did not yield", verdict.von_mises * 1e-6,
+                verdict.yield * 1e-6);
+  return text;
+}
+
 std::string format_ratio(const char* word, double ratio) {
   char text[64];
   std::snprintf(text, sizeof text, "%s%.3g of its strength", word, ratio);
@@ -37,6 +46,8 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
   row.stress = verdict.stress;
   row.strength = verdict.strength;
   row.ratio = verdict.ratio;
+  row.von_mises = verdict.von_mises;
+  row.yield = verdict.yield;
   row.place = body.pose.apply(verdict.place - body.shape->material_from_body);
   switch (verdict.outcome) {
     case fracture::Outcome::broke:
@@ -50,6 +61,7 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
       row.verdict = "not evaluated: " + verdict.reason;
       break;
   }
+  if (verdict.von_mises > 0.0) row.verdict += ", " + format_yield(verdict);
   return row;
 }
 
@@ -229,6 +241,8 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     ++part.number;
     pass = 0;
   }
+  if (may_break) timer.time("dents", [&] { dent_bodies(snapshot); });
+  tell_watcher("dents", {part.count - 1, part.count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
     dynamics::end_step(s.moving.bodies, s.contact_settings, part.count, contact, s.moving.contact);
     timer.time("sleep",

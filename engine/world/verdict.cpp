@@ -57,7 +57,9 @@ struct Judge {
       out.other_inverse_mass = mobility(*partner, load.other_point, load.other_impulse.normalized());
     inverse += out.other_inverse_mass;
     out.effective_mass = inverse > 0.0 ? 1.0 / inverse : 0.0;
+    out.is_resting = !is_collision;
     if (load.spread > 0.0) {
+      out.is_resting = false;
       out.hertz_radius = load.spread;
       return out;
     }
@@ -65,7 +67,8 @@ struct Judge {
     // What stands behind a body that is squeezed, or shares its impact with other places, shows in the
     // impulse: the mass that was stopped at the speed of the impact. A single contact has the pair's own
     // effective mass.
-    const double bounce = 1.0 + restitution(struck, load.other);
+    out.restitution = restitution(struck, load.other);
+    const double bounce = 1.0 + out.restitution;
     out.closing_speed = load.closing_speed;
     if (load.closing_speed > 0.0)
       out.effective_mass = out.impulse / (bounce * load.closing_speed);
@@ -166,7 +169,10 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
     double last = -1e9, next = 1e9;
     for (const Load& load : memory.event) last = std::max(last, load.time);
     for (const Load& load : hits) next = std::min(next, load.time);
-    if (is_paper || next - last > 2.0 * memory.event_duration) memory.event.clear();
+    if (is_paper || next - last > 2.0 * memory.event_duration) {
+      memory.event.clear();
+      memory.has_open_dent = false;
+    }
   }
   add_to_event(memory.event, hits, radius);
 
@@ -228,7 +234,14 @@ double load_growth(const std::vector<Load>& loads, const BorneImpact& borne, dou
 
 /// How many times its loads a body bears that has held.
 double most_growth_of(const fracture::Verdict& verdict) {
-  return verdict.ratio < 1.0 ? kBorneRatio / std::max(verdict.ratio, 1e-300) : kBorneAgain;
+  const double growth = verdict.ratio < 1.0 ? kBorneRatio / std::max(verdict.ratio, 1e-300) : kBorneAgain;
+  if (!(verdict.von_mises > 0.0)) return growth;
+  return std::min(growth, kBorneRatio * verdict.yield / verdict.von_mises);
+}
+
+/// Who yields is judged anew in each pass: the dent is as deep as the hit is hard.
+bool has_yielded(const fracture::Verdict& verdict) {
+  return verdict.yield > 0.0 && verdict.von_mises > verdict.yield;
 }
 
 bool is_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
@@ -236,6 +249,18 @@ bool is_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
   if (found == borne.end()) return false;
   const double radius = kGatherRadius * candidate.body->shape->bounding_radius;
   return load_growth(candidate.loads, found->second, radius) < found->second.most_growth;
+}
+
+/// The dent of the event that is under way, in place of what it was when less of the event was known.
+void await_dent(const EvaluatedImpact& impact, const body::Body& body, ImpactMemory& memory) {
+  if (memory.has_open_dent) memory.dents.pop_back();
+  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
+  // What tears does not keep the shape in which it tore.
+  memory.has_open_dent = solid && solid->dent && memory.generation == 0 &&
+                         (solid->verdict.outcome == fracture::Outcome::held || impact.is_cracked_only());
+  if (memory.has_open_dent)
+    memory.dents.push_back({solid->dent, solid->verdict.von_mises, solid->verdict.yield,
+                            impact.hardest.point_body + body.shape->material_from_body});
 }
 
 }  // namespace
@@ -295,9 +320,11 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedImpact& impact = evaluated[i];
     const fracture::DecisionFigures& decision = impact.figures();
-    if (decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only())
+    if ((decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only()) &&
+        !has_yielded(decision.verdict))
       borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict)};
     ImpactMemory& memory = memories[impact.id];
+    if (impact.is_struck) await_dent(impact, *candidates[i].body, memory);
     const double ratio = decision.verdict.ratio;
     memory.tested_growth =
         ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;

@@ -35,6 +35,28 @@ Json impacts(const world::WorldReport& report) {
                     {"ratio", number(row.ratio)},
                     {"verdict", row.verdict},
                     {"place", vector(row.place)}});
+    if (!(row.von_mises > 0.0)) continue;
+    list.back()["von_mises_pa"] = number(row.von_mises);
+    list.back()["yield_pa"] = number(row.yield);
+  }
+  return list;
+}
+
+Json dents(const world::WorldReport& report) {
+  Json list = Json::array();
+  for (const world::DentRow& row : report.dents) {
+    list.push_back({{"time", number(row.time)},
+                    {"body", row.body},
+                    {"depth_m", number(row.depth)},
+                    {"volume_change", number(row.volume_change)},
+                    {"energy_j", number(row.energy)},
+                    {"flowed_m3", number(row.flowed_volume)},
+                    {"von_mises_pa", number(row.von_mises)},
+                    {"yield_pa", number(row.yield)},
+                    {"share", number(row.share)},
+                    {"cut", row.is_cut},
+                    {"mass_error", number(row.mass_error)},
+                    {"place", vector(row.place)}});
   }
   return list;
 }
@@ -202,6 +224,7 @@ Json make_json(const RunRecord& record) {
         {"start", w.tetrahedra_start}, {"end", w.tetrahedra_end}, {"max", w.tetrahedra_most}};
   json["impacts"] = impacts(w);
   json["breaks"] = breaks(w);
+  if (!w.dents.empty()) json["dents"] = dents(w);
   if (!w.joints.empty()) json["joints"] = joints(w);
   json["audit"] = audit(record);
   json["contact"] = {{"most", w.contact.most_contacts},

@@ -37,6 +37,9 @@ void Inspector::end_step(const world::World& world) {
   const auto& breaks = world.report().breaks;
   for (; breaks_ < breaks.size(); ++breaks_)
     for (const body::BodyId child : breaks[breaks_].born) births.push_back({child, breaks[breaks_].id});
+  const auto& dents = world.report().dents;
+  for (; dents_ < dents.size(); ++dents_)
+    if (dents[dents_].born != 0) births.push_back({dents[dents_].born, dents[dents_].id});
   audit_.end_step(world.bodies(), births, world.ways(), world.time());
   record_.audit = audit_.report();
   for (std::size_t i = record_.audit_names.size() / 2; i < record_.audit.findings.size(); ++i) {

@@ -19,7 +19,7 @@ class Inspector {
  private:
   report::RunRecord& record_;
   audit::Audit audit_;
-  std::size_t breaks_ = 0;  // rows of the world's report that are known
+  std::size_t breaks_ = 0, dents_ = 0;  // rows of the world's report that are known
 };
 
 }  // namespace shatterbox::sandbox::run

@@ -22,9 +22,9 @@ void Throws::look(const world::World& world) {
       const auto other =
           std::lower_bound(bodies.begin(), bodies.end(), id,
                            [](const body::Body& b, body::BodyId wanted) { return b.id < wanted; });
-      const bool is_floor =
-          other == bodies.end() || other->id != id || other->shape->kind == body::ShapeKind::plane;
-      if (!is_floor) return true;
+      // What is gone was dented or broken by it.
+      const bool is_gone = other == bodies.end() || other->id != id;
+      if (is_gone || other->shape->kind != body::ShapeKind::plane) return true;
       flight.has_hit_floor = true;
     }
     return false;

@@ -97,6 +97,9 @@ void read_material(const TomlValue& table, std::size_t index, SceneDescription& 
       {"poisson", &m.poisson, between(0.0, 0.4999)},
       {"strength", &m.strength, positive("Pa")},
       {"fracture_energy", &m.fracture_energy, not_negative("J/m2")},
+      {"yield", &m.yield, not_negative("Pa")},
+      {"elongation", &m.elongation, positive()},
+      {"plasticity", &m.plasticity, not_negative()},
       {"weibull_modulus", &m.weibull_modulus, positive()},
       {"flaw_area", &m.flaw_area, positive("m2")},
       {"crack_spacing", &m.crack_spacing, positive()},
@@ -108,7 +111,6 @@ void read_material(const TomlValue& table, std::size_t index, SceneDescription& 
       {"grain_strength", &m.grain_strength, between(0.0, 1.0)},
   };
   for (const auto& [key, target, range] : numbers) *target = reader.number(key, range).value_or(*target);
-  reader.later({"yield", "plasticity"}, "plastic materials come with solids");
   reader.later({"grain_direction"}, "grains are even in all directions here: grain_size, grain_strength");
   reader.finish();
   if (const auto fault = material::find_fault(m)) reader.add_problem(table.place, *fault);

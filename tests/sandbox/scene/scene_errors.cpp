@@ -258,7 +258,7 @@ const Broken kCorpus[] = {
     {"[[joint]]\nbetween = [\"a\"]\nstrength = 0\n[[body]]\nname = \"a\"\nkind = \"box\"\n", "t.toml:3:12",
      "greater than 0 Pa", ""},
     {"[scene]\ncontact = \"papre\"\n", "t.toml:2:11", "\"papre\"", "\"paper\""},
-    {"[[material]]\nname = \"m\"\nlike = \"steel\"\nplasticity = 1\n", "t.toml:4:1", "not available", ""},
+    {"[[material]]\nname = \"m\"\nlike = \"steel\"\nyield = -1\n", "t.toml:4:9", "yield", ""},
     // Bodies that contradict themselves.
     {"[[body]]\nkind = \"box\"\norientation = [1, 0, 0]\n", "t.toml:3:15", "must be four numbers",
      "[w, x, y, z]"},

@@ -1,0 +1,40 @@
+// Dents of solids [BHTF07] sec. VII-B: what flowed stays. Departs from it in where and how far: not all of a
+// displacement stays, times a constant, but the shape that the plastic strains leave the unloaded solid in,
+// strains only where von Mises' stress passed the yield strength, as large as the energy says.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/fracture/solid_model.h"
+#include "engine/material/material.h"
+
+namespace shatterbox::fracture {
+
+struct SolidDent {
+  std::vector<Vec3> moves;  // |vertices of the element mesh|, m; a free solid's without rigid motion
+  double work = 0.0;        // J, of plastic flow
+  double flowed = 0.0;      // m3
+  bool is_cut = false;      // elements would have been crushed by all of it
+};
+
+/// What an impact brings for it.
+struct DentEnergy {
+  double all = 0.0;  // J: what of it the linear stress at its peak does not hold (it is in the contact, and
+                     // in motion that is still to be stopped) flows in the same share, where the rest does
+  double most = 0.0;  // J, that is not given back; flow beyond is scaled down
+};
+
+/// What an impact's linear displacement at its peak (|dof|, m, of the collisions alone) means for the shape.
+struct YieldFinding {
+  double stress = 0.0;                    // Pa, von Mises, greatest
+  Vec3 place = Vec3::Zero();              // m, material space, there
+  std::shared_ptr<const SolidDent> dent;  // null: nothing flows, or `problem` says why it is not told
+  std::string problem;
+};
+
+YieldFinding find_yield(const SolidModel& model, const material::Material& material, const VecX& displacement,
+                        const DentEnergy& energy);
+
+}  // namespace shatterbox::fracture

@@ -1,0 +1,35 @@
+// What of a solid flows under a linear stress, and the shape that the flow leaves it in. The plastic strain
+// goes along the deviator of the stress (von Mises); how far, says the energy: where the linear stress is q
+// times the yield strength, flow at that strength takes up what of the linear energy is above it [MG81].
+#pragma once
+
+#include <vector>
+
+#include "engine/stress/solid_stress.h"
+
+namespace shatterbox::stress {
+
+struct YieldLaw {
+  double yield = 0.0;        // Pa, von Mises
+  double most_strain = 0.0;  // plastic strain beyond which it would tear
+  double energy = 0.0;       // J of the impact: if the linear stress holds less, as much more flows
+};
+
+struct PlasticFlow {
+  /// Per cell: xx, yy, zz, yz, zx, xy of the plastic strain (tensor, not engineering), without a trace.
+  std::vector<SolidStress> strains;
+  double work = 0.0;             // J: yield strength times equivalent strain, over the volume
+  double volume = 0.0;           // m3, that flows
+  double greatest_stress = 0.0;  // Pa, von Mises
+  int worst_cell = -1;           // where that is
+};
+
+/// Of `stresses` (|cells|, Pa, the linear ones at the peak).
+PlasticFlow find_plastic_flow(const SolidStiffness& stiffness, const geometry::SolidMesh& mesh,
+                              const std::vector<SolidStress>& stresses, const YieldLaw& law);
+
+/// The load (|dof|, N) whose answer is the shape of an unloaded solid in which these strains have stayed.
+VecX eigenstrain_load(const SolidStiffness& stiffness, const geometry::SolidMesh& mesh,
+                      const std::vector<SolidStress>& strains);
+
+}  // namespace shatterbox::stress

@@ -1,0 +1,155 @@
+#include "engine/world/dent_room.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/collision/collider.h"
+#include "engine/core/index.h"
+#include "engine/geometry/continuous_tests.h"
+
+namespace shatterbox::world {
+namespace {
+
+using core::at;
+
+/// Of what is known to touch: nearer than rounding tells there is no half.
+constexpr double kNearestShare = 0.5;
+
+template <int Corners>
+std::array<double, 3 * Corners> pack(const std::vector<Vec3>& points,
+                                     const std::array<int, Corners>& corners) {
+  std::array<double, 3 * Corners> out;
+  for (std::size_t i = 0; i < Corners; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out[3 * i + axis] = points[at(corners[i])](static_cast<int>(axis));
+  return out;
+}
+
+class RoomSearch {
+ public:
+  RoomSearch(const MovingSurface& surface, const body::Body& other, double least_separation)
+      : surface_(surface), least_(least_separation) {
+    body::Shape shape;
+    shape.kind = body::ShapeKind::shell;
+    shape.surface.positions = surface.start;
+    shape.surface.triangles = surface.triangles;
+    own_ = collision::make_collider(shape);
+    theirs_ = collision::make_collider(*other.shape);
+    for (const Vec3& p : theirs_->vertices) standing_.push_back(other.pose.apply(p));
+  }
+
+  double find() {
+    std::vector<geometry::Box> own_boxes, their_boxes;
+    const auto swept = [&](int v) {
+      geometry::Box box;
+      box.include(surface_.start[at(v)]);
+      box.include(surface_.end[at(v)]);
+      return box;
+    };
+    const auto still = [&](int v) {
+      geometry::Box box;
+      box.include(standing_[at(v)]);
+      return box;
+    };
+    refit(own_->tree, own_->triangles, swept, own_boxes);
+    refit(theirs_->tree, theirs_->triangles, still, their_boxes);
+    const double margin = least_ + theirs_->radius;
+    const auto box_of = [](const geometry::Triangle& t, const auto& vertex_box) {
+      geometry::Box box;
+      for (const int v : t) box.include(vertex_box(v));
+      return box;
+    };
+    std::vector<std::pair<int, int>> stack;
+    for_each_leaf_pair(own_->tree, own_boxes, theirs_->tree, their_boxes, margin, stack,
+                       [&](const auto& a, const auto& b) {
+                         for (int i = a.begin; i < a.begin + a.count; ++i)
+                           for (int k = b.begin; k < b.begin + b.count; ++k) {
+                             const int s = own_->tree.order[at(i)], t = theirs_->tree.order[at(k)];
+                             if (overlaps(box_of(own_->triangles[at(s)], swept),
+                                          box_of(theirs_->triangles[at(t)], still), margin))
+                               test_triangles(s, t);
+                           }
+                       });
+    return share_;
+  }
+
+ private:
+  void test_triangles(int own, int theirs) {
+    for (int i = theirs_->owned_vertex_begin[at(theirs)]; i < theirs_->owned_vertex_begin[at(theirs) + 1];
+         ++i)
+      test_standing_vertex(theirs_->owned_vertices[at(i)], own_->triangles[at(own)]);
+    if (theirs_->edges.empty()) return;  // a ball is one vertex
+    for (int i = own_->owned_vertex_begin[at(own)]; i < own_->owned_vertex_begin[at(own) + 1]; ++i)
+      test_moving_vertex(own_->owned_vertices[at(i)], theirs_->triangles[at(theirs)]);
+    for (int i = own_->owned_edge_begin[at(own)]; i < own_->owned_edge_begin[at(own) + 1]; ++i)
+      for (int k = theirs_->owned_edge_begin[at(theirs)]; k < theirs_->owned_edge_begin[at(theirs) + 1]; ++k)
+        test_edges(own_->edges[at(own_->owned_edges[at(i)])],
+                   theirs_->edges[at(theirs_->owned_edges[at(k)])]);
+  }
+
+  void test_standing_vertex(int vertex, const geometry::Triangle& triangle) {
+    const auto point = pack<1>(standing_, {vertex});
+    const auto start = pack<3>(surface_.start, triangle), end = pack<3>(surface_.end, triangle);
+    settle(theirs_->radius, [&](double least) {
+      return geometry::test_point_triangle(point.data(), start.data(), point.data(), end.data(), least);
+    });
+  }
+
+  void test_moving_vertex(int vertex, const geometry::Triangle& triangle) {
+    const auto start = pack<1>(surface_.start, {vertex}), end = pack<1>(surface_.end, {vertex});
+    const auto still = pack<3>(standing_, triangle);
+    settle(0.0, [&](double least) {
+      return geometry::test_point_triangle(start.data(), still.data(), end.data(), still.data(), least);
+    });
+  }
+
+  void test_edges(const std::array<int, 2>& own, const std::array<int, 2>& theirs) {
+    const auto start = pack<2>(surface_.start, own), end = pack<2>(surface_.end, own);
+    const auto still = pack<2>(standing_, theirs);
+    settle(0.0, [&](double least) {
+      return geometry::test_edge_edge(start.data(), still.data(), end.data(), still.data(), least);
+    });
+  }
+
+  template <class Test>
+  void settle(double radius, const Test& test) {
+    geometry::ContinuousResult result = test(radius + least_);
+    if (!result.hit) return;
+    if (result.time_of_impact <= 0.0) {
+      const double gap = result.distance - radius;
+      result = test(radius + kNearestShare * std::max(0.0, gap));
+      if (!result.hit) return;
+    }
+    share_ = std::min(share_, result.time_of_impact);
+  }
+
+  const MovingSurface& surface_;
+  double least_;
+  std::shared_ptr<const collision::Collider> own_, theirs_;
+  std::vector<Vec3> standing_;
+  double share_ = 1.0;
+};
+
+double free_share_of_plane(const MovingSurface& surface, const body::Body& plane, double least) {
+  const Vec3 normal = plane.pose.rotation * Vec3::UnitY();
+  double share = 1.0;
+  for (std::size_t v = 0; v < surface.start.size(); ++v) {
+    const double before = normal.dot(surface.start[v] - plane.pose.translation);
+    const double after = normal.dot(surface.end[v] - plane.pose.translation);
+    const double wanted = std::min(least, kNearestShare * before);
+    if (after >= wanted || after >= before) continue;
+    share = std::min(share, std::max(0.0, before - wanted) / (before - after));
+  }
+  return share;
+}
+
+}  // namespace
+
+double free_share(const MovingSurface& surface, const body::Body& other, double least_separation) {
+  if (other.shape->kind == body::ShapeKind::plane)
+    return free_share_of_plane(surface, other, least_separation);
+  return RoomSearch(surface, other, least_separation).find();
+}
+
+}  // namespace shatterbox::world

@@ -1,0 +1,22 @@
+// How far a surface can change its shape before it meets somebody: its vertices go straight, all others
+// stand.
+#pragma once
+
+#include <vector>
+
+#include "engine/body/body.h"
+#include "engine/core/vec.h"
+
+namespace shatterbox::world {
+
+/// A triangle mesh whose vertices go straight from `start` to `end` (world, m).
+struct MovingSurface {
+  std::vector<Vec3> start, end;  // |V|
+  std::vector<geometry::Triangle> triangles;
+};
+
+/// Share of its way that a surface can go and stay farther than `least_separation` m from `other`; or, where
+/// it is nearer from the beginning, than half of what there is. No false negatives (continuous_tests.h).
+double free_share(const MovingSurface& surface, const body::Body& other, double least_separation);
+
+}  // namespace shatterbox::world

@@ -1,0 +1,188 @@
+// Dents: what yields keeps the shape that a hit leaves it in, whatever the step, and meets nobody on its way.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "engine/audit/audit.h"
+#include "engine/core/parallel.h"
+#include "engine/geometry/generators.h"
+#include "engine/geometry/mass_properties.h"
+#include "engine/world/world.h"
+#include "tests/support/sanitized.h"
+
+using namespace shatterbox;
+
+namespace {
+
+struct Hit {
+  double speed = 100.0;  // m/s, of a steel ball of 3 cm radius
+  int rate = 240;
+  bool is_held = false;  // by its foot
+  double gap = 0.0;      // m, behind the slab's middle to a crate; 0: no crate
+  bool has_copy = false;
+  double plasticity = 1.0;
+};
+
+struct Run {
+  world::World world;
+  audit::AuditReport audit;
+};
+
+/// A ball hits the middle of a steel slab of 40 x 30 x 2 cm.
+Run hit_slab(const Hit& hit, double seconds = 0.03) {
+  world::WorldSettings settings;
+  settings.steps_per_second = hit.rate;
+  settings.gravity = Vec3::Zero();
+  Run run{world::World(settings), {}};
+  world::World& w = run.world;
+  material::Material steel = *material::find_preset("steel");
+  steel.plasticity = hit.plasticity;
+  REQUIRE(w.add_material(steel).ok());
+  world::BodyDescription slab;
+  slab.name = "slab";
+  world::SolidDescription solid;
+  solid.mesh = geometry::make_box_surface(Vec3(0.2, 0.15, 0.01));
+  solid.element_size = test::kIsSanitized ? 0.04 : 0.02;
+  if (hit.is_held) solid.held = {{Vec3::UnitY(), -0.13}};
+  slab.form = solid;
+  REQUIRE(w.add_body(slab).ok());
+  if (hit.has_copy) {
+    slab.pose.translation = Vec3(1.0, 0.0, 0.0);
+    REQUIRE(w.add_body(slab).ok());
+  }
+  world::BodyDescription ball;
+  ball.form = world::SphereDescription{0.03};
+  ball.pose.translation = Vec3(0.0, 0.0, 0.05 + 0.003 * hit.speed);
+  ball.velocity = Vec3(0.0, 0.0, -hit.speed);
+  REQUIRE(w.add_body(ball).ok());
+  if (hit.gap > 0.0) {
+    world::BodyDescription crate;
+    crate.form = world::BoxDescription{Vec3::Constant(0.05)};
+    crate.pose.translation = Vec3(0.0, 0.0, -0.06 - hit.gap);
+    REQUIRE(w.add_body(crate).ok());
+  }
+  w.keep_ways();
+  audit::Audit audit;
+  std::size_t dents = 0, breaks = 0;
+  while (w.time() < seconds) {
+    audit.begin_step(w.bodies());
+    w.step();
+    std::vector<audit::Birth> births;
+    for (; breaks < w.report().breaks.size(); ++breaks)
+      for (const body::BodyId id : w.report().breaks[breaks].born)
+        births.push_back({id, w.report().breaks[breaks].id});
+    for (; dents < w.report().dents.size(); ++dents)
+      if (w.report().dents[dents].born != 0)
+        births.push_back({w.report().dents[dents].born, w.report().dents[dents].id});
+    audit.end_step(w.bodies(), births, w.ways(), w.time());
+  }
+  run.audit = audit.report();
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("a hit beyond the yield strength leaves a dent, the deeper the harder and the same at any rate") {
+  double last = 0.0;
+  for (const double speed : {40.0, 80.0, 120.0}) {
+    const Run run = hit_slab({speed});
+    REQUIRE(run.world.report().dents.size() == 1);
+    const world::DentRow& dent = run.world.report().dents[0];
+    CAPTURE(speed);
+    CHECK(dent.von_mises > dent.yield);
+    CHECK(dent.yield == material::find_preset("steel")->yield);
+    CHECK(dent.share == 1.0);
+    CHECK(dent.depth > 1.3 * last);
+    last = dent.depth;
+    CHECK(dent.mass_error < 1e-12);
+    // Flow keeps the volume to first order: what is left goes with the square of the strain.
+    CHECK(std::abs(dent.volume_change) < dent.depth / 0.2);
+    CHECK(dent.energy < 0.5 * 0.9 * speed * speed);
+    CHECK(run.audit.crossings + run.audit.passages == 0);
+    if (test::kIsSanitized) return;
+  }
+  for (const int rate : {60, 960}) {
+    const Run run = hit_slab({120.0, rate});
+    REQUIRE(run.world.report().dents.size() == 1);
+    CHECK(run.world.report().dents[0].depth == Approx(last).epsilon(0.03));
+  }
+  const Run half = hit_slab({80.0, 240, false, 0.0, false, 0.5}), whole = hit_slab({80.0});
+  CHECK(half.world.report().dents[0].depth ==
+        Approx(0.5 * whole.world.report().dents[0].depth).epsilon(0.05));
+}
+
+TEST_CASE("what is dented keeps its momentum and its centre, and its copies keep their shape") {
+  const Run run = hit_slab({100.0, 240, false, 0.0, true});
+  const world::World& w = run.world;
+  REQUIRE(w.report().dents.size() == 1);
+  CHECK(w.report().conservation.momentum_error < 1e-9);
+  int slabs = 0;
+  for (const body::Body& body : w.bodies()) {
+    if (body.shape->kind != body::ShapeKind::solid) continue;
+    ++slabs;
+    double thickest = 0.0;
+    for (const Vec3& p : body.shape->surface.positions) thickest = std::max(thickest, std::abs(p.z()));
+    const bool is_copy = body.pose.translation.x() > 0.9;
+    if (is_copy) CHECK(thickest == Approx(0.01).epsilon(1e-3));
+    if (!is_copy) CHECK(thickest > 0.012);
+    if (!is_copy) CHECK(body.velocity.z() < 0.0);
+    CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
+    CHECK(body.shape->mass == Approx(0.4 * 0.3 * 0.02 * 7850.0).epsilon(1e-9));
+  }
+  CHECK(slabs == 2);
+}
+
+TEST_CASE("what tears breaks into pieces of its mass and keeps no dent") {
+  const Run run = hit_slab({600.0, 240, true});
+  const world::World& w = run.world;
+  REQUIRE_FALSE(w.report().breaks.empty());
+  CHECK(w.report().dents.empty());
+  CHECK(w.report().breaks[0].mass_error < 1e-10);
+  CHECK(w.report().breaks[0].momentum_error < 1e-10);
+  CHECK(run.audit.crossings + run.audit.passages == 0);
+}
+
+TEST_CASE("a dent goes as far as there is room") {
+  if (test::kIsSanitized) return;  // its steps are those of the tests above
+  const Run free = hit_slab({120.0, 240, true}), crowded = hit_slab({120.0, 240, true, 0.004});
+  REQUIRE(free.world.report().dents.size() == 1);
+  REQUIRE_FALSE(crowded.world.report().dents.empty());
+  const world::DentRow &wide = free.world.report().dents[0], &narrow = crowded.world.report().dents[0];
+  CHECK(wide.depth > 0.006);
+  CHECK(narrow.share < 1.0);
+  CHECK(narrow.depth < 0.006);
+  CHECK(crowded.audit.crossings + crowded.audit.passages == 0);
+  CHECK(crowded.world.report().contact.crossing_pairs == 0);
+}
+
+TEST_CASE("what lies does not creep, and what does not yield has no dents") {
+  world::WorldSettings settings;
+  settings.has_sleep = false;
+  world::World w(settings);
+  material::Material soft = *material::find_preset("steel");
+  soft.yield = 1e3;  // Pa: its own weight is more
+  REQUIRE(w.add_material(soft).ok());
+  world::BodyDescription ground, slab;
+  ground.form = world::PlaneDescription{};
+  REQUIRE(w.add_body(ground).ok());
+  world::SolidDescription solid;
+  solid.mesh = geometry::make_box_surface(Vec3(0.2, 0.1, 0.1));
+  solid.element_size = 0.1;
+  slab.form = solid;
+  slab.pose.translation = Vec3(0, 0.1001, 0);
+  REQUIRE(w.add_body(slab).ok());
+  for (int i = 0; i < 240; ++i) w.step();
+  CHECK(w.report().dents.empty());
+  CHECK(material::find_preset("plaster")->yield == 0.0);
+}
+
+TEST_CASE("a dent has the same bits for any number of threads") {
+  if (test::kIsSanitized) return;
+  const auto hash = [](int threads) {
+    core::set_thread_count(threads);
+    const std::uint64_t bits = hit_slab({100.0}).world.state_hash();
+    core::set_thread_count(0);
+    return bits;
+  };
+  CHECK(hash(1) == hash(3));
+}
