@@ -14,7 +14,7 @@ using namespace shatterbox;
 
 namespace {
 
-struct Hit {
+struct SlabHit {
   double speed = 100.0;  // m/s, of a steel ball of 3 cm radius
   int rate = 240;
   bool is_held = false;  // by its foot
@@ -23,17 +23,17 @@ struct Hit {
   double plasticity = 1.0;
 };
 
-struct Run {
+struct SlabRun {
   world::World world;
   audit::AuditReport audit;
 };
 
 /// A ball hits the middle of a steel slab of 40 x 30 x 2 cm.
-Run hit_slab(const Hit& hit, double seconds = 0.03) {
+SlabRun hit_slab(const SlabHit& hit, double seconds = 0.03) {
   world::WorldSettings settings;
   settings.steps_per_second = hit.rate;
   settings.gravity = Vec3::Zero();
-  Run run{world::World(settings), {}};
+  SlabRun run{world::World(settings), {}};
   world::World& w = run.world;
   material::Material steel = *material::find_preset("steel");
   steel.plasticity = hit.plasticity;
@@ -85,7 +85,7 @@ Run hit_slab(const Hit& hit, double seconds = 0.03) {
 TEST_CASE("a hit beyond the yield strength leaves a dent, the deeper the harder and the same at any rate") {
   double last = 0.0;
   for (const double speed : {40.0, 80.0, 120.0}) {
-    const Run run = hit_slab({speed});
+    const SlabRun run = hit_slab({speed});
     REQUIRE(run.world.report().dents.size() == 1);
     const world::DentRow& dent = run.world.report().dents[0];
     CAPTURE(speed);
@@ -102,17 +102,17 @@ TEST_CASE("a hit beyond the yield strength leaves a dent, the deeper the harder 
     if (test::kIsSanitized) return;
   }
   for (const int rate : {60, 960}) {
-    const Run run = hit_slab({120.0, rate});
+    const SlabRun run = hit_slab({120.0, rate});
     REQUIRE(run.world.report().dents.size() == 1);
     CHECK(run.world.report().dents[0].depth == Approx(last).epsilon(0.03));
   }
-  const Run half = hit_slab({80.0, 240, false, 0.0, false, 0.5}), whole = hit_slab({80.0});
+  const SlabRun half = hit_slab({80.0, 240, false, 0.0, false, 0.5}), whole = hit_slab({80.0});
   CHECK(half.world.report().dents[0].depth ==
         Approx(0.5 * whole.world.report().dents[0].depth).epsilon(0.05));
 }
 
 TEST_CASE("what is dented keeps its momentum and its centre, and its copies keep their shape") {
-  const Run run = hit_slab({100.0, 240, false, 0.0, true});
+  const SlabRun run = hit_slab({100.0, 240, false, 0.0, true});
   const world::World& w = run.world;
   REQUIRE(w.report().dents.size() == 1);
   CHECK(w.report().conservation.momentum_error < 1e-9);
@@ -133,7 +133,7 @@ TEST_CASE("what is dented keeps its momentum and its centre, and its copies keep
 }
 
 TEST_CASE("what tears breaks into pieces of its mass and keeps no dent") {
-  const Run run = hit_slab({600.0, 240, true});
+  const SlabRun run = hit_slab({600.0, 240, true});
   const world::World& w = run.world;
   REQUIRE_FALSE(w.report().breaks.empty());
   CHECK(w.report().dents.empty());
@@ -144,7 +144,7 @@ TEST_CASE("what tears breaks into pieces of its mass and keeps no dent") {
 
 TEST_CASE("a dent goes as far as there is room") {
   if (test::kIsSanitized) return;  // its steps are those of the tests above
-  const Run free = hit_slab({120.0, 240, true}), crowded = hit_slab({120.0, 240, true, 0.004});
+  const SlabRun free = hit_slab({120.0, 240, true}), crowded = hit_slab({120.0, 240, true, 0.004});
   REQUIRE(free.world.report().dents.size() == 1);
   REQUIRE_FALSE(crowded.world.report().dents.empty());
   const world::DentRow &wide = free.world.report().dents[0], &narrow = crowded.world.report().dents[0];
