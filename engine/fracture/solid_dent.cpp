@@ -42,8 +42,6 @@ YieldFinding find_yield(const SolidModel& model, const material::Material& mater
   stress::PlasticFlow flow = stress::find_plastic_flow(*model.stiffness, model.mesh, stresses,
                                                        {material.yield, material.elongation, energy.all});
   finding.stress = flow.greatest_stress;
-  if (flow.worst_cell >= 0)
-    finding.place = stress::cell_centroid(model.mesh, model.mesh.cells[at(flow.worst_cell)]);
   const double factor = flow.work > energy.most ? energy.most / flow.work : 1.0;
   if (!(flow.work > 0.0) || !(factor * material.plasticity > 0.0)) return finding;
   for (stress::SolidStress& strain : flow.strains) strain *= factor * material.plasticity;
@@ -52,10 +50,7 @@ YieldFinding find_yield(const SolidModel& model, const material::Material& mater
   settings.tolerance = kDentTolerance;
   const stress::SolidSolution shape =
       model.system->solve(stress::eigenstrain_load(*model.stiffness, model.mesh, flow.strains), settings);
-  if (!shape.is_evaluated()) {
-    finding.problem = shape.fault;
-    return finding;
-  }
+  if (!shape.is_evaluated()) return finding;
   auto dent = std::make_shared<SolidDent>();
   dent->moves = moves_of(model.mesh, shape.displacement);
   dent->work = factor * flow.work;

@@ -21,17 +21,15 @@ struct SolidDent {
 
 /// What an impact brings for it.
 struct DentEnergy {
-  double all = 0.0;  // J: what of it the linear stress at its peak does not hold (it is in the contact, and
-                     // in motion that is still to be stopped) flows in the same share, where the rest does
+  double all = 0.0;   // J: what of it the linear stress at its peak does not hold (it is in the contact, and
+                      // in motion that is still to be stopped) flows in the same share, where the rest does
   double most = 0.0;  // J, that is not given back; flow beyond is scaled down
 };
 
 /// What an impact's linear displacement at its peak (|dof|, m, of the collisions alone) means for the shape.
 struct YieldFinding {
   double stress = 0.0;                    // Pa, von Mises, greatest
-  Vec3 place = Vec3::Zero();              // m, material space, there
-  std::shared_ptr<const SolidDent> dent;  // null: nothing flows, or `problem` says why it is not told
-  std::string problem;
+  std::shared_ptr<const SolidDent> dent;  // null: nothing flows, or its shape cannot be told
 };
 
 YieldFinding find_yield(const SolidModel& model, const material::Material& material, const VecX& displacement,

@@ -12,13 +12,6 @@ namespace {
 
 using core::at;
 
-Mat3 edges_of(const TetMesh& mesh, int element) {
-  const Tetrahedron& t = mesh.tetrahedra[at(element)];
-  Mat3 edges;
-  for (int i = 0; i < 3; ++i) edges.col(i) = mesh.positions[at(t[at(i + 1)])] - mesh.positions[at(t[0])];
-  return edges;
-}
-
 bool is_leaf(const SolidFacet& facet) {
   return facet.parts[0] < 0 && (facet.cells[0] >= 0 || facet.cells[1] >= 0);
 }
@@ -35,7 +28,8 @@ void move_kerfs(const TetMesh& before, SolidComplex& complex) {
       if (!vertex.has_kerf || is_moved[at(v)] != 0) continue;
       is_moved[at(v)] = 1;
       const int element = complex.cells[at(std::max(facet.cells[0], facet.cells[1]))].element;
-      vertex.kerf = (edges_of(after, element) * edges_of(before, element).inverse() * vertex.kerf).eval();
+      vertex.kerf =
+          (edge_matrix(after, element) * edge_matrix(before, element).inverse() * vertex.kerf).eval();
     }
   }
 }
@@ -135,7 +129,7 @@ double least_volume_share(const SolidComplex& piece, const std::vector<Vec3>& mo
   double least = 1.0;
   for (const SolidPart& cell : piece.cells) {
     const Tetrahedron& t = mesh.tetrahedra[at(cell.element)];
-    const Mat3 before = edges_of(mesh, cell.element);
+    const Mat3 before = edge_matrix(mesh, cell.element);
     Mat3 after = before;
     for (int i = 0; i < 3; ++i) after.col(i) += moves[at(t[at(i + 1)])] - moves[at(t[0])];
     const double volume = before.determinant();

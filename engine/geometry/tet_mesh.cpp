@@ -73,6 +73,13 @@ int face_direction(const Tetrahedron& tetrahedron, int face) {
   return next < tetrahedron[at(corners[(least + 2) % 3])] ? 1 : -1;
 }
 
+Mat3 edge_matrix(const TetMesh& mesh, int tetrahedron) {
+  const Tetrahedron& t = mesh.tetrahedra[at(tetrahedron)];
+  Mat3 edges;
+  for (int i = 0; i < 3; ++i) edges.col(i) = mesh.positions[at(t[at(i + 1)])] - mesh.positions[at(t[0])];
+  return edges;
+}
+
 double tetrahedron_volume(const TetMesh& mesh, int tetrahedron) {
   const Tetrahedron& t = mesh.tetrahedra[at(tetrahedron)];
   const Vec3& a = mesh.positions[at(t[0])];

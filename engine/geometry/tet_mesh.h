@@ -39,6 +39,9 @@ TetTopology build_tet_topology(const std::vector<Tetrahedron>& tetrahedra);
 /// otherwise. `face` 0 to 3: opposite to that corner.
 int face_direction(const Tetrahedron& tetrahedron, int face);
 
+/// The edges from a tetrahedron's first corner to the others, m, as columns.
+Mat3 edge_matrix(const TetMesh& mesh, int tetrahedron);
+
 /// Volume of a tetrahedron, m3; negative if it is inside out.
 double tetrahedron_volume(const TetMesh& mesh, int tetrahedron);
 

@@ -21,10 +21,7 @@ PlasticFlow find_plastic_flow(const SolidStiffness& stiffness, const geometry::S
   const double gain = held > 0.0 ? std::max(1.0, law.energy / held) : 1.0;
   for (std::size_t c = 0; c < stresses.size(); ++c) {
     const double linear = von_mises(stresses[c]);
-    if (linear > flow.greatest_stress) {
-      flow.greatest_stress = linear;
-      flow.worst_cell = static_cast<int>(c);
-    }
+    flow.greatest_stress = std::max(flow.greatest_stress, linear);
     if (!(linear > law.yield)) continue;
     const double over = linear / law.yield;
     const double equivalent =

@@ -21,7 +21,6 @@ struct PlasticFlow {
   double work = 0.0;             // J: yield strength times equivalent strain, over the volume
   double volume = 0.0;           // m3, that flows
   double greatest_stress = 0.0;  // Pa, von Mises
-  int worst_cell = -1;           // where that is
 };
 
 /// Of `stresses` (|cells|, Pa, the linear ones at the peak).

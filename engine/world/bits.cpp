@@ -25,6 +25,12 @@ void add_to_hash(const JointMemories& memories, core::Hash& hash) {
   }
 }
 
+void add_contacts(const MovingState& moving, core::Hash& hash) {
+  add_to_hash(moving.joint_memories, hash);
+  dynamics::add_to_hash(moving.contact, hash);
+  dynamics::add_to_hash(moving.paper_contact, hash);
+}
+
 void add_path(const body::Body& body, core::Hash& hash) {
   if (body.script.path) hash.add(body.script.time).add(body.script.pace).add(body.script.wait);
 }
@@ -50,9 +56,7 @@ std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t pr
     hash.add(std::uint64_t{id});
     add_to_hash(memory, hash);
   }
-  add_to_hash(moving.joint_memories, hash);
-  dynamics::add_to_hash(moving.contact, hash);
-  dynamics::add_to_hash(moving.paper_contact, hash);
+  add_contacts(moving, hash);
   return hash.value();
 }
 
@@ -76,9 +80,7 @@ std::vector<BodyBits> hash_bodies(const MovingState& moving, const ElementStress
 
 std::uint64_t hash_contacts(const MovingState& moving) {
   core::Hash hash;
-  add_to_hash(moving.joint_memories, hash);
-  dynamics::add_to_hash(moving.contact, hash);
-  dynamics::add_to_hash(moving.paper_contact, hash);
+  add_contacts(moving, hash);
   return hash.value();
 }
 

@@ -1,12 +1,15 @@
-#include "engine/world/dent.h"
-
+// Dents: a body whose impact is over gets the shape that it leaves. Its surface goes straight from what it
+// was to what it will be, under the promise of every motion: it meets nobody on its way, or goes as far as is
+// free. The body keeps its mass and momenta; copies that shared its shape keep theirs.
 #include <algorithm>
+#include <optional>
 
 #include "engine/core/index.h"
 #include "engine/geometry/solid_deform.h"
 #include "engine/world/acts.h"
 #include "engine/world/dent_room.h"
 #include "engine/world/forms.h"
+#include "engine/world/state.h"
 
 namespace shatterbox::world {
 namespace {
@@ -19,21 +22,14 @@ constexpr int kMostRooms = 4;           // times that a dent is cut to what is f
 constexpr double kRoomSlack = 0.9;      // of what was found free, then: the cut dent goes slightly elsewhere
 constexpr double kLeastDentShare = 0.01;  // of a dent; less is none
 
-Mat3 edges_of(const geometry::TetMesh& mesh, int element) {
-  const geometry::Tetrahedron& t = mesh.tetrahedra[at(element)];
-  Mat3 out;
-  for (int i = 0; i < 3; ++i) out.col(i) = mesh.positions[at(t[at(i + 1)])] - mesh.positions[at(t[0])];
-  return out;
-}
-
 /// Places in elements, after these have moved.
 class Carrier {
  public:
   Carrier(const geometry::TetMesh& from, const geometry::TetMesh& to) : from_(from), to_(to) {}
 
   Vec3 carry(int element, const Vec3& place) const {
-    const Vec3 local = edges_of(from_, element).inverse() * (place - first(from_, element));
-    return first(to_, element) + edges_of(to_, element) * local;
+    const Vec3 local = edge_matrix(from_, element).inverse() * (place - first(from_, element));
+    return first(to_, element) + edge_matrix(to_, element) * local;
   }
 
  private:
@@ -52,7 +48,7 @@ class ElementFinder {
     std::sort(elements_.begin(), elements_.end());
     elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
     inverses_.resize(mesh_.tetrahedra.size());
-    for (const int e : elements_) inverses_[at(e)] = edges_of(mesh_, e).inverse();
+    for (const int e : elements_) inverses_[at(e)] = edge_matrix(mesh_, e).inverse();
   }
 
   /// `guess`, if the place is in it, or else the one in which it is most, or least outside.
@@ -100,6 +96,16 @@ std::vector<std::uint8_t> parts_of_tags(const std::vector<std::uint8_t>& parts,
   for (const int source : tag_sources) out.push_back(parts[at(source)]);
   return out;
 }
+
+/// A body as a dent leaves it.
+struct Dented {
+  std::shared_ptr<const Fragile> fragile;
+  std::shared_ptr<const body::Shape> shape;
+  Pose pose;
+  double share = 0.0;          // of the whole dent
+  double depth = 0.0;          // m, of the surface
+  double volume_change = 0.0;  // relative
+};
 
 /// The solid in its new shape; the mass is what it was.
 std::shared_ptr<Fragile> dent_fragile(const Fragile& whole, double mass, geometry::DeformedSolid deformed,
@@ -176,8 +182,7 @@ void replace_by(MovingState& moving, const body::Body& body, body::Body born, co
   moving.bodies.push_back(std::move(born));
 }
 
-}  // namespace
-
+/// Nothing if there is no room at all.
 std::optional<Dented> find_dented(const MovingState& moving, const dynamics::ContactSettings& contact,
                                   const body::Body& body, const fracture::SolidDent& dent) {
   const Fragile& whole = *moving.fragiles.at(body.id);
@@ -187,10 +192,11 @@ std::optional<Dented> find_dented(const MovingState& moving, const dynamics::Con
   for (int room = 0; room < kMostRooms && share > kLeastDentShare; ++room) {
     Dented dented;
     dented.share = share;
-    for (const Vec3& move : dent.moves) dented.moves.push_back(share * move);
+    std::vector<Vec3> moves = dent.moves;
+    for (Vec3& move : moves) move *= share;
     std::shared_ptr<geometry::SolidComplex> complex;
     dented.fragile = dent_fragile(whole, body.shape->mass,
-                                  deform(before, dented.moves, kDentFlatness * kKerf * whole.size), complex);
+                                  deform(before, moves, kDentFlatness * kKerf * whole.size), complex);
     dented.shape = make_solid_shape(*complex, *dented.fragile);
     dented.pose = body.pose;
     // A free body's centre of mass stays where it is; what is held stays in its place.
@@ -208,6 +214,7 @@ std::optional<Dented> find_dented(const MovingState& moving, const dynamics::Con
   return std::nullopt;
 }
 
+/// The body with its new shape and place, of the same momenta.
 body::Body as_dented(const body::Body& body, const Dented& dented) {
   body::Body changed = body;
   changed.shape = dented.shape;
@@ -221,6 +228,7 @@ body::Body as_dented(const body::Body& body, const Dented& dented) {
   return changed;
 }
 
+/// Puts `dented` in the place of a body, which gets a new id.
 body::BodyId put_dented(MovingState& moving, const body::Body& body, const Dented& dented,
                         std::map<body::BodyId, Ancestry>& ancestry) {
   body::Body born = as_dented(body, dented);
@@ -253,6 +261,8 @@ DentRow describe_dent(const body::Body& body, const fracture::SolidDent& dent, c
   return row;
 }
 
+}  // namespace
+
 void World::dent_bodies(const MovingState& snapshot) {
   State& s = *state_;
   const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
@@ -277,10 +287,7 @@ void World::dent_bodies(const MovingState& snapshot) {
         row.born = put_dented(s.moving, body, *dented, s.ancestry);
         regrip(s.hands, body, {row.born}, s.moving.bodies);
         rehang(s.moving.contact.joints, body, {row.born}, s.moving.bodies);
-        if (const auto known = s.element_stress.find(id); known != s.element_stress.end()) {
-          s.element_stress[row.born] = known->second;
-          s.element_stress.erase(id);
-        }
+        inherit_stress(id, {row.born});
         s.is_disturbed = true;
         id = row.born;
       }

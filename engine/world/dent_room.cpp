@@ -131,6 +131,16 @@ class RoomSearch {
   double share_ = 1.0;
 };
 
+/// Whether no point of the surface comes that near to a body on its way.
+bool is_far(const MovingSurface& surface, const body::Body& other, double least) {
+  geometry::Box box;
+  for (const Vec3& p : surface.start) box.include(p);
+  for (const Vec3& p : surface.end) box.include(p);
+  const Vec3& centre = other.pose.translation;
+  const double reach = (1.0 + 1e-9) * (other.shape->bounding_radius + least);
+  return (centre.cwiseMax(box.low).cwiseMin(box.high) - centre).norm() > reach;
+}
+
 double free_share_of_plane(const MovingSurface& surface, const body::Body& plane, double least) {
   const Vec3 normal = plane.pose.rotation * Vec3::UnitY();
   double share = 1.0;
@@ -149,6 +159,7 @@ double free_share_of_plane(const MovingSurface& surface, const body::Body& plane
 double free_share(const MovingSurface& surface, const body::Body& other, double least_separation) {
   if (other.shape->kind == body::ShapeKind::plane)
     return free_share_of_plane(surface, other, least_separation);
+  if (is_far(surface, other, least_separation)) return 1.0;
   return RoomSearch(surface, other, least_separation).find();
 }
 

@@ -241,8 +241,10 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     ++part.number;
     pass = 0;
   }
-  if (may_break) timer.time("dents", [&] { dent_bodies(snapshot); });
-  tell_watcher("dents", {part.count - 1, part.count}, 0);
+  const bool may_yield = may_break && std::any_of(s.materials.begin(), s.materials.end(),
+                                                  [](const material::Material& m) { return m.yield > 0.0; });
+  if (may_yield) timer.time("dents", [&] { dent_bodies(snapshot); });
+  if (may_yield) tell_watcher("dents", {part.count - 1, part.count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
     dynamics::end_step(s.moving.bodies, s.contact_settings, part.count, contact, s.moving.contact);
     timer.time("sleep",
@@ -317,19 +319,19 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     regrip(s.hands, parent, row.born, s.moving.bodies);
     rehang(s.moving.contact.joints, parent, row.born, s.moving.bodies);
     row.time = end_time;
-    inherit_stress(row);
+    inherit_stress(row.id, row.born);
     s.report.breaks.push_back(std::move(row));
   }
   s.is_disturbed = true;
   return goes_back;
 }
 
-void World::inherit_stress(const BreakRow& row) {
+void World::inherit_stress(body::BodyId parent, const std::vector<body::BodyId>& born) {
   auto& stress = state_->element_stress;
-  const auto found = stress.find(row.id);
+  const auto found = stress.find(parent);
   if (found == stress.end()) return;
-  for (const body::BodyId id : row.born) stress[id] = found->second;
-  stress.erase(row.id);
+  for (const body::BodyId id : born) stress[id] = found->second;
+  stress.erase(parent);
 }
 
 void World::book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,

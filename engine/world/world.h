@@ -153,7 +153,7 @@ class World {
   std::vector<JointVerdict> judge_joints(const dynamics::StepPart& part, const body::ImpulseLog& log);
   /// Opens those that are overloaded most. True if the part must be taken again.
   bool open_joints(std::span<const JointVerdict> verdicts, MovingState& snapshot, bool may_go_back);
-  void inherit_stress(const BreakRow& row);
+  void inherit_stress(body::BodyId parent, const std::vector<body::BodyId>& born);
   void book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,
                          double time_step);
 

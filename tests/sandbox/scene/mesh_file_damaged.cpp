@@ -130,6 +130,12 @@ TEST_CASE("a PLY is read from bytes of either order, with more than it needs, in
 TEST_CASE("faults of glTF and 3DS are told, and no number of theirs is believed") {
   const MeshFileFolder folder;
   const auto gltf = [&](const std::string& text) { return fault_of(folder.write("a.gltf", text)); };
+  const auto three_of = [](const std::string& uri) {
+    return R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+               "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
+               "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":)" +
+           uri + "}]}";
+  };
   check_says(gltf("hello"), "no JSON");
   check_says(gltf("{}"), "no triangles");
   check_says(gltf(R"({"scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}]})"), "in itself");
@@ -138,21 +144,12 @@ TEST_CASE("faults of glTF and 3DS are told, and no number of theirs is believed"
                      "accessors":[{"bufferView":0,"componentType":5126,"count":4000000000}],
                      "bufferViews":[{"buffer":0,"byteLength":9}],"buffers":[{"uri":"data:;base64,AAAA"}]})"),
              "makes no sense");
-  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-                     "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
-                     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":"data:;base64,AAAA"}]})"),
-             "beyond its buffer");
+  check_says(gltf(three_of(R"("data:;base64,AAAA")")), "beyond its buffer");
   check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0},
                      "extensions":{"KHR_draco_mesh_compression":{}}}]}]})"),
              "Draco");
-  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-                     "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
-                     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":"none.bin"}]})"),
-             "none.bin is not there");
-  check_says(gltf(R"({"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-                     "accessors":[{"bufferView":0,"componentType":5126,"count":3}],
-                     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":3}]})"),
-             "\"uri\" is no text");
+  check_says(gltf(three_of(R"("none.bin")")), "none.bin is not there");
+  check_says(gltf(three_of(R"(3)")), "\"uri\" is no text");
   check_says(gltf(R"({"scenes":[{"nodes":[0]}],"nodes":[{"rotation":[0,0,0,0]}]})"),
              "\"rotation\" is all zeros");
   check_says(fault_of(folder.write("a.glb", "glTF\2")), "no glTF 2.0");
