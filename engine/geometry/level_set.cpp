@@ -169,10 +169,9 @@ class LevelSetGrid {
 
 }  // namespace
 
-LevelSetSpace make_level_set_space(const TriangleMesh& surface) {
-  const Box box = box_of(surface);
+LevelSetSpace make_level_set_space(double size) {
   LevelSetSpace space;
-  if (!surface.triangles.empty()) space.spacing = (box.high - box.low).maxCoeff() / kLevelSetCells;
+  space.spacing = size / kLevelSetCells;
   return space;
 }
 

@@ -19,9 +19,9 @@ struct LevelSetSpace {
   std::shared_ptr<PatchCache> patches = std::make_shared<PatchCache>();
 };
 
-/// So many cells across the greatest side of the unbroken body's box.
 inline constexpr int kLevelSetCells = 48;
-LevelSetSpace make_level_set_space(const TriangleMesh& surface);
+/// So many cells across an unbroken body of that size, m.
+LevelSetSpace make_level_set_space(double size);
 /// Pieces with fewer cells across their greatest side get no level set: the grid would not see their form.
 inline constexpr double kLeastLevelSetCells = 6.0;
 
@@ -33,8 +33,9 @@ class LevelSet {
                                                             const Vec3& material_from_body,
                                                             const LevelSetSpace& space);
 
-  /// m, at a point of material space, linear between the nodes; negative inside. Right to some hundredths of
-  /// the spacing where the surface is flat within a cell; beyond the grid, more than it is.
+  /// m, at a point of material space, linear between the nodes; negative inside. Nodes within
+  /// TrianglePatch::kReach are right to 3e-6 of the spacing, others to .2; beyond the grid it is more than it
+  /// is.
   double distance(const Vec3& material) const;
   /// Its slope there (nearly of length one), which points outwards.
   Vec3 gradient(const Vec3& material) const;

@@ -52,6 +52,19 @@ std::string overlay_of(const SceneDescription& scene) {
   return {};
 }
 
+/// Solids alone have an inside to show.
+std::string cut_open_body(const SceneDescription& scene) {
+  const bool is_shown =
+      scene.render.overlay == "level_set" ||
+      std::any_of(scene.events.begin(), scene.events.end(), [](const scene::EventEntry& event) {
+        const auto* change = std::get_if<scene::OverlayChange>(&event.action);
+        return change && change->name == "level_set";
+      });
+  if (!is_shown) return {};
+  return find_body_that(scene,
+                        [](const BodyEntry& b) { return std::holds_alternative<scene::SolidForm>(b.form); });
+}
+
 }  // namespace
 
 std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& options) {
@@ -76,7 +89,8 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
       part("scripted_motion", scripted, "follows a path", "no body has keyframes"),
       part("joints", scene.joints.empty() ? "" : quoted(scene.joints.front().name), "holds bodies together",
            "the scene has no [[joint]]"),
-      part("level_sets", "", "", "solids touch by their triangles"),
+      part("level_sets", has_pictures ? cut_open_body(scene) : "", "is cut open by the overlay \"level_set\"",
+           "solids touch by their triangles, and no overlay cuts them open"),
       part("shell_stress", find_body_that(scene, can_break_as<scene::ShellForm>),
            "can break: stiffness of membrane and bending, factors, flaws", "no shell can break"),
       part("tetrahedra", find_body_that(scene, can_break_as<scene::SolidForm>),

@@ -233,6 +233,6 @@ inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", 
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white", "evening", "overcast"};
 inline const std::vector<std::string> kLightNames{"studio", "noon", "evening", "overcast"};
 inline const std::vector<std::string> kOverlayNames{"none",    "stress",   "pieces",   "grains",
-                                                    "impacts", "velocity", "wireframe"};
+                                                    "impacts", "velocity", "wireframe", "level_set"};
 
 }  // namespace shatterbox::sandbox::scene

@@ -40,10 +40,19 @@ double greatest_speed(const scene::SceneDescription& scene) {
   return std::max(most, core::sqrt(2.0 * scene.world.gravity.norm() * (most_height - least_height)));
 }
 
+/// mm: half the size of the largest solid.
+double greatest_depth(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (std::holds_alternative<scene::SolidForm>(scene.bodies[i].form))
+      most = std::max(most, 1e3 * built.plan.bodies[i].bounding_radius);
+  return most;
+}
+
 }  // namespace
 
-Overlays::Overlays(const scene::SceneDescription& scene)
-    : scene_(scene), name_(scene.render.overlay), most_(scene.render.overlay_most) {}
+Overlays::Overlays(const scene::SceneDescription& scene, const scene::BuiltScene& built)
+    : scene_(scene), built_(built), name_(scene.render.overlay), most_(scene.render.overlay_most) {}
 
 void Overlays::show(const std::string& name, const std::optional<double>& most) {
   name_ = name;
@@ -61,6 +70,10 @@ render::Overlay Overlays::overlay() const {
   if (name_ == "stress") scale("tension", "MPa", greatest_strength(scene_));
   if (name_ == "velocity") scale("speed", "m/s", greatest_speed(scene_));
   if (name_ == "impacts") scale("stress / strength", "", 1.0);
+  if (name_ == "level_set") {
+    scale("distance", "mm", 0.5 * greatest_depth(scene_, built_));
+    overlay.least = -overlay.most;
+  }
   if (name_ == "pieces") overlay.kind = render::OverlayKind::pieces;
   if (name_ == "grains") overlay.kind = render::OverlayKind::groups;
   overlay.has_wires = name_ == "wireframe";

@@ -1,5 +1,5 @@
 // What can be laid over the picture to see why things break: stress, pieces, grains, impacts, velocity,
-// wires.
+// wires, level sets.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,15 @@
 
 #include "engine/body/body.h"
 #include "render/frame/frame.h"
+#include "sandbox/scene/build_world.h"
 #include "sandbox/scene/scene_description.h"
 
 namespace shatterbox::sandbox::view {
 
 class Overlays {
  public:
-  /// Begins with the scene's own. `scene` must outlive it.
-  explicit Overlays(const scene::SceneDescription& scene);
+  /// Begins with the scene's own. Both must outlive it.
+  Overlays(const scene::SceneDescription& scene, const scene::BuiltScene& built);
 
   /// `name` of scene::kOverlayNames; `most`: top of its scale, in its unit.
   void show(const std::string& name, const std::optional<double>& most);
@@ -27,6 +28,7 @@ class Overlays {
 
  private:
   const scene::SceneDescription& scene_;
+  const scene::BuiltScene& built_;
   std::string name_;
   std::optional<double> most_;
 };

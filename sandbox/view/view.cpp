@@ -85,7 +85,7 @@ View::View(const scene::SceneDescription& scene, const scene::BuiltScene& built,
       built_(built),
       camera_(scene.camera, find_subject(scene, built.plan)),
       wardrobe_(scene, built),
-      overlays_(scene),
+      overlays_(scene, built),
       next_mesh_((static_cast<std::uint64_t>(shot) << 32U) + 1) {
   stage_.lights = make_lights(scene.light);
   stage_.ground = find_ground(scene, built);
@@ -117,22 +117,39 @@ void View::add_body(const body::Body& body, render::Frame& frame) {
   draw.looks = wardrobe_.looks_of(body.id);
   const bool is_piece = built_.world.ancestry(body.id).parent != 0;
   draw.colour_index = is_piece ? body.id : render::Draw::kNoColour;
-  lay_over(body, drawn, draw);
+  lay_over(body, drawn, frame.camera, draw);
   frame.draws.push_back(std::move(draw));
 }
 
-void View::lay_over(const body::Body& body, DrawnShape& drawn, render::Draw& draw) {
+void View::lay_over(const body::Body& body, DrawnShape& drawn, const render::Camera& camera,
+                    render::Draw& draw) {
   const std::string& name = overlays_.name();
   const bool is_mesh = body::is_mesh(body.shape->kind);
   if (name == "stress" && is_mesh)
     draw.scalars = vertex_stress(*body.shape, built_.world.stress_picture(body.id).triangle_stress);
   if (name == "velocity" && body.shape->kind != body::ShapeKind::plane)
     draw.scalars = vertex_speed(body, *drawn.mesh);
+  if (name == "level_set" && body.shape->kind == body::ShapeKind::solid)
+    cut_open(body, drawn, Vec3(camera.position.x, camera.position.y, camera.position.z), draw);
   if (name != "grains" || !is_mesh) return;
   if (!drawn.grains) drawn.grains = make_grain_mesh(*body.shape, *drawn.mesh, next_mesh_++);
   if (!drawn.grains) return;
   draw.mesh = drawn.grains->mesh;
   draw.scalars = drawn.grains->groups;
+}
+
+void View::cut_open(const body::Body& body, DrawnShape& drawn, const Vec3& eye, render::Draw& draw) {
+  const body::BodyId original = built_.world.ancestry(body.id).original;
+  const auto origin = built_.origins.find(original != 0 ? original : body.id);
+  if (origin == built_.origins.end()) return;
+  const auto entry = static_cast<std::size_t>(origin->second.entry);
+  const auto [space, is_new] = level_set_spaces_.try_emplace(entry);
+  if (is_new) space->second = geometry::make_level_set_space(2.0 * built_.plan.bodies[entry].bounding_radius);
+  if (drawn.level_set.level_set(*body.shape, space->second) == nullptr) return;
+  const Slice& slice =
+      drawn.level_set.slice(*body.shape, side_towards(body.pose.apply_inverse(eye)), next_mesh_);
+  draw.mesh = slice.mesh;
+  draw.scalars = slice.distances;
 }
 
 void View::mark_impacts(const Moment& moment, render::Frame& frame) {

@@ -14,6 +14,7 @@
 #include "sandbox/scene/build_world.h"
 #include "sandbox/scene/scene_description.h"
 #include "sandbox/view/camera_rig.h"
+#include "sandbox/view/level_set_slice.h"
 #include "sandbox/view/moment.h"
 #include "sandbox/view/overlays.h"
 #include "sandbox/view/wardrobe.h"
@@ -42,6 +43,7 @@ class View {
     std::shared_ptr<const body::Shape> shape;  // kept, so that its address is not used again
     std::shared_ptr<const render::Mesh> mesh;
     std::optional<GrainMesh> grains;
+    SliceShelf level_set;
     std::uint64_t last_frame = 0;
   };
 
@@ -52,7 +54,8 @@ class View {
   std::string standard_caption(const Moment& moment) const;
   void add_body(const body::Body& body, render::Frame& frame);
   /// What the overlay makes of a draw.
-  void lay_over(const body::Body& body, DrawnShape& drawn, render::Draw& draw);
+  void lay_over(const body::Body& body, DrawnShape& drawn, const render::Camera& camera, render::Draw& draw);
+  void cut_open(const body::Body& body, DrawnShape& drawn, const Vec3& eye, render::Draw& draw);
   /// Balls where impacts were evaluated a moment ago.
   void mark_impacts(const Moment& moment, render::Frame& frame);
   render::Title title_at(double film) const;
@@ -67,6 +70,7 @@ class View {
   render::Frame stage_;  // everything but the bodies
   scene::Cue caption_;   // the last one; its event is null before the first
   std::map<const body::Shape*, DrawnShape> shapes_;
+  std::map<std::size_t, geometry::LevelSetSpace> level_set_spaces_;  // by entries of the scene
   std::shared_ptr<const render::Mesh> marker_;
   std::uint64_t next_mesh_;
   std::uint64_t frame_ = 0;

@@ -148,3 +148,43 @@ TEST_CASE("what a camera without a place must see reaches down to where bodies w
       subject_of("[[body]]\nkind = \"plane\"\nposition = [0, 0.5, 0]\n" + ball + "motion = \"static\"\n");
   CHECK(held.centre.y() == Approx(2.0));
 }
+
+TEST_CASE("the overlay level_set cuts solids open towards the eye and shows their distance to the surface") {
+  const auto reading = scene::read(
+      "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.4, 0.2, 0.6]\nposition = [0, 1, 0]\nbreakable "
+      "= "
+      "false\n"
+      "[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 0.2\nposition = [2, 1, 0]\nedge_length = "
+      "0.1\nbreakable = false\n"
+      "[camera]\nposition = [0, 1.1, 3]\ntarget = [0, 1, 0]\n[render]\noverlay = \"level_set\"\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  INFO(scene::describe(problems));
+  REQUIRE(built.has_value());
+  view::View view(*reading.scene, *built);
+  const render::Frame frame = view.make_frame();
+  REQUIRE(frame.draws.size() == 2);
+  CHECK(frame.overlay.kind == render::OverlayKind::heat);
+  CHECK(frame.overlay.least == -frame.overlay.most);
+  CHECK(frame.draws[1].scalars == nullptr);  // a shell has no inside
+  const render::Draw& solid = frame.draws[0];
+  REQUIRE(solid.scalars != nullptr);
+  const auto& positions = solid.mesh->positions;
+  REQUIRE(solid.scalars->size() == positions.size());
+  float deepest = 0.0F, worst = 0.0F;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const glm::vec3 p = positions[v];
+    CHECK(p.z <= 0.02F);  // the half towards the eye is left out
+    const glm::vec3 room = glm::vec3(0.2F, 0.1F, 0.3F) - glm::abs(p);
+    const glm::vec3 outside = glm::max(-room, glm::vec3(0.0F));
+    const float distance = glm::length(outside) - std::max(0.0F, std::min({room.x, room.y, room.z}));
+    worst = std::max(worst, std::abs((*solid.scalars)[v] - 1e3F * distance));
+    deepest = std::min(deepest, (*solid.scalars)[v]);
+  }
+  CHECK(deepest == Approx(-100.0F).margin(3.0F));  // mm: half of the least side
+  CHECK(worst < 3.5F);                             // a fifth of a cell of 15.6 mm
+  // The same cut is the same mesh.
+  CHECK(view.make_frame().draws[0].mesh.get() == solid.mesh.get());
+}
