@@ -37,6 +37,7 @@ class SliceShelf {
   /// Made at the first call; null where the solid is too small for the grid of the whole.
   const geometry::LevelSet* level_set(const body::Shape& shape, const geometry::LevelSetSpace& space);
   const Slice& slice(const body::Shape& shape, const SliceSide& side, std::uint64_t& next_id);
+  double bytes() const { return set_ ? set_->bytes() : 0.0; }
 
  private:
   bool is_asked_ = false;

@@ -40,12 +40,22 @@ double greatest_speed(const scene::SceneDescription& scene) {
   return std::max(most, core::sqrt(2.0 * scene.world.gravity.norm() * (most_height - least_height)));
 }
 
-/// mm: half the size of the largest solid.
-double greatest_depth(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
+/// mm: no ball inside a convex solid is larger than three times its volume over its surface.
+double greatest_depth(const scene::ScenePlan& plan) {
   double most = 0.0;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (std::holds_alternative<scene::SolidForm>(scene.bodies[i].form))
-      most = std::max(most, 1e3 * built.plan.bodies[i].bounding_radius);
+  for (const scene::BodyPlan& body : plan.bodies) {
+    const auto* solid = std::get_if<world::SolidDescription>(&body.description.form);
+    if (solid == nullptr) continue;
+    double six_volumes = 0.0, two_areas = 0.0;
+    for (const geometry::Triangle& t : solid->mesh.triangles) {
+      const auto corner = [&](std::size_t i) {
+        return solid->mesh.positions[static_cast<std::size_t>(t[i])];
+      };
+      six_volumes += corner(0).dot(corner(1).cross(corner(2)));
+      two_areas += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    }
+    if (two_areas > 0.0) most = std::max(most, 1e3 * six_volumes / two_areas);
+  }
   return most;
 }
 
@@ -71,7 +81,7 @@ render::Overlay Overlays::overlay() const {
   if (name_ == "velocity") scale("speed", "m/s", greatest_speed(scene_));
   if (name_ == "impacts") scale("stress / strength", "", 1.0);
   if (name_ == "level_set") {
-    scale("distance", "mm", 0.5 * greatest_depth(scene_, built_));
+    scale("distance", "mm", greatest_depth(built_.plan));
     overlay.least = -overlay.most;
   }
   if (name_ == "pieces") overlay.kind = render::OverlayKind::pieces;

@@ -244,6 +244,16 @@ render::Frame View::make_frame(const Moment& moment, glm::vec2 lens) {
   return frame;
 }
 
+world::PartCount View::level_sets() const {
+  world::PartCount count{"level_sets", 0, 0.0};
+  for (const auto& [shape, drawn] : shapes_) {
+    count.count += drawn.level_set.bytes() > 0.0 ? 1 : 0;
+    count.bytes += drawn.level_set.bytes();
+  }
+  for (const auto& [entry, space] : level_set_spaces_) count.bytes += space.patches->figures().bytes;
+  return count;
+}
+
 render::Frame View::make_frame() {
   const double time = built_.world.time();
   return make_frame({time, time, 1.0, built_.world.bodies()});

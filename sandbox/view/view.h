@@ -38,6 +38,10 @@ class View {
   /// The picture of the world as it is now.
   render::Frame make_frame();
 
+  /// Level sets that the overlay of that name has made, of what is in the last frame, and kept triangles'
+  /// work.
+  world::PartCount level_sets() const;
+
  private:
   struct DrawnShape {
     std::shared_ptr<const body::Shape> shape;  // kept, so that its address is not used again

@@ -185,6 +185,14 @@ TEST_CASE("the overlay level_set cuts solids open towards the eye and shows thei
   }
   CHECK(deepest == Approx(-100.0F).margin(3.0F));  // mm: half of the least side
   CHECK(worst < 3.5F);                             // a fifth of a cell of 15.6 mm
+  CHECK(view.level_sets().count == 1);
+  CHECK(view.level_sets().bytes > 1e5);
+  auto plain = *reading.scene;
+  plain.render.overlay = "stress";
+  view::View without(plain, *built);
+  CHECK(without.make_frame().draws.size() == 2);
+  CHECK(without.level_sets().count == 0);
+  CHECK(without.level_sets().bytes == 0.0);
   // The same cut is the same mesh.
   CHECK(view.make_frame().draws[0].mesh.get() == solid.mesh.get());
 }
