@@ -1,6 +1,6 @@
 // The signed distance to a closed surface on a uniform grid, [BHTF07] sec. VII, [GBF03]: what each triangle
 // gives to the nodes near it (triangle_patch.h), sides by the regions that the surface leaves of the grid,
-// and farther away by fast sweeping [Zhao 2004].
+// and farther away the nearest triangle handed on from node to node by sweeping [Tsai02].
 #pragma once
 
 #include <memory>

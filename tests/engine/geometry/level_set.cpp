@@ -30,13 +30,6 @@ TriangleMesh turned(TriangleMesh mesh) {
 }
 
 std::vector<Gridded> gridded_shapes() {
-  TriangleMesh star = make_sphere(1.0, fine(0.3)).value();
-  core::Random random(3, 3);
-  for (Vec3& p : star.positions) p *= random.uniform(0.07, 0.1);
-  TriangleMesh hollow = make_sphere(0.1, fine(0.03)).value();
-  TriangleMesh inner = make_sphere(0.07, fine(0.03)).value();
-  for (Triangle& t : inner.triangles) std::swap(t[1], t[2]);
-  append(hollow, inner);
   TriangleMesh two = make_box_surface(Vec3(0.1, 0.1, 0.1));
   append(two, turned(make_box_surface(Vec3(0.05, 0.02, 0.03))));
   return {{"sphere", make_sphere(0.1, fine(0.02)).value()},
@@ -44,12 +37,12 @@ std::vector<Gridded> gridded_shapes() {
           {"turned box", turned(make_box_surface(Vec3(0.1, 0.07, 0.05)))},
           {"torus", make_torus(0.1, 0.03, fine(0.02)).value()},
           {"thin plate", turned(make_box_surface(Vec3(0.1, 0.1, 0.0005)))},
-          {"star", star},
-          {"hollow", hollow},
+          {"star", make_star()},
+          {"hollow", make_hollow_ball()},
           {"two boxes", two}};
 }
 
-/// How often the surface goes round p: solid angles of its triangles [Van Oosterom and Strackee 1983].
+/// How often the surface goes round p: solid angles of its triangles [VOS83].
 double winding_number(const TriangleMesh& surface, const Vec3& p) {
   double sum = 0.0;
   for (const Triangle& t : surface.triangles) {

@@ -32,21 +32,14 @@ struct Shape {
 std::vector<Shape> shapes() {
   OrnamentSizes ornament;
   ornament.has_cap = true;
-  TriangleMesh star = make_sphere(1.0, fine(0.2)).value();
-  core::Random random(3, 3);
-  for (Vec3& p : star.positions) p *= random.uniform(0.07, 0.1);
-  TriangleMesh hollow = make_sphere(0.1, fine(0.02)).value();
-  TriangleMesh inner = make_sphere(0.07, fine(0.02)).value();
-  for (Triangle& t : inner.triangles) std::swap(t[1], t[2]);
-  append(hollow, inner);
   return {{"sphere", make_sphere(0.1, fine(0.01)).value(), 0.025},
           {"coarse sphere", make_sphere(0.1, fine(0.08)).value(), 0.02},
           {"box", make_box_surface(Vec3(0.1, 0.07, 0.05)), 0.025},
           {"torus", make_torus(0.1, 0.03, fine(0.01)).value(), 0.015},
           {"ornament", make_ornament(ornament, fine(0.004)).value().mesh, 0.01},
           {"plate", make_box_surface(Vec3(0.1, 0.1, 0.002)), 0.02},
-          {"star", star, 0.02},
-          {"hollow", hollow, 0.03}};
+          {"star", make_star(), 0.02},
+          {"hollow", make_hollow_ball(), 0.03}};
 }
 
 bool contains(const TetMesh& mesh, const Tetrahedron& t, const Vec3& p) {

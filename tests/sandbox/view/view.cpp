@@ -14,6 +14,20 @@
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
 
+namespace {
+
+std::optional<scene::BuiltScene> build(const scene::Reading& reading) {
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  auto built = scene::build_world(*reading.scene, problems);
+  INFO(scene::describe(problems));
+  REQUIRE(built.has_value());
+  return built;
+}
+
+}  // namespace
+
 TEST_CASE("a body's pose, mesh and look arrive in the frame") {
   const auto reading = scene::read(
       "[[body]]\nkind = \"plane\"\nposition = [0, 0.25, 0]\n"
@@ -21,12 +35,7 @@ TEST_CASE("a body's pose, mesh and look arrive in the frame") {
       "[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 0.2\nposition = [0, 1, 0]\nedge_length = "
       "0.1\n"
       "look = \"glossy\"\ncolour = \"#ff0000\"\nbreakable = false\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  INFO(scene::describe(problems));
-  REQUIRE(built.has_value());
+  const auto built = build(reading);
   view::View view(*reading.scene, *built);
   const render::Frame frame = view.make_frame();
   REQUIRE(frame.ground.has_value());
@@ -157,12 +166,7 @@ TEST_CASE("the overlay level_set cuts solids open towards the eye and shows thei
       "[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 0.2\nposition = [2, 1, 0]\nedge_length = "
       "0.1\nbreakable = false\n"
       "[camera]\nposition = [0, 1.1, 3]\ntarget = [0, 1, 0]\n[render]\noverlay = \"level_set\"\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  INFO(scene::describe(problems));
-  REQUIRE(built.has_value());
+  const auto built = build(reading);
   view::View view(*reading.scene, *built);
   const render::Frame frame = view.make_frame();
   REQUIRE(frame.draws.size() == 2);
