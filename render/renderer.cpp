@@ -156,8 +156,10 @@ struct Renderer::Rooms {
   }
 
   void draw(PassClock& clock, bool has_wires) {
-    if (values.sun_radiance.w > 0.0F) shadow.run(meshes, values);
-    clock.mark("shadow");
+    if (values.sun_radiance.w > 0.0F) {
+      shadow.run(meshes, values);
+      clock.mark("shadow");
+    }
     if (!changes.bodies().is_none()) surface.run(meshes, tiles, changes);
     const bool has_glass = tiles.glass().count > 0;
     // Its layers are right all over once there are any.
@@ -174,10 +176,14 @@ struct Renderer::Rooms {
     meshes.bind_paints();
     light.run(surface.opaque(), drawn, tiles, meshes.pattern_kinds(), values.ground_colour.w > 0.0F);
     clock.mark("light");
-    if (has_glass) glass.run(surface, drawn, tiles, meshes.pattern_kinds());
-    clock.mark("glass");
-    if (has_wires) wires.run(meshes, surface.opaque(), drawn);
-    clock.mark("wires");
+    if (has_glass) {
+      glass.run(surface, drawn, tiles, meshes.pattern_kinds());
+      clock.mark("glass");
+    }
+    if (has_wires) {
+      wires.run(meshes, surface.opaque(), drawn);
+      clock.mark("wires");
+    }
   }
 
   void read_back() {

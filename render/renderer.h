@@ -22,7 +22,7 @@ struct Size {
   int width = 640, height = 360;
 };
 
-// What each pass of the last frame cost; only filled while timing is on (it waits after every pass).
+// What each pass that the last frame had cost; only filled while timing is on (it waits after every pass).
 struct PassTimes {
   struct Pass {
     std::string name;

@@ -155,8 +155,6 @@ Json times(const RunRecord& record) {
     render.push_back(f.render);
     encode.push_back(f.encode);
   }
-  Json stages = Json::object();
-  for (const auto& [name, values] : record.stages) stages[name] = make_spread(values);
   Json phases = Json::object();
   for (const Phase& phase : phases_of(record.frames)) {
     Json entry = {{"frames", phase.frame_times.size()}};
@@ -169,7 +167,8 @@ Json times(const RunRecord& record) {
           {"simulate", make_spread(simulate)},
           {"render", make_spread(render)},
           {"encode", make_spread(encode)},
-          {"stages", stages},
+          {"stages", make_spreads(record.stages)},
+          {"passes", make_spreads(record.passes)},
           {"phases", phases}};
 }
 
@@ -262,6 +261,12 @@ Json make_json(const RunRecord& record) {
   json["warnings"] = record.warnings;
   if (!record.trace.rows.empty()) json["trace"] = make_trace(record.trace);
   return json;
+}
+
+Json make_spreads(const TimesByName& times) {
+  Json spreads = Json::object();
+  for (const auto& [name, values] : times) spreads[name] = make_spread(values);
+  return spreads;
 }
 
 std::string write_report(const std::string& path, const std::vector<const RunRecord*>& shots) {

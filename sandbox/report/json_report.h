@@ -17,6 +17,9 @@ nlohmann::ordered_json make_json(const RunRecord& record);
 /// {"median", "p95", "max"}.
 nlohmann::ordered_json make_spread(const std::vector<double>& values);
 
+/// Each by its name.
+nlohmann::ordered_json make_spreads(const TimesByName& times);
+
 /// Writes it beside its name and renames it; of several shots of one film a list of theirs. A sentence if
 /// that fails, else empty.
 std::string write_report(const std::string& path, const std::vector<const RunRecord*>& shots);

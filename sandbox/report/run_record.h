@@ -14,6 +14,9 @@
 
 namespace shatterbox::sandbox::report {
 
+/// ms in each frame, by the name of what took them.
+using TimesByName = std::vector<std::pair<std::string, std::vector<double>>>;
+
 /// One frame: 1/fps of simulated time. Times are wall clock, ms.
 struct FrameRecord {
   double frame = 0.0;     // between finished frames
@@ -42,8 +45,8 @@ struct RunRecord {
   long triangles_end = 0;
   world::WorldReport world;
   std::vector<FrameRecord> frames;
-  std::vector<std::pair<std::string, std::vector<double>>>
-      stages;                                        // ms in each frame, in the order of the step
+  TimesByName stages;                                // in the order of the step
+  TimesByName passes;                                // of drawing, in their order, if they were timed
   std::vector<std::pair<std::string, double>> load;  // ms
   std::vector<std::string> used, idle, left_out;     // parts of the program
   std::vector<world::PartCount> inventory;           // at the end

@@ -68,6 +68,7 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   job.painter.back_end = parse_back_end(options.gl, problems);
   job.painter.frames_per_second = options.frames_per_second;
   job.painter.video = job.options.video;
+  job.painter.has_pass_times = !options.report.empty();
   job.painter.frames_folder = options.frames_folder;
   job.painter.truth_folder = options.truth_folder;
   const bool has_folder = !options.frames_folder.empty() || !options.truth_folder.empty();

@@ -1,5 +1,6 @@
 #include "sandbox/run/painter.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <condition_variable>
@@ -32,14 +33,6 @@ struct Waiting {
   std::vector<std::vector<render::Frame>> panels;  // of each the samples
   int number = 0;
 };
-
-render::Image expose(render::Renderer& renderer, const std::vector<render::Frame>& samples) {
-  if (samples.size() == 1) return renderer.render(samples.front());
-  render::LightSum sum;
-  // Backwards: the truth is of what was drawn last, and its moment is the first.
-  for (std::size_t i = samples.size(); i-- > 0;) sum.add(renderer.render(samples[i]));
-  return sum.mean();
-}
 
 /// In how many columns panels stand beside each other.
 int columns_of(int panels) {
@@ -101,6 +94,11 @@ struct Painter::Room {
     changed.notify_all();
   }
 
+  /// A frame is over: those that had none of a pass, spent none.
+  void fill_passes() {
+    for (auto& [name, times] : painted.passes) times.resize(painted.numbers.size(), 0.0);
+  }
+
   std::optional<Waiting> next() {
     std::unique_lock lock(mutex);
     changed.wait(lock, [this] { return !waiting.empty() || is_ending; });
@@ -142,6 +140,30 @@ struct Painter::Room {
     return status.ok();
   }
 
+  render::Image draw(render::Renderer& renderer, const render::Frame& frame) {
+    render::Image image = renderer.render(frame);
+    const std::size_t number = painted.numbers.size();
+    auto next = painted.passes.begin();  // where a pass that no frame had yet has its place
+    for (const auto& pass : renderer.pass_times().passes) {
+      auto times = std::find_if(painted.passes.begin(), painted.passes.end(),
+                                [&pass](const auto& named) { return named.first == pass.name; });
+      if (times == painted.passes.end())
+        times = painted.passes.insert(next, {pass.name, std::vector<double>()});
+      times->second.resize(number + 1, 0.0);
+      times->second[number] += pass.wall_ms;
+      next = times + 1;
+    }
+    return image;
+  }
+
+  render::Image expose(render::Renderer& renderer, const std::vector<render::Frame>& samples) {
+    if (samples.size() == 1) return draw(renderer, samples.front());
+    render::LightSum sum;
+    // Backwards: the truth is of what was drawn last, and its moment is the first.
+    for (std::size_t i = samples.size(); i-- > 0;) sum.add(draw(renderer, samples[i]));
+    return sum.mean();
+  }
+
   void paint() {
     const auto start = Clock::now();
     std::vector<render::Renderer> renderers;  // of each panel, so that each keeps what has not changed
@@ -155,6 +177,7 @@ struct Painter::Room {
       const auto& [panels, number] = *waited;
       if (painted.start == 0.0) {  // compiles the shaders for this processor; not a frame's cost
         for (std::size_t i = 0; i < panels.size(); ++i) (void)renderers[i].render(panels[i].front());
+        for (render::Renderer& renderer : renderers) renderer.set_timing(settings.has_pass_times);
         painted.start = milliseconds_since(start);
         last = Clock::now();
       }
@@ -173,6 +196,7 @@ struct Painter::Room {
       painted.encode.push_back(encoder - encoded + (has_files ? milliseconds_since(written) : 0.0));
       encoded = encoder;
       painted.frame.push_back(milliseconds_since(last));
+      fill_passes();
       last = Clock::now();
       finished.store(static_cast<int>(painted.numbers.size()));
       const std::lock_guard lock(mutex);

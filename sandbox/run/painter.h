@@ -11,6 +11,7 @@
 #include "engine/core/hash.h"
 #include "render/frame/frame.h"
 #include "render/renderer.h"
+#include "sandbox/report/run_record.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -26,10 +27,11 @@ struct PainterSettings {
   render::BackEnd back_end = render::BackEnd::usual;
   int panels = 1;  // pictures of that size beside each other; four: in two rows
   int frames_per_second = 60;
-  std::string video;          // empty: none
-  std::string frames_folder;  // empty: none
-  std::string truth_folder;   // empty: none
-  std::vector<Picture> kept;  // what an earlier run has drawn and written already
+  std::string video;            // empty: none
+  std::string frames_folder;    // empty: none
+  std::string truth_folder;     // empty: none
+  bool has_pass_times = false;  // times each pass, which then waits for the one before it
+  std::vector<Picture> kept;    // what an earlier run has drawn and written already
 };
 
 /// What became of the frames that were added, after those that were kept; times in ms, in the order of the
@@ -38,7 +40,8 @@ struct Painted {
   std::vector<int> numbers;  // of the frames
   std::vector<std::uint64_t> hashes;
   std::vector<double> frame, render, encode;
-  double start = 0.0;  // making the renderer and the warm-up picture
+  report::TimesByName passes;  // of drawing, if they were timed; 0 in frames that had none of it
+  double start = 0.0;          // making the renderer and the warm-up picture
   std::string gl_renderer;
 };
 

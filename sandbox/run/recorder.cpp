@@ -61,6 +61,11 @@ void Recorder::note_pictures(const Painted& painted, int first) {
     frame.frame = std::max(painted.frame[i] - frame.audit, 0.0);
     frame.render = painted.render[i];
     frame.encode = painted.encode[i];
+    for (std::size_t pass = 0; pass < painted.passes.size(); ++pass) {
+      const auto& [name, times] = painted.passes[pass];
+      if (pass == record.passes.size()) record.passes.emplace_back(name, std::vector<double>());
+      record.passes[pass].second.push_back(times[i]);
+    }
   }
 }
 

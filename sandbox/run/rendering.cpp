@@ -57,6 +57,7 @@ PainterSettings painter_settings(const RenderOptions& options, const recording::
   settings.video = options.video;
   settings.frames_folder = options.pictures_folder;
   settings.truth_folder = options.truth_folder;
+  settings.has_pass_times = !options.report.empty();
   if (settings.panels > 1 && !options.truth_folder.empty())
     scene::book(problems, scene::Place{"--truth", 0, 0}, "holds one world, and this recording shows several",
                 "leave it out");
@@ -94,6 +95,7 @@ std::string write_rendering(const RenderOptions& options, const RecordingReader&
   json["time_ms"] = {{"frame", report::make_spread(painted.frame)},
                      {"render", report::make_spread(painted.render)},
                      {"encode", report::make_spread(painted.encode)},
+                     {"passes", report::make_spreads(painted.passes)},
                      {"start", painted.start}};
   return report::write_text(options.report, json.dump(1) + "\n");
 }

@@ -43,6 +43,7 @@ RunRecord some_record() {
     frame.awake = i == 3 ? 0 : 1;
     record.frames.push_back(frame);
   }
+  record.passes.push_back({"shadow", {3.0, 1.0, 1.0, 0.0}});
   record.stages.push_back({"motion", {1.0, 2.0, 3.0, 4.0}});
   record.load.emplace_back("meshes", 5.0);
   return record;
@@ -78,7 +79,7 @@ TEST_CASE("the report has the fields of its description, by name") {
     CHECK(json["audit"].contains(name));
   for (const char* name : {"most", "failsafe_steps", "frozen_share", "least_gap"})
     CHECK(json["contact"].contains(name));
-  for (const char* name : {"frame", "simulate", "render", "encode", "stages", "phases"}) {
+  for (const char* name : {"frame", "simulate", "render", "encode", "stages", "passes", "phases"}) {
     CHECK(json["time_ms"].contains(name));
   }
   for (const char* name : {"before", "impact", "breaking", "after", "busy", "rest"}) {
@@ -88,6 +89,7 @@ TEST_CASE("the report has the fields of its description, by name") {
   }
   CHECK(json["merged"]["count"] == 2);
   CHECK(json["time_ms"]["stages"]["motion"]["median"] == 2.5);
+  CHECK(json["time_ms"]["passes"]["shadow"]["max"] == 3.0);
 }
 
 TEST_CASE("the audit's findings are in the report and in the closing words") {
