@@ -27,18 +27,25 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 r = 2.0 * dot(n, v) * n - v;
   float once = schlick(0.04, n_dot_v);
   float mirror = 2.0 * once / (1.0 + once);  // both faces
-  vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 2.4 * room_windows(r));
+  float sharp = 1.0 - smoothstep(0.05, 0.25, s.roughness);  // frosted glass mirrors no window
+  vec3 light = surroundings(r, s.roughness) + sky_radiance.rgb * (sky_radiance.w * 3.0 * sharp * room_windows(r));
   // A pane is flat: it shows one small part of a lamp, all over. Pressed, so that it stays a film over what is behind.
   light /= 1.0 + 0.5 * max(light.r, max(light.g, light.b));
   vec3 h = normalize(sun.xyz + v);
   float n_dot_l = max(dot(n, sun.xyz), 0.0);
-  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(n, h), 0.0), max(s.roughness, 0.12)) * 0.008;
-  vec3 haze = s.colour * ambient(n) * (0.06 + (1.0 - s.transmission));
-  add += weight * (mirror * light + glance + haze);
+  vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(n, h), 0.0), max(s.roughness, 0.12)) * 0.03;
+  // What does not go through scatters, of the sun's light too, from whichever side it comes.
+  float dull = 1.0 - s.transmission;
+  vec3 haze = s.colour * (ambient(n) * (0.05 + dull) + sun_radiance.rgb * (0.22 * dull * (0.4 + abs(dot(n, sun.xyz)))));
   // The way through is longer at a slant; as an exponent of the tint that is 1 to 4, by squaring.
   float slant = min(1.0 / n_dot_v, 4.0) - 1.0;
   vec3 tint = s.colour * mix(vec3(1.0), s.colour * s.colour * s.colour, slant / 3.0);
-  keep -= weight * (1.0 - s.transmission * (1.0 - mirror) * tint);
+  // Towards its outline the wall is seen lengthwise: what shines through comes from aside, out of the dark of the room or
+  // from a lamp. By these lines clear glass is told from air on a pale ground.
+  float bent = sharp * smoothstep(0.55, 0.15, dot(n, v));
+  vec3 aside = tint * tint * surroundings(normalize(n - 0.4 * v), 0.2) * 0.3;
+  add += weight * (mirror * light + glance + haze + bent * (1.0 - mirror) * s.transmission * aside);
+  keep -= weight * (1.0 - s.transmission * (1.0 - mirror) * (1.0 - 0.9 * bent) * tint);
 }
 
 #else
@@ -47,7 +54,7 @@ void add_rim(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 v = normalize(eye_exposure.xyz - s.position);
   vec3 r = 2.0 * dot(s.normal, v) * s.normal - v;
   vec3 gathered = ambient(s.normal) * 0.6 + sun_radiance.rgb * (0.04 + 0.5 * dot(s.normal, sun.xyz) * dot(s.normal, sun.xyz));
-  bool is_crack = s.roughness > 0.1;
+  bool is_crack = s.coat < 0.0;
   vec3 light = s.colour * (is_crack ? vec3(1.0) : vec3(0.18, 0.42, 0.33)) * gathered + 0.1 * surroundings(r, 0.15);
   float through = is_crack ? 0.3 : 0.45;
   add += weight * light;

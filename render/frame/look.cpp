@@ -65,16 +65,17 @@ Look glass(glm::vec3 tint) {
 
 Look frosted_glass(glm::vec3 tint) {
   Look look = glass(tint);
-  look.roughness = look.inside_roughness = 0.09F;  // more is a crack's, as glass.frag tells them apart
-  look.transmission = 0.35F;
+  look.roughness = look.inside_roughness = 0.5F;
+  look.transmission = 0.45F;
   return look;
 }
 
 Look stone(glm::vec3 colour) {
   Look look = matt(colour);
-  look.crack = glm::mix(colour, glm::vec3(0.7F), 0.35F);
-  look.pattern = Pattern::speckle;
-  look.pattern_colour = 0.6F * colour;
+  look.crack = glm::mix(1.25F * colour, glm::vec3(0.7F), 0.1F);
+  look.crack_roughness = 0.95F;
+  look.pattern = Pattern::clouds;
+  look.pattern_colour = 0.58F * colour;
   return look;
 }
 

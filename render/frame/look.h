@@ -12,6 +12,8 @@ enum class Pattern : std::uint8_t {
   rings,    // an ornament's belt about the y axis: two rings with diamonds between them, `pattern_size` high
   speckle,  // stoneware: small dots, about `pattern_size` apart
   checker,  // cubes of `pattern_size`
+  clouds,   // smooth noise of three grains, the largest `pattern_size` across: stone, clay, ice; on crack
+            // faces too
 };
 
 struct Look {

@@ -155,7 +155,8 @@ class Simplifier {
   Ring ring_of(std::uint32_t v) const {
     Ring ring;
     const std::vector<std::uint32_t>& fan = fans_[v];
-    std::array<std::array<std::uint32_t, 2>, 24> edges;  // of the fan, opposite to v, in the triangles' sense
+    std::array<std::array<std::uint32_t, 2>, 24>
+        edges{};  // of the fan, opposite to v, in the triangles' sense
     if (fan.size() > edges.size()) return ring;
     const Triangle& first = triangles_[fan.front()];
     const glm::vec3 normal = first.normal[static_cast<std::size_t>(first.corner_of(v))];

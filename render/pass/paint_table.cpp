@@ -16,6 +16,7 @@ struct PaintRow {
   glm::vec4 paint, finish, pattern, place;
 };
 constexpr float kHeatMap = 8.0F, kGroups = 9.0F;  // pattern kinds of their own
+constexpr float kScattering = -1.0F;  // in place of a coat: the broken rim of glass, as glass.frag reads it
 constexpr int kRowsAbreast = 256;
 constexpr std::size_t kFloats = sizeof(PaintRow) / sizeof(float);
 constexpr std::array<Face, 3> kFaces = {Face::outside, Face::inside, Face::crack};
@@ -41,7 +42,10 @@ PaintRow to_paint(const Look& look, Face face) {
       break;
     case Face::crack:  // rims of glass scatter
       row.paint = glm::vec4(look.crack, look.crack_roughness);
-      row.finish = {0.0F, 0.0F, 0.1F, 0.25F * look.transmission};
+      row.finish = {0.0F, look.transmission > 0.0F ? kScattering : 0.0F, 0.1F, 0.25F * look.transmission};
+      if (look.pattern == Pattern::clouds)
+        row.pattern = glm::vec4(look.crack * look.pattern_colour / glm::max(look.outside, glm::vec3(0.01F)),
+                                static_cast<float>(look.pattern));
       break;
   }
   return row;
@@ -63,14 +67,15 @@ void lay_over(PaintRow& row, const Draw& draw, const Overlay& overlay, Face face
   if (overlay.kind == OverlayKind::pieces && draw.colour_index != Draw::kNoColour) {
     const glm::vec3 own = piece_colour(draw.colour_index);
     row.paint = glm::vec4(face == Face::crack ? glm::mix(own, glm::vec3(0.85F), 0.7F) : own, 0.5F);
-    row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.0F};
+    row.finish = {0.0F, 0.4F * std::max(row.finish.y, 0.0F), std::max(row.finish.z, 0.1F), 0.0F};
     row.pattern.w = 0.0F;
   }
   const bool is_groups = overlay.kind == OverlayKind::groups;
   const bool has_scalars = overlay.kind == OverlayKind::heat || is_groups;
   if (has_scalars && draw.scalars != nullptr && face != Face::crack) {
     row.paint.w = 0.5F;
-    row.finish = {0.0F, 0.4F * row.finish.y, std::max(row.finish.z, 0.1F), 0.5F * row.finish.w};
+    row.finish = {0.0F, 0.4F * std::max(row.finish.y, 0.0F), std::max(row.finish.z, 0.1F),
+                  0.5F * row.finish.w};
     row.pattern.w = is_groups ? kGroups : kHeatMap;
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kAfterBreak = 0.25;  // s: pieces are on their way
+constexpr const char* kBegin = "begin.png";
+constexpr const char* kTelling = "broken.png";
+constexpr const char* kEnd = "end.png";
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -61,21 +65,34 @@ long count_pictures(const nlohmann::json& report) {
   return count;
 }
 
-/// Writes two of the film's pictures. A sentence if that fails.
+/// Writes three of the film's pictures: what is there, what happens to it, what becomes of it. A sentence if
+/// that fails.
 std::string take_stills(const Exhibit& exhibit) {
   const long last = count_pictures(exhibit.report) - 1, telling = telling_frame(exhibit.report, last + 1);
   render::VideoReader film(exhibit.folder / "film.mp4");
   std::optional<render::Image> picture, end;
   for (long number = 0; (picture = film.next()); ++number) {
-    if (number == telling)
-      if (const auto status = render::write_png(exhibit.folder / "broken.png", *picture); !status)
-        return status.error;
+    for (const auto& [name, at] : {std::pair(kBegin, 0L), std::pair(kTelling, telling)})
+      if (number == at)
+        if (const auto status = render::write_png(exhibit.folder / name, *picture); !status)
+          return status.error;
     end = std::move(picture);
   }
   if (!film.status()) return film.status().error;
   if (!end) return "there is no picture in it";
-  const auto status = render::write_png(exhibit.folder / "end.png", *end);
+  const auto status = render::write_png(exhibit.folder / kEnd, *end);
   return status ? std::string() : status.error;
+}
+
+/// What drawing a frame took, pass by pass, that of the median frame.
+std::string passes_of(const nlohmann::json& shot) {
+  const auto passes = shot["time_ms"].find("passes");
+  if (passes == shot["time_ms"].end() || passes->empty()) return {};
+  std::string text;
+  for (const auto& [name, spread] : passes->items())
+    if (const double median = spread.value("median", 0.0); median >= 0.05)
+      text += fmt::format("{}{} {:.1f}", text.empty() ? "; of drawing " : ", ", name, median);
+  return text.empty() ? text : text + " ms";
 }
 
 std::string numbers_of(const nlohmann::json& shot) {
@@ -85,13 +102,14 @@ std::string numbers_of(const nlohmann::json& shot) {
     return frame.contains(key) && frame[key].is_number() ? frame[key].get<double>() : 0.0;
   };
   return fmt::format(
-      "{} of {}, {} triangles at most, {}; {:.3g} s of film in {:.3g} s; a frame {:.1f} "
-      "ms "
-      "(median; worst {:.0f})",
-      scene::counted(shot.value("pieces", 0L), "piece"),
-      scene::counted(static_cast<long>(shot["breaks"].size()), "break"), shot["triangles"].value("max", 0L),
-      scene::counted(shot.value("steps", 0L), "step"), number("video_seconds"), number("wall_seconds"),
-      of_frame("median"), of_frame("max"));
+             "{} of {}, {} triangles at most, {}; {:.3g} s of film in {:.3g} s; a frame {:.1f} "
+             "ms "
+             "(median; worst {:.0f})",
+             scene::counted(shot.value("pieces", 0L), "piece"),
+             scene::counted(static_cast<long>(shot["breaks"].size()), "break"),
+             shot["triangles"].value("max", 0L), scene::counted(shot.value("steps", 0L), "step"),
+             number("video_seconds"), number("wall_seconds"), of_frame("median"), of_frame("max")) +
+         passes_of(shot);
 }
 
 std::string entry_of(const Exhibit& exhibit, const std::string& fault) {
@@ -103,10 +121,11 @@ std::string entry_of(const Exhibit& exhibit, const std::string& fault) {
   if (fault.empty()) {
     std::error_code ignored;
     const auto bytes = fs::file_size(exhibit.folder / "film.mp4", ignored);
-    for (const char* picture : {"broken.png", "end.png"})
-      text += fmt::format("<a href=\"{0}/film.mp4\"><img src=\"{0}/{1}\" alt=\"{2}\"></a>\n",
+    for (const char* picture : {kBegin, kTelling, kEnd})
+      text += fmt::format("<a href=\"{0}/{1}\"><img src=\"{0}/{1}\" alt=\"{2}\"></a>\n",
                           escaped(place.string()), picture, escaped(exhibit.name));
-    text += fmt::format("<p>film.mp4, {:.2f} MB</p>\n", static_cast<double>(bytes) / 1e6);
+    text += fmt::format("<p><a href=\"{}/film.mp4\">film.mp4</a>, {:.2f} MB</p>\n", escaped(place.string()),
+                        static_cast<double>(bytes) / 1e6);
   } else {
     text += fmt::format("<p>no pictures: {}</p>\n", escaped(fault));
   }
@@ -126,7 +145,7 @@ constexpr const char* kHead = R"(<!doctype html>
 body { font: 16px/1.4 sans-serif; margin: 2em auto; max-width: 1320px; padding: 0 1em; background: #fafaf8; color: #222; }
 section { margin-bottom: 2.5em; }
 h2 { margin: 0; }
-img { width: 49%; border-radius: 4px; }
+img { width: 32.8%; border-radius: 4px; }
 p { margin: 0.3em 0; }
 .numbers { color: #666; font-size: 14px; }
 </style>

@@ -1,5 +1,6 @@
 #include "sandbox/view/looks.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace shatterbox::sandbox::view {
@@ -48,15 +49,20 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   }
   if (name == "ceramic") return render::ceramic(paint(0x2f6f86));
   if (name == "porcelain") {
-    render::Look look = render::ceramic(paint(0xf2efe8));
+    render::Look look = render::ceramic(paint(0xe4e3df));  // darker than white, so that gloss is seen on it
     look.inside = look.outside;
+    look.clear_coat_roughness = 0.04F;
     look.crack = hex(0xfbfaf5);
     look.clear_coat = 1.0F;
     return look;
   }
   if (name == "steel") return render::metal(paint(0xc9ccd1), 0.22F);
   if (name == "aluminium") return render::metal(paint(0xd9dbdc), 0.35F);
-  if (name == "terracotta") return render::matt(paint(0xb9613f));
+  if (name == "terracotta") {
+    render::Look look = render::stone(paint(0xae6243));
+    look.pattern_colour = 0.82F * look.outside;
+    return look;
+  }
   if (name == "wood") {
     render::Look look = render::matt(paint(0x6f4a2c));
     look.crack = hex(0xd2a877);
@@ -68,7 +74,14 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   if (name == "concrete") return render::stone(paint(0x9d9a94));
   if (name == "brick") return render::stone(paint(0xa2543b));
   if (name == "plaster") return render::matt(paint(0xebe6da));
-  if (name == "ice") return render::glass(paint(0xdff1fb));
+  if (name == "ice") {  // clear, with clouds of bubbles and snow on what is broken
+    render::Look look = render::glass(paint(0xcfe6f2));
+    look.transmission = 0.8F;
+    look.pattern = render::Pattern::clouds;
+    look.pattern_colour = hex(0xf4fafd);
+    look.crack = hex(0xeaf4f9);
+    return look;
+  }
   if (name == "eggshell") return render::matt(paint(0xe9d3b8));
   if (name == "glossy") return render::glossy_paint(paint(0x2a6fb0));
   return render::matt(paint(0xb9b4aa));
@@ -101,6 +114,10 @@ std::vector<render::Look> make_looks(const std::string& name, const std::optiona
     look.pattern = render::Pattern::speckle;
     look.pattern_colour = 0.55F * look.outside;
     look.pattern_size = static_cast<float>(0.05 * size);
+  } else if (look.pattern == render::Pattern::clouds) {
+    // Stone and clay have grains of their own size; those of ice are as large as the block that froze.
+    const double grain = name == "concrete" ? 0.07 : name == "ice" ? 0.3 * size : 0.04;
+    look.pattern_size = static_cast<float>(std::min(grain, 0.4 * size));
   }
   return {look, neck, metal, metal};
 }

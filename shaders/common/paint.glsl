@@ -40,6 +40,21 @@ float cell_noise(vec3 cell) {
   return float(h >> 8) * (1.0 / 16777216.0);
 }
 
+#if PATTERNS & 16
+// Smooth, 0 to 1, a grain about 1 across.
+float grains(vec3 p) {
+  vec3 cell = floor(p), f = p - cell;
+  vec3 w = f * f * (3.0 - 2.0 * f);
+  vec4 near = vec4(cell_noise(cell), cell_noise(cell + vec3(1, 0, 0)), cell_noise(cell + vec3(0, 1, 0)),
+                   cell_noise(cell + vec3(1, 1, 0)));
+  vec4 far = vec4(cell_noise(cell + vec3(0, 0, 1)), cell_noise(cell + vec3(1, 0, 1)), cell_noise(cell + vec3(0, 1, 1)),
+                  cell_noise(cell + vec3(1, 1, 1)));
+  vec4 c = mix(near, far, w.z);
+  vec2 d = mix(c.xy, c.zw, w.y);
+  return mix(d.x, d.y, w.x);
+}
+#endif
+
 // The share of the pattern's colour; p in pattern sizes, width of a pixel there.
 float pattern_share(int kind, vec3 p, float width) {
 #if PATTERNS & 2
@@ -57,6 +72,13 @@ float pattern_share(int kind, vec3 p, float width) {
     float size = cell_noise(cell + 17.0);
     vec3 shift = vec3(cell_noise(cell), cell_noise(cell + 5.0), size) - 0.5;
     return 0.85 * covered(length(fract(p) - 0.5 - 0.4 * shift) - 0.32 * size, max(width, 0.02));
+  }
+#endif
+#if PATTERNS & 16
+  if (kind == 4) {  // clouds; grains finer than a pixel become their mean
+    vec3 shown = clamp(vec3(1.5, 1.5, 1.5) - 1.5 * width * vec3(1.0, 4.3, 17.0), 0.0, 1.0);
+    vec3 n = vec3(grains(p), grains(p.zxy * 4.3 + 7.0), grains(p.yzx * 17.0 + 3.0)) - 0.5;
+    return smoothstep(-0.24, 0.24, dot(n, shown * vec3(0.42, 0.34, 0.4)));
   }
 #endif
   vec3 s = (abs(fract(p * 0.5) - 0.5) - 0.25) * 2.0;  // checker
@@ -106,6 +128,9 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
     float share = kind >= 8 ? 0.0 : pattern_share(kind, (vec3(xy, z_scalar.x) - place.xyz) / place.w, width);
     s.colour = mix(s.colour, pattern.rgb, share);
     s.metalness = mix(s.metalness, fract(pattern.a) * 2.0, share);
+#if PATTERNS & 16
+    s.transmission *= kind == 4 ? 1.0 - 0.75 * share : 1.0;  // clouded ice
+#endif
 #if PATTERNS & 256
     s.colour = kind == 8 ? heat_colour(z_scalar.y) : s.colour;
 #endif

@@ -37,9 +37,9 @@ vec3 shade(Surface s, vec2 pixel) {
   light += mirrored * around_base * sky_mirrored;
   light += sunlight * glint(n_dot_l, n_dot_v, n_dot_h, s.roughness) * f0;
 
-  float coat = s.coat * schlick(0.05, n_dot_v);
+  float coat = max(s.coat, 0.0) * schlick(0.05, n_dot_v);
   light *= 1.0 - coat;
   light += coat * around * sky_mirrored;
-  light += sunlight * s.coat * schlick(0.05, v_dot_h) * glint(n_dot_l, n_dot_v, n_dot_h, s.coat_roughness);
+  light += sunlight * max(s.coat, 0.0) * schlick(0.05, v_dot_h) * glint(n_dot_l, n_dot_v, n_dot_h, s.coat_roughness);
   return light;
 }

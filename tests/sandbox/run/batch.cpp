@@ -103,7 +103,7 @@ TEST_CASE("Ctrl-C ends a batch in order, and it goes on where it was") {
     CHECK(count_frames(folder, std::string("out/good_scene.seed=") + seed + "/film.mp4") == 300);
 }
 
-TEST_CASE("a gallery shows two pictures of each film, its goal and its numbers") {
+TEST_CASE("a gallery shows three pictures of each film, its goal and its numbers") {
   const Folder folder;
   folder.write("balls.toml", kSmallScene);
   folder.write("odd & ends.toml", kSmallScene);
@@ -119,7 +119,8 @@ TEST_CASE("a gallery shows two pictures of each film, its goal and its numbers")
     CHECK(fs::exists(folder / "b" / file));
     ++pictures;
   }
-  CHECK(pictures == 4);
+  CHECK(pictures == 6);
+  CHECK(page.find("; of drawing ") != std::string::npos);
   // What makes no film is told without pictures.
   REQUIRE(program(folder, "batch balls.toml -o c --gallery -- --seconds 0.1 --no-render").status == 0);
   CHECK(read_text(folder / "c/index.html").find("no pictures") != std::string::npos);
