@@ -63,6 +63,14 @@ std::vector<PartCount> World::inventory() const {
   });
   all_flaws.count += flaws_in_volume.count;
   all_flaws.bytes += flaws_in_volume.bytes;
+  PartCount pairs{"near_pairs", 0, 0.0}, friction{"friction", 0, 0.0};
+  for (const dynamics::PairState& pair : s.moving.contact.pairs) {
+    ++pairs.count;
+    pairs.bytes += static_cast<double>(sizeof pair) + bytes_in(pair.contacts);
+    for (const dynamics::RememberedContact& contact : pair.contacts)
+      friction.count += contact.friction_impulse.isZero(0.0) ? 0 : 1;
+  }
+  friction.bytes = static_cast<double>(friction.count) * sizeof(Vec3);
   const auto memory = static_cast<long>(s.moving.memories.size());
   const auto hands = static_cast<long>(s.hands.size());
   return {
@@ -86,6 +94,8 @@ std::vector<PartCount> World::inventory() const {
                      return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);
                    }),
       {"impact_memory", memory, static_cast<double>(memory) * sizeof(ImpactMemory)},
+      pairs,
+      friction,
       {"hands", hands, static_cast<double>(hands) * sizeof(dynamics::Hand)},
   };
 }

@@ -99,6 +99,53 @@ TEST_CASE("glass lets the picture behind it through, tinted") {
   CHECK_FALSE(with == without);
 }
 
+TEST_CASE("a ball of clear glass on a pale ground has a dark outline, one of frosted glass has none") {
+  Frame frame = plain_frame();
+  frame.camera = {glm::vec3(0, 5, 5), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 30.0F};
+  Renderer renderer(kSize, Quality::full);
+  const Image ground = renderer.render(frame);
+  const glm::vec3 right(0.95F, 1.0F, 0.0F);  // on the ball of radius 1 as seen, a twentieth from its outline
+  const glm::ivec2 middle = pixel_of(frame, {0, 1, 0}), edge = pixel_of(frame, right);
+  frame.draws = {at(make_sphere(1, 1.0F), {0, 1, 0}, glass())};
+  const Image clear = renderer.render(frame);
+  CHECK(green(clear, edge) < green(ground, edge) - 25);
+  CHECK(std::abs(green(clear, middle) - green(ground, middle)) < 30);
+  frame.draws = {at(make_sphere(1, 1.0F), {0, 1, 0}, frosted_glass(glm::vec3(0.9F)))};
+  CHECK(green(renderer.render(frame), edge) > green(clear, edge) + 15);
+}
+
+TEST_CASE("clouds lie between their two colours, fade into the mean far away") {
+  Look look = matt(glm::vec3(0.6F));
+  look.pattern = Pattern::clouds;
+  look.pattern_colour = glm::vec3(0.2F);
+  look.pattern_size = 0.3F;
+  Frame frame = plain_frame();
+  frame.lights.casts_shadow = false;
+  Renderer renderer(kSize, Quality::preview);
+  const auto levels = [&](const Look& worn, float distance) {
+    frame.camera = {glm::vec3(0, 1, distance), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 20.0F};
+    frame.draws = {at(make_box(1, {2.0F, 0.9F, 0.1F}), {0, 1, 0}, worn)};
+    const Image image = renderer.render(frame);
+    int least = 255, most = 0;
+    for (int y = 80; y <= 100; ++y)
+      for (int x = 150; x <= 170; ++x) {
+        least = std::min(least, green(image, {x, y}));
+        most = std::max(most, green(image, {x, y}));
+      }
+    return std::pair(least, most);
+  };
+  const auto [dark, dark_too] = levels(matt(glm::vec3(0.2F)), 4.0F);
+  const auto [pale, pale_too] = levels(matt(glm::vec3(0.6F)), 4.0F);
+  const auto [least, most] = levels(look, 4.0F);
+  CHECK(least >= dark - 1);
+  CHECK(most <= pale_too + 1);
+  CHECK(most - least > (pale - dark_too) / 3);
+  look.pattern_size = 0.001F;
+  const auto [far_least, far_most] = levels(look, 4.0F);
+  CHECK(far_most - far_least <= pale_too - pale + dark_too - dark + 4);
+  CHECK(far_least > dark_too + 10);
+}
+
 TEST_CASE("the stress overlay paints the scale's colours and the pieces overlay tells pieces apart") {
   Frame frame = plain_frame();
   frame.camera = {glm::vec3(0, 1, 6), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 30.0F};

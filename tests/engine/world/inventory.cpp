@@ -103,3 +103,51 @@ TEST_CASE(
     CHECK(has_stage(w, "explosions"));
   }
 }
+
+TEST_CASE("what stands still has no pairs, what lies on something has, and friction where there is any") {
+  for (const bool is_static : {true, false}) {
+    for (const double coefficient : {0.0, 0.5}) {
+      world::World w{world::WorldSettings{}};
+      material::Material stone = *material::find_preset("concrete");
+      stone.friction = coefficient;
+      REQUIRE(w.add_material(stone).ok());
+      world::BodyDescription floor;
+      floor.form = world::PlaneDescription{};
+      REQUIRE(w.add_body(floor).ok());
+      world::BodyDescription box;
+      box.form = world::BoxDescription{Vec3::Constant(0.05)};
+      box.pose.translation = Vec3(0, 0.051, 0);
+      box.velocity = is_static ? Vec3::Zero() : Vec3(1, 0, 0);
+      box.motion = is_static ? body::Motion::fixed : body::Motion::dynamic;
+      REQUIRE(w.add_body(box).ok());
+      for (int i = 0; i < 12; ++i) w.step();
+      CHECK(part(w, "near_pairs").count == (is_static ? 0 : 1));
+      CHECK((part(w, "near_pairs").bytes > 0.0) == !is_static);
+      CHECK((part(w, "friction").count > 0) == (!is_static && coefficient > 0.0));
+      CHECK((part(w, "friction").bytes > 0.0) == (!is_static && coefficient > 0.0));
+    }
+  }
+}
+
+TEST_CASE("a solid has tetrahedra if it can break, and nothing of shells whether it can or not") {
+  for (const bool is_breakable : {false, true}) {
+    world::World w{world::WorldSettings{}};
+    REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+    world::BodyDescription slab;
+    world::SolidDescription solid;
+    solid.mesh = geometry::make_box_surface(Vec3(0.1, 0.05, 0.05));
+    solid.element_size = 0.05;
+    solid.is_breakable = is_breakable;
+    slab.form = solid;
+    REQUIRE(w.add_body(slab).ok());
+    w.prepare();
+    for (int i = 0; i < 2; ++i) w.step();
+    CHECK(part(w, "surfaces").count == 1);
+    CHECK((part(w, "tetrahedra").count > 0) == is_breakable);
+    CHECK((part(w, "tetrahedra").bytes > 0.0) == is_breakable);
+    CHECK((part(w, "flaws").count > 0) == is_breakable);
+    CHECK(part(w, "shell_stiffness").count == 0);
+    CHECK(part(w, "shell_stiffness").bytes == 0.0);
+    CHECK(has_stage(w, "fracture") == is_breakable);
+  }
+}
