@@ -78,10 +78,13 @@ TEST_CASE("control: names that two files share are found, those of other namespa
   CHECK(house.shared_names() == "");
   house.write("engine/core/e.cpp", file("core", "const char* const kSmall = \"\";\nstruct Row {\n};"));
   house.write("engine/core/f.cpp", file("core", "using Size = int;"));
+  for (const char* test : {"tests/engine/core/a.cpp", "tests/engine/core/b.cpp", "tests/engine/body/c.cpp"})
+    house.write(test, "namespace {\n\nstruct Case {\n};\n\n}  // namespace\n");
   CHECK(house.shared_names() ==
         "core::Row is defined by engine/core/a.cpp and by engine/core/e.cpp\n"
         "core::Size is defined by engine/core/a.cpp and by engine/core/f.cpp\n"
-        "core::kSmall is defined by engine/core/a.cpp and by engine/core/e.cpp\n");
+        "core::kSmall is defined by engine/core/a.cpp and by engine/core/e.cpp\n"
+        "tests/engine/core/Case is defined by tests/engine/core/a.cpp and by tests/engine/core/b.cpp\n");
 }
 
 TEST_CASE("control: a house without faults passes") {

@@ -17,15 +17,15 @@ struct Floor {
 
 // STYLE.md's floors: a file includes lower floors or its own folder.
 constexpr std::array<Floor, 10> kFloors{{{"core", 1},
-                                        {"geometry", 2},
-                                        {"material", 2},
-                                        {"body", 3},
-                                        {"stress", 3},
-                                        {"audit", 4},
-                                        {"collision", 4},
-                                        {"fracture", 4},
-                                        {"dynamics", 5},
-                                        {"world", 6}}};
+                                         {"geometry", 2},
+                                         {"material", 2},
+                                         {"body", 3},
+                                         {"stress", 3},
+                                         {"audit", 4},
+                                         {"collision", 4},
+                                         {"fracture", 4},
+                                         {"dynamics", 5},
+                                         {"world", 6}}};
 
 int floor_of(const std::string& folder) {
   for (const Floor& floor : kFloors)

@@ -17,7 +17,7 @@ using Definitions = std::map<std::string, std::vector<Definition>>;  // by names
 
 std::vector<std::filesystem::path> sources_below(const std::filesystem::path& root) {
   std::vector<std::filesystem::path> files;
-  for (const char* house : {"engine", "render", "sandbox"}) {
+  for (const char* house : {"engine", "render", "sandbox", "tests"}) {
     if (!std::filesystem::exists(root / house)) continue;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / house))
       if (entry.path().extension() == ".cpp") files.push_back(entry.path());
@@ -45,6 +45,8 @@ void read_definitions(const std::filesystem::path& path, const std::string& name
       if (!is_alias && !std::regex_match(line, match, constant) && !std::regex_match(line, match, type))
         continue;
       std::string key;
+      if (name.starts_with("tests/"))
+        key = name.substr(0, name.rfind('/')) + "/";  // all in the outermost one
       for (const std::string& scope : scopes) key += scope.empty() ? "" : scope + "::";
       definitions[key + match[1].str()].push_back({name, is_alias ? line : ""});
     }

@@ -9,8 +9,8 @@
 namespace shatterbox::structure {
 
 /// A sentence for every constant (kName) and type that two .cpp files below engine, render and sandbox of
-/// `root` define in unnamed namespaces of one named namespace. An alias of one and the same type may stand in
-/// both; functions are not read, for they may be overloads.
+/// `root` define in unnamed namespaces of one named namespace, or two of one folder below tests. An alias of
+/// one and the same type may stand in both; functions are not read, for they may be overloads.
 std::vector<std::string> find_shared_local_names(const std::filesystem::path& root);
 
 }  // namespace shatterbox::structure
