@@ -11,6 +11,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/vec.h"
 #include "engine/geometry/mass_properties.h"
+#include "engine/stress/contact_duration.h"
 
 namespace shatterbox::fracture {
 
@@ -25,8 +26,9 @@ struct ImpactLoad {
   double other_inverse_mass = 0.0;  // 1/kg, of the other body there; 0 for a floor
   double hertz_compliance = 0.0;    // m/N, of the contact itself
   double hertz_radius = 0.0;        // m, of the contact at its peak
-  double restitution = 0.0;  // Newton's, of the pair: what it gives back nothing plastic has taken
-  bool is_resting = false;   // contact that goes on: it dents nothing
+  double restitution = 0.0;         // Newton's, of the pair: what it gives back nothing plastic has taken
+  bool is_resting = false;          // contact that goes on: it dents nothing
+  stress::Snapshots snapshots;      // of a collision's force; none: its peak counts
 };
 
 struct Impact {
@@ -60,6 +62,12 @@ inline bool is_collision(const ImpactLoad& load) {
 /// series.
 inline double collision_force(const ImpactLoad& load, double compliance) {
   return load.closing_speed * core::sqrt(load.effective_mass / compliance);
+}
+
+/// True if snapshots of springs, whose energy nothing bounds, stand for the collisions' peaks.
+inline bool are_snapshots(const Impact& impact) {
+  return std::any_of(impact.loads.begin(), impact.loads.end(),
+                     [](const ImpactLoad& load) { return load.snapshots.step > 0.0; });
 }
 
 /// J; 0 of what is no collision.

@@ -103,6 +103,7 @@ bool ImpactForce::does_spin_crack() const {
 
 std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
   if (impact_.given_duration) return std::nullopt;
+  if (are_snapshots(impact_)) return std::nullopt;  // a spring too deep holds more than there is
   // Loads add up: so do the roots of collisions' energies, and the forces of resting contact.
   double root_energy = 0.0, contact_force = 0.0;
   for (const Press& press : presses_) {
@@ -383,8 +384,9 @@ void ImpactForce::settle_force(Press& press, const ContactAnswer& answer) {
     press.first_force = stress::kPeakOverMeanHalfSine * load.impulse / press.duration;
   } else if (is_collision(load)) {
     press.duration = duration_of(press, answer);
-    press.first_force = collision_force(load, compliance);
-    press.energy = collision_energy(load);
+    const double seen = stress::seen_over_peak(load.snapshots, press.duration);
+    press.first_force = seen * collision_force(load, compliance);
+    press.energy = seen * seen * collision_energy(load);
   } else {
     press.duration = impact_.contact_average;
     press.first_force = load.impulse / press.duration;

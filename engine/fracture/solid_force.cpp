@@ -91,6 +91,7 @@ bool SolidForce::is_spinning() const {
 
 std::optional<SolidForce::Bound> SolidForce::harmless_bound() const {
   if (impact_.given_duration) return std::nullopt;
+  if (are_snapshots(impact_)) return std::nullopt;  // a spring too deep holds more than there is
   // Loads add up: so do the roots of collisions' energies, and the forces of resting contact.
   double root_energy = 0.0, contact_force = 0.0;
   for (const SolidPress& press : presses_) {
@@ -230,8 +231,9 @@ void SolidForce::settle_force(SolidPress& press) {
     press.first_force = stress::kPeakOverMeanHalfSine * load.impulse / press.duration;
   } else if (is_collision(load)) {
     press.duration = duration_of(press);
-    press.first_force = collision_force(load, press.contact.hertz_compliance + felt_compliance(press));
-    press.energy = collision_energy(load);
+    const double seen = stress::seen_over_peak(load.snapshots, press.duration);
+    press.first_force = seen * collision_force(load, press.contact.hertz_compliance + felt_compliance(press));
+    press.energy = seen * seen * collision_energy(load);
   } else {
     press.duration = impact_.contact_average;
     press.first_force = load.impulse / press.duration;

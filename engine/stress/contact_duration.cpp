@@ -69,6 +69,19 @@ double hertz_patch_radius(const HertzContact& contact, double force) {
   return core::pow(0.75 * force * contact.radius / contact.modulus, 1.0 / 3.0);
 }
 
+double seen_over_peak(const Snapshots& snapshots, double duration) {
+  constexpr double kShort = 1e-4;  // of the duration: a step that misses nothing
+  if (!(snapshots.step > kShort * duration)) return 1.0;
+  // In units of 1 / omega and of the closing speed: the overlap is the force over the peak.
+  const double omega = core::kPi / duration, step = omega * snapshots.step;
+  double speed = 1.0, greatest = 0.0;
+  for (double overlap = omega * snapshots.first; overlap > 0.0; overlap += step * speed) {
+    greatest = std::max(greatest, overlap);
+    speed -= step * overlap;
+  }
+  return greatest;
+}
+
 double series_duration(double mass, double contact_compliance, double body_compliance) {
   return core::kPi * core::sqrt(mass * (contact_compliance + body_compliance));
 }

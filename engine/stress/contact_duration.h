@@ -51,6 +51,18 @@ double hertz_patch_radius(const HertzContact& contact, double force);
 /// pi sqrt(mass (contact_compliance + body_compliance)), s.
 double series_duration(double mass, double contact_compliance, double body_compliance);
 
+/// When the force of a penalty method is looked at: at the borders of steps.
+struct Snapshots {
+  double step = 0.0;   // s; 0: never, the pulse is known whole
+  double first = 0.0;  // s, from the touch to the first border
+};
+
+/// The greatest force that a penalty method sees over the true peak, for the comparison of [BHTF07] figs. 9
+/// and 10: bodies fly on to the border before they know that they overlap, then a spring of the impact's own
+/// compliance, so of `duration` (s), drives them apart in steps (symplectic Euler). Tends to 1 for short
+/// steps, grows without end with long ones. 1 without snapshots.
+double seen_over_peak(const Snapshots& snapshots, double duration);
+
 /// What a solve under a unit force at the contact tells, m/N.
 struct BodyCompliance {
   double total = 0.0;    // f . u: with the inertia of the body in a screened solve

@@ -10,8 +10,9 @@ namespace shatterbox::world {
 
 /// How the verdict on an impact is reached (DESIGN: time-averaged stress).
 enum class Criterion : std::uint8_t {
-  event,  // sums over an impact event, divided by the impact's own duration: Pa, independent of the step
-  paper,  // [BHTF07] sec. VI: all impulses of one step together, compared in Pa s
+  event,    // sums over an impact event, divided by the impact's own duration: Pa, independent of the step
+  paper,    // [BHTF07] sec. VI: all impulses of one step together, compared in Pa s
+  penalty,  // for comparison, [BHTF07] figs. 9, 10: a snapshot of the force of a spring against overlap
 };
 
 /// What happens to the bodies that met a body that broke.

@@ -1,6 +1,7 @@
 #include "engine/world/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/parallel.h"
 #include "engine/stress/contact_duration.h"
@@ -48,6 +49,11 @@ struct Judge {
 
   fracture::ImpactLoad impact_load(const body::Body& struck, const Load& load, bool is_collision) const {
     fracture::ImpactLoad out;
+    if (settings.criterion == Criterion::penalty) {
+      out.snapshots.step = 1.0 / settings.steps_per_second;
+      out.snapshots.first =
+          (std::floor(load.time / out.snapshots.step) + 1.0) * out.snapshots.step - load.time;
+    }
     const body::Body* partner = body::find_body(bodies, load.other);
     out.point_material = load.point_body + struck.shape->material_from_body;
     out.impulse = load.impulse_body.norm();

@@ -56,9 +56,10 @@ void read_settings(const TomlValue& table, SceneDescription& scene, Problems& pr
   world.gravity = reader.vector("gravity", between(-1e4, 1e4, "m/s2")).value_or(world.gravity);
   world.seed = static_cast<std::uint64_t>(
       reader.whole_number("seed", 0, std::int64_t{1} << 62).value_or(static_cast<std::int64_t>(world.seed)));
-  const auto criterion = reader.choice("criterion", {"event", "paper"});
-  world.criterion =
-      criterion.value_or("event") == "paper" ? world::Criterion::paper : world::Criterion::event;
+  const std::string criterion = reader.choice("criterion", {"event", "paper", "penalty"}).value_or("event");
+  if (criterion == "paper") world.criterion = world::Criterion::paper;
+  if (criterion == "penalty") world.criterion = world::Criterion::penalty;
+  world.paper_duration = reader.number("paper_duration", positive("s")).value_or(world.paper_duration);
   const auto after = reader.choice("after_break", {"go_back", "inherit"});
   world.after_break =
       after.value_or("go_back") == "inherit" ? world::AfterBreak::inherit : world::AfterBreak::go_back;

@@ -64,9 +64,10 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
   for (const char* scene :
-       {"ornament", "window", "bowl", "boats_pile", "boats_edge", "ornaments",  "card_house",  "plate_stack",
-        "bowls",    "rain",   "reel", "tablet",     "wall",       "brick_wall", "mortar_wall", "dominoes",
-        "blast",    "arch",   "vase", "egg",        "bottle",     "slab",       "walls",       "armadillo"}) {
+       {"ornament",    "window",   "bowl",      "boats_pile", "boats_edge", "ornaments", "card_house",
+        "plate_stack", "bowls",    "rain",      "reel",       "tablet",     "wall",      "brick_wall",
+        "mortar_wall", "dominoes", "blast",     "arch",       "vase",       "egg",       "bottle",
+        "slab",        "walls",    "armadillo", "step_size"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);
@@ -155,6 +156,18 @@ TEST_CASE("how near a hit comes to breaking does not depend on the step") {
     // The ratio goes as the speed, so the height that breaks moves by twice as much.
     CHECK(most < 1.025 * least);
   }
+}
+
+TEST_CASE("step_size: as many pieces at any step, but by snapshots of a penalty dust at long ones") {
+  const Folder folder;
+  const auto first_pieces = [&](const std::string& criterion, const char* rate) {
+    const auto report = play(folder, "step_size --set scene.criterion=" + criterion +
+                                         " --set scene.seconds=0.35 --set scene.steps_per_second=" + rate);
+    return report["breaks"][0]["pieces"].get<double>();
+  };
+  for (const char* criterion : {"event", "paper"})
+    CHECK(first_pieces(criterion, "30") == Approx(first_pieces(criterion, "960")).epsilon(0.35));
+  CHECK(first_pieces("penalty", "240") > 2.0 * first_pieces("penalty", "3840"));
 }
 
 TEST_CASE("what breaks after the first break is as much at 60 steps a second as at 240") {

@@ -125,3 +125,21 @@ TEST_CASE("duration: balanced for a slow blow, screened at a power of two for a 
   REQUIRE(0.5 * given.peak_force * given.peak_force * given.body.elastic <=
           0.5 * problem.mass * problem.speed * problem.speed * (1.0 + 1e-12));
 }
+
+TEST_CASE("snapshots of a penalty's force: the peak for short steps, one deep overlap for long ones") {
+  const double duration = 1e-3, omega = core::kPi / duration;
+  REQUIRE(seen_over_peak({}, duration) == 1.0);
+  REQUIRE(seen_over_peak({1e-8 * duration, 0.0}, duration) == 1.0);
+  // Symplectic Euler is of the first order.
+  double last = 0.0;
+  for (const double share : {0.04, 0.02, 0.01}) {
+    const double error = std::abs(seen_over_peak({share * duration, 0.5 * share * duration}, duration) - 1.0);
+    REQUIRE(error < 0.2 * share);
+    if (last > 0.0) REQUIRE(error < last);
+    last = error;
+  }
+  // A step so long that the spring throws the body out at once: the force is that of the way to the border.
+  for (const double first : {1.0, 7.0, 30.0})
+    REQUIRE(seen_over_peak({30.0 * duration, first * duration}, duration) ==
+            Approx(omega * first * duration).epsilon(1e-14));
+}
