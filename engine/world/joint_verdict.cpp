@@ -30,8 +30,13 @@ double duration_of(const body::LoggedImpulse& hit, const std::vector<body::Body>
   if (hit.duration > 0.0) return hit.duration;
   if (settings.stress_window) return *settings.stress_window;
   const body::Body *a = body::find_body(bodies, hit.body_a), *b = body::find_body(bodies, hit.body_b);
-  const body::Body& struck = a != nullptr ? *a : *b;
-  const body::Body* other = a != nullptr ? b : nullptr;
+  // A blunt contact is as large as the smaller body, and a plane has no size.
+  const auto size_of = [](const body::Body& body) {
+    return body.shape->kind == body::ShapeKind::plane ? 1e300 : body.shape->bounding_radius;
+  };
+  if (a == nullptr || (b != nullptr && size_of(*b) < size_of(*a))) std::swap(a, b);
+  const body::Body& struck = *a;
+  const body::Body* other = b;
   const double restitution =
       other != nullptr ? dynamics::pair_material(struck, *other, contact).restitution : struck.restitution;
   const double speed = hit.closing_speed;

@@ -224,3 +224,40 @@ TEST_CASE("a pivot bears a weight up to its strength and goes with its body") {
     CHECK(world.bodies().front().velocity.y() < 0.0);
   }
 }
+
+TEST_CASE("joined bricks that fall on a plane load their mortar as on a large slab") {
+  // The plane is endless, and has no size: the duration of the hit was not a number.
+  const auto fall = [](bool on_plane) {
+    world::World world = make_world(240);
+    const int stone = world.add_material(*material::find_preset("brick")).value();
+    world::BodyDescription floor;
+    floor.material = stone;
+    floor.motion = body::Motion::fixed;
+    if (on_plane)
+      floor.form = world::PlaneDescription{};
+    else {
+      floor.form = world::BoxDescription{Vec3(5, 1, 5)};
+      floor.pose.translation = Vec3(0, -1, 0);
+    }
+    world.add_body(floor).value();
+    const Quat tilt(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+    body::BodyId ids[2];
+    for (int k = 0; k < 2; ++k) {
+      world::BodyDescription brick;
+      brick.form = world::BoxDescription{0.5 * Vec3(kLength, kHeight, kWidth)};
+      brick.material = stone;
+      brick.pose.rotation = tilt;
+      brick.pose.translation = Vec3(0, 0.1, 0) + tilt * Vec3((kLength + 5e-4) * k, 0, 0);
+      brick.velocity = Vec3(0, -2, 0);
+      ids[k] = world.add_body(brick).value();
+    }
+    REQUIRE(world.add_joint(mortar(ids[0], ids[1], 1e9)).value() == 1);
+    while (world.time() < 0.1) world.step();
+    return world.report().joints.front();
+  };
+  const world::JointRow plane = fall(true), slab = fall(false);
+  REQUIRE(slab.is_struck);
+  REQUIRE(plane.is_struck);
+  CHECK(plane.most_ratio > 0.0);
+  CHECK(plane.most_ratio == Approx(slab.most_ratio).epsilon(0.1));
+}
