@@ -154,11 +154,16 @@ std::string error_line(const RunRecord& record) {
     worst = std::max({worst, row.mass_error, row.momentum_error, row.angular_momentum_error});
   }
   const auto& w = record.world;
+  const auto given_up = std::count_if(w.impacts.begin(), w.impacts.end(), [](const world::ImpactRow& row) {
+    return row.verdict.starts_with("not evaluated");
+  });
   return fmt::format(
       "errors: breaks {:.1g} (mass, momenta), momentum {:.1g} N s, energy rise {:.1g} J, least gap {:.2g} "
-      "mm, stress solver {:.1g}, contact solver {:.1g} m/s, failsafe {:.2g} %\n",
+      "mm, stress solver {:.1g}, contact solver {:.1g} m/s, failsafe in {} ({:.2g} % of body-steps), {} not "
+      "evaluated\n",
       worst, w.conservation.momentum_error, w.conservation.greatest_energy_rise, 1e3 * w.contact.least_gap,
-      w.solver.worst_residual, w.contact.residual, 100.0 * w.contact.frozen_share);
+      w.solver.worst_residual, w.contact.residual, counted(w.contact.failsafe_steps, "step"),
+      100.0 * w.contact.frozen_share, counted(given_up, "impact"));
 }
 
 std::string audit_line(const RunRecord& record) {

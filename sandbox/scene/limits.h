@@ -14,9 +14,13 @@ namespace shatterbox::sandbox::scene {
 inline constexpr double kMostFall = 0.02;
 /// What rests on a body that it outweighs more often than this is not borne.
 inline constexpr double kMostMassRatio = 1e4;
+/// Bounces as elastic as this keep their energy only at so many steps a second (study contact: gas).
+inline constexpr double kElastic = 0.9;
+inline constexpr int kElasticRate = 960;
 
 /// Sentences about gravity too strong for the step, and about masses too far apart, of the bodies that can
-/// move.
+/// move, bounces too elastic for the step, and solids that resist a change of volume more than their stress
+/// is told by.
 std::vector<std::string> find_limits(const world::WorldSettings& settings,
                                      std::span<const body::Body> bodies);
 

@@ -301,4 +301,16 @@ TEST_CASE("a scene beyond what the engine bears says so at load") {
   INFO(strong);
   CHECK(strong.find("\"crate\", 0.35 m in size, falls by 0.085 m in a step") != std::string::npos);
   CHECK(strong.find("at least 842 steps a second") != std::string::npos);
+  const std::string rubber =
+      "[[material]]\nname = \"rubber\"\nlike = \"plaster\"\npoisson = 0.49\n[[body]]\nname = \"block\"\nkind "
+      "= "
+      "\"solid\"\nshape = \"slab\"\nsize = [0.1, 0.1, 0.1]\nmaterial = \"rubber\"\nposition = [0, 1, 0]\n";
+  CHECK(notes(rubber).find("\"block\" has Poisson's ratio 0.49: its stress is solved with 0.4") !=
+        std::string::npos);
+  const std::string balls =
+      "[[material]]\nname = \"billiard\"\nlike = \"glass\"\nrestitution = 1\n[[body]]\nkind = "
+      "\"sphere\"\nradius = "
+      "0.1\nmaterial = \"billiard\"\nrepeat = {count = 3, spacing = [1, 0, 0]}\n";
+  CHECK(notes(balls).find("3 bodies bounce with a restitution of 0.9 or more") != std::string::npos);
+  CHECK(notes("[scene]\nsteps_per_second = 960\n" + balls) == "");
 }
