@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes tests/NUMBERS.md and its plots: runs all studies (about half an hour on a free processor) and puts their pages
+# Makes tests/NUMBERS.md and its plots: runs all studies (about forty minutes on a free processor) and puts their pages
 # together. With names of studies: runs those again, and takes the others' pages as they are.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,7 +29,7 @@ how a study measures.
 |---|---|---|---|---|
 HEAD
   for name in "${names[@]}"; do
-    sed -n '/<!-- summary -->/,/<!-- end of summary -->/{/<!--/d;p}' "$pages/$name.md"
+    sed -n '/<!-- summary -->/,/<!-- end of summary -->/{/<!--/d;p}' "$pages/$name.md" | sed "s/^| /| $name, /"
   done
   echo
   for name in "${names[@]}"; do

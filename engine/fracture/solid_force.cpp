@@ -145,6 +145,7 @@ bool SolidForce::answer(const std::vector<Size>& wanted, SolidDecision& decision
   for (const Size i : wanted) forces.insert(forces.end(), groups_[i].forces.begin(), groups_[i].forces.end());
   stress::SolidSolveSettings solving;
   solving.screening = screening_;
+  solving.tolerance = settings_.solve_residual;
   const std::vector<stress::SolidSolution> all = system_->solve(forces, solving);
   decision.solve_ms += core::milliseconds_since(start);
   auto next = all.begin();
@@ -334,6 +335,7 @@ bool SolidForce::sum_up(SolidDecision& decision, std::string& problem) {
   const auto start = core::Clock::now();
   stress::SolidSolveSettings solving;
   solving.screening = screening_;
+  solving.tolerance = settings_.solve_residual;
   const stress::SolidSolution spun =
       system_->solve(stress::centrifugal_load(*subject_.model->stiffness, *mesh_, impact_.spin_material,
                                               subject_.model->mass.centre),

@@ -39,6 +39,8 @@ struct WorldSettings {
   int crack_generations = 3;     // solves of one cracking body: radial cracks, rings, and what they leave
   bool has_energy_guard = true;  // cracks use no more energy than there is; off: to see what that changes
   bool has_sleep = true;         // islands at rest fall asleep and cost nothing
+  int substeps = 8;              // of a step, of bodies in contact
+  double solve_residual = 2e-3;  // that solves of solids' stress go down to, relative
   int most_generations = 4;      // how often the pieces of one impact event may break again, usually 2 to 4
 };
 

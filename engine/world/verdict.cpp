@@ -311,6 +311,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     if (std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject))
       how.most_generations = kSolidGenerations;
     how.has_energy_guard = settings.has_energy_guard;
+    how.solve_residual = settings.solve_residual;
     how.least_width = kLeastWidth * candidate.fragile->size;
     // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
     if (candidate.is_piece) how.core_spacing = 0.0;

@@ -11,6 +11,7 @@ World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) 
   state_->contact_settings.time_step = 1.0 / settings.steps_per_second;
   state_->contact_settings.gravity = settings.gravity;
   state_->contact_settings.has_sleep = settings.has_sleep;
+  state_->contact_settings.substeps = settings.substeps;
 }
 
 World::~World() = default;

@@ -37,6 +37,9 @@ position = [0, 0.0402, 0]
 // round.
 constexpr double kOutline = 0.05, kRoughOutline = 0.1;
 
+const char* const kPaneAtTen = "held pane, ball at 10 m/s";
+constexpr double kWindowsOfPane = 400.0;  // of 50 x 50 mm in a pane of 1 m2
+
 /// Pieces and cracks of many seeds.
 struct Pool {
   std::vector<double> masses;                  // kg, without the largest of each run
@@ -254,11 +257,18 @@ std::vector<std::string> conclude(const std::vector<Table>& tables) {
             : row.errors[0] < 1.0 ? "we do not agree, by less than a factor of two"
                                   : "we do not agree"));
     if (table.name == "sizes")
-      for (const Row& row : table.rows)
+      for (const Row& row : table.rows) {
         sentences.push_back(
             fmt::format("{}: exponent {:.2f} +- {:.2f} of {:.0f} pieces; {}.", row.setting, row.errors[1],
                         row.errors[2], row.errors[3],
                         row.errors[0] == 0.0 ? "within what is published" : "outside of what is published"));
+        if (row.setting == kPaneAtTen)
+          sentences.push_back(
+              fmt::format("Tempered glass is not compared: a material holds no stress of its own, and it is "
+                          "that stress which breaks tempered glass into the 15 to 40 pieces per 50 x 50 mm "
+                          "of EN 12150. Our pane is annealed glass, and has {:.2g} there.",
+                          row.errors[4] / kWindowsOfPane));
+      }
   }
   return sentences;
 }
@@ -332,7 +342,7 @@ Plan make_fragments_plan(bool is_quick) {
   };
   add("glass sphere, floor at 4 m/s", kShell, Vec3(0, -4, 0), shell_edge, 1.1, 1.6);
   if (!is_quick) add("glass sphere, floor at 8 m/s", kShell, Vec3(0, -8, 0), shell_edge, 1.1, 1.6);
-  add("held pane, ball at 10 m/s", kHeldPaneText, Vec3(0, 0, -10), pane_edge, 1.0, 1.5);
+  add(kPaneAtTen, kHeldPaneText, Vec3(0, 0, -10), pane_edge, 1.0, 1.5);
   if (!is_quick) add("held pane, ball at 20 m/s", kHeldPaneText, Vec3(0, 0, -20), pane_edge, 1.0, 1.5);
   plan.tables.push_back(sizes);
   Table radial;

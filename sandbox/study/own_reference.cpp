@@ -27,9 +27,10 @@ struct Run {
   double energy_rise = 0.0, momentum_error = 0.0, failsafe = 0.0;
 };
 
-Run play_at(const scene::SceneDescription& scene, int rate, int samples_a_second) {
+Run play_with(const scene::SceneDescription& scene, const world::WorldSettings& settings,
+              int samples_a_second) {
   scene::SceneDescription description = scene;
-  description.world.steps_per_second = rate;
+  description.world = settings;
   ScenePlay play(std::move(description));
   Run run;
   const auto samples = static_cast<long>(scene.seconds * samples_a_second + 0.5);
@@ -87,15 +88,26 @@ Measured beside(const Run& run, const Run& exact) {
                           : "does not break, the reference does"};
 }
 
-Plan make_scene_plan(const scene::SceneDescription& scene, bool is_quick) {
-  const int usual = scene.world.steps_per_second;
-  const int coarse = std::max(1, usual / 2), finest = usual * (is_quick ? 2 : 8);
-  Plan plan;
+/// A table of the scene beside itself at its finest setting: one setting is varied by `set`.
+template <class Value>
+struct Varied {
+  std::string name;          // behind the scene's; empty: the scene's own
+  std::string setting_name;  // "steps a second"
+  std::string value_name;    // of what the error is an order of
+  std::vector<Value> values;
+  Value usual, finest;
+  double (*value_of)(Value);
+  void (*set)(world::WorldSettings&, Value);
+};
+
+template <class Value>
+void add_varied(Plan& plan, const scene::SceneDescription& scene, int samples, const Varied<Value>& varied) {
   Table table;
-  table.name = scene.name;
-  table.what = fmt::format("{} s beside {} steps a second", scene.seconds, finest);
-  table.setting_name = "steps a second";
-  table.value_name = "step, s";
+  table.name = scene.name + varied.name;
+  table.what = fmt::format("{} s beside {:g} {}", scene.seconds, static_cast<double>(varied.finest),
+                           varied.setting_name);
+  table.setting_name = varied.setting_name;
+  table.value_name = varied.value_name;
   table.error_names = {"trajectories before the first break",
                        "first break, s",
                        "masses at the end (Kolmogorov)",
@@ -106,17 +118,67 @@ Plan make_scene_plan(const scene::SceneDescription& scene, bool is_quick) {
                        "failsafe steps"};
   const auto description = std::make_shared<scene::SceneDescription>(scene);
   const auto reference = std::make_shared<std::unique_ptr<Run>>();
-  const int samples = std::min(coarse, 60);
-  const auto measure = [description, reference, finest, samples](int rate) {
-    if (!*reference) *reference = std::make_unique<Run>(play_at(*description, finest, samples));
-    return beside(play_at(*description, rate, samples), **reference);
+  const auto play = [description, samples, set = varied.set](Value value) {
+    world::WorldSettings settings = description->world;
+    set(settings, value);
+    return play_with(*description, settings, samples);
   };
-  std::vector<int> rates{coarse, usual};
-  if (!is_quick) rates.insert(rates.end(), {2 * usual, 4 * usual});
-  for (const int rate : rates)
-    plan.jobs.push_back(
-        {0, std::to_string(rate), 1.0 / rate, rate == usual, [measure, rate] { return measure(rate); }});
+  for (const Value value : varied.values)
+    plan.jobs.push_back({plan.tables.size(), fmt::format("{:g}", static_cast<double>(value)),
+                         varied.value_of(value), value == varied.usual,
+                         [play, reference, value, finest = varied.finest] {
+                           if (!*reference) *reference = std::make_unique<Run>(play(finest));
+                           return beside(play(value), **reference);
+                         }});
   plan.tables.push_back(std::move(table));
+}
+
+bool has_breakable_solids(const scene::SceneDescription& scene) {
+  ScenePlay play{scene::SceneDescription(scene)};
+  const auto bodies = play.world().bodies();
+  return std::any_of(bodies.begin(), bodies.end(), [](const body::Body& body) {
+    return body.shape->kind == body::ShapeKind::solid && body.is_dynamic();
+  });
+}
+
+Plan make_scene_plan(const scene::SceneDescription& scene, bool is_quick) {
+  const int usual = scene.world.steps_per_second;
+  const int coarse = std::max(1, usual / 2), finest = usual * (is_quick ? 2 : 8);
+  const int samples = std::min(coarse, 60);
+  Plan plan;
+  Varied<int> steps{"",
+                    "steps a second",
+                    "step, s",
+                    {coarse, usual},
+                    usual,
+                    finest,
+                    [](int rate) { return 1.0 / rate; },
+                    [](world::WorldSettings& s, int rate) { s.steps_per_second = rate; }};
+  if (!is_quick) steps.values.insert(steps.values.end(), {2 * usual, 4 * usual});
+  add_varied(plan, scene, samples, steps);
+  const int substeps = scene.world.substeps;
+  Varied<int> parts{"-substeps",
+                    "substeps a step",
+                    "substep, of a step",
+                    {substeps / 2, substeps},
+                    substeps,
+                    is_quick ? 2 * substeps : 8 * substeps,
+                    [](int count) { return 1.0 / count; },
+                    [](world::WorldSettings& s, int count) { s.substeps = count; }};
+  if (!is_quick) parts.values = {substeps / 4, substeps / 2, substeps, 2 * substeps, 4 * substeps};
+  add_varied(plan, scene, samples, parts);
+  if (!has_breakable_solids(scene)) return plan;  // shells are solved to rounding
+  const double residual = scene.world.solve_residual;
+  Varied<double> solves{"-residual",
+                        "residual of the stress solves",
+                        "residual",
+                        {10.0 * residual, residual},
+                        residual,
+                        1e-4 * residual,
+                        [](double value) { return value; },
+                        [](world::WorldSettings& s, double value) { s.solve_residual = value; }};
+  if (!is_quick) solves.values.push_back(0.1 * residual);
+  add_varied(plan, scene, samples, solves);
   return plan;
 }
 

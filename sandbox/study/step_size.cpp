@@ -24,8 +24,9 @@ struct Extent {
   int finest = 7680;       // of the references
   double edge = 0.0042;    // m
   int seeds = 5;
-  double after = 0.05;                                                     // s, behind a hit that breaks
-  double rest = 60.0;                                                      // s
+  bool has_dust = true;                  // what a penalty breaks into thousands
+  double after = 0.05;                   // s, behind a hit that breaks
+  double rest = 60.0, paper_rest = 1.0;  // s; the paper's criterion solves in every step
   std::shared_ptr<double> paper_duration = std::make_shared<double>(0.0);  // s, found when first asked for
 };
 
@@ -127,6 +128,7 @@ void add_heights(Plan& plan, const Extent& extent) {
 
 void add_breaks(Plan& plan, const Extent& extent) {
   for (const Judged& judged : kAll) {
+    if (judged.criterion == Criterion::penalty && !extent.has_dust) continue;
     const auto play = [extent](const StepCase& how) {
       return play_hard_hit(how, extent.seeds, extent.after);
     };
@@ -155,7 +157,7 @@ void add_breaks(Plan& plan, const Extent& extent) {
 void add_rests(Plan& plan, const Extent& extent) {
   const auto density = std::make_shared<double>(0.0);
   for (const Judged& judged : kAll) {
-    const double length = extent.rest;
+    const double length = judged.criterion == Criterion::paper ? extent.paper_rest : extent.rest;
     const std::string what =
         judged.criterion == Criterion::event
             ? fmt::format(
@@ -244,8 +246,9 @@ Plan make_step_size_plan(bool is_quick) {
     extent.finest = 960;
     extent.edge = 0.006;
     extent.seeds = 1;
+    extent.has_dust = false;
     extent.after = 0.005;
-    extent.rest = 0.3;
+    extent.rest = extent.paper_rest = 0.3;
   }
   Plan plan;
   add_hits(plan, extent);

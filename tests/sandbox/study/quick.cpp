@@ -179,6 +179,8 @@ velocity = [1, 0, 0]
   INFO(describe(result));
   const Table& table = table_of(result, "thrown");
   REQUIRE(table.rows.size() == 4);
+  REQUIRE(table_of(result, "thrown-substeps").rows.size() == 5);
+  CHECK(error_at_default(table_of(result, "thrown-substeps")) < 0.02);
   CHECK(error_at_default(table) < 0.02);
   CHECK(table.rows.back().errors[0] < table.rows.front().errors[0]);
   for (const Row& row : table.rows) {
