@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "render/frame/expand.h"
 
@@ -55,8 +56,11 @@ struct Triangle {
 
 // What surrounds a vertex, in order; on the outline the first and last neighbours lie on it too.
 struct Ring {
+  static constexpr std::size_t kMostTriangles = 24;
   bool is_simple = false, is_outline = false;
-  std::vector<std::uint32_t> neighbours;
+  std::array<std::uint32_t, kMostTriangles + 1> around{};  // the first `count`
+  std::size_t count = 0;
+  std::span<const std::uint32_t> neighbours() const { return {around.data(), count}; }
 };
 
 class Simplifier {
@@ -108,6 +112,11 @@ class Simplifier {
 
   void read() {
     const std::vector<glm::vec3> normals = mesh_.normals.empty() ? find_corner_normals(mesh_) : mesh_.normals;
+    std::vector<std::uint8_t> counts(fans_.size(), 0);
+    for (const glm::uvec3& t : mesh_.triangles)
+      for (int k = 0; k < 3; ++k) counts[t[k]] = static_cast<std::uint8_t>(std::min(counts[t[k]] + 1, 255));
+    for (std::size_t v = 0; v < fans_.size(); ++v) fans_[v].reserve(counts[v] + 2U);  // some grow
+    triangles_.reserve(mesh_.triangles.size());
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       Triangle triangle;
       const unsigned cracks = mesh_.cracks.empty() ? 0U : mesh_.cracks[t];
@@ -155,7 +164,7 @@ class Simplifier {
   Ring ring_of(std::uint32_t v) const {
     Ring ring;
     const std::vector<std::uint32_t>& fan = fans_[v];
-    std::array<std::array<std::uint32_t, 2>, 24>
+    std::array<std::array<std::uint32_t, 2>, Ring::kMostTriangles>
         edges{};  // of the fan, opposite to v, in the triangles' sense
     if (fan.size() > edges.size()) return ring;
     const Triangle& first = triangles_[fan.front()];
@@ -177,7 +186,7 @@ class Simplifier {
     }
     ring.is_outline = starts == 1;
     if (starts > 1 || fan.size() < (ring.is_outline ? 2U : 3U)) return ring;
-    ring.neighbours.push_back(at);
+    ring.around[ring.count++] = at;
     for (std::size_t step = 0; step < fan.size(); ++step) {
       std::size_t next = fan.size();
       for (std::size_t i = 0; i < fan.size() && next == fan.size(); ++i) {
@@ -185,9 +194,9 @@ class Simplifier {
       }
       if (next == fan.size()) return ring;
       at = edges[next][1];
-      if (step + 1 < fan.size() || ring.is_outline) ring.neighbours.push_back(at);
+      if (step + 1 < fan.size() || ring.is_outline) ring.around[ring.count++] = at;
     }
-    ring.is_simple = ring.is_outline || at == ring.neighbours.front();
+    ring.is_simple = ring.is_outline || at == ring.around[0];
     return ring;
   }
 
@@ -222,7 +231,7 @@ class Simplifier {
   // together.
   bool is_link_simple(const Ring& ring, std::uint32_t v, std::uint32_t u) const {
     int shared = 0;
-    for (const std::uint32_t n : ring.neighbours) shared += n != u && triangles_about(n, u) > 0 ? 1 : 0;
+    for (const std::uint32_t n : ring.neighbours()) shared += n != u && triangles_about(n, u) > 0 ? 1 : 0;
     return shared == triangles_about(v, u);
   }
 
@@ -238,9 +247,10 @@ class Simplifier {
   bool collapse(std::uint32_t v) {
     const Ring ring = ring_of(v);
     if (!ring.is_simple) return false;
-    std::vector<std::uint32_t> targets = ring.neighbours;
+    std::span<const std::uint32_t> targets = ring.neighbours();
+    const std::array<std::uint32_t, 2> ends{targets.front(), targets.back()};
     if (ring.is_outline) {
-      targets = {ring.neighbours.front(), ring.neighbours.back()};
+      targets = ends;
       if (is_crack_edge(v, targets[0]) != is_crack_edge(v, targets[1])) return false;
     }
     const Triangle& any = triangles_[fans_[v].front()];
@@ -256,7 +266,7 @@ class Simplifier {
       best = u;
     }
     if (best == v) return false;
-    for (const std::uint32_t n : ring.neighbours) waits_[n] = 1;  // one collapse a neighbourhood and round
+    for (const std::uint32_t n : ring.neighbours()) waits_[n] = 1;  // one collapse a neighbourhood and round
     move(v, best);
     return true;
   }

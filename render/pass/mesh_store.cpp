@@ -8,10 +8,12 @@
 #include <cstddef>
 #include <cstring>
 #include <numeric>
+#include <set>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
-#include "render/frame/simplify.h"
+#include "render/pass/shape_making.h"
 
 namespace shatterbox::render::pass {
 
@@ -79,6 +81,10 @@ int level_of(const Draw& draw, glm::vec3 centre_body, float radius, glm::vec3 ey
   return tolerance > kLeastTolerance ? static_cast<int>(std::floor(std::log2(tolerance))) : kAsGiven;
 }
 
+bool has_scalars(const Overlay& overlay) {
+  return overlay.kind == OverlayKind::heat || overlay.kind == OverlayKind::groups;
+}
+
 bool have_equal_scalars(const Item& a, const Item& b) {
   if (a.scalars == b.scalars) return true;
   return a.scalars && b.scalars && a.scalars->size() == b.scalars->size() &&
@@ -113,38 +119,50 @@ MeshStore::Levels& MeshStore::find_or_measure(const Mesh& mesh) {
   return levels;
 }
 
-const StoredMesh& MeshStore::find_or_upload(const Mesh& mesh, int level, Levels& levels) {
-  const auto known = levels.meshes.find(level);
-  if (known != levels.meshes.end()) return known->second;
-  StoredMesh stored;
-  stored.id = next_id_++;
-  stored.shape = expand(level == kAsGiven ? mesh : simplify(mesh, std::exp2(static_cast<float>(level))));
-  stored.vertices = gpu::Buffer::of(std::span<const DrawnVertex>(stored.shape.vertices));
-  stored.indices = gpu::Buffer::of(std::span<const std::uint32_t>(stored.shape.indices));
-  stored.shape.vertices = {};
-  stored.shape.indices = {};
-  return levels.meshes.emplace(level, std::move(stored)).first->second;
-}
-
-void MeshStore::drop_unseen() {
-  std::erase_if(meshes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
-}
-
-Item MeshStore::make_item(const Draw& draw, const Frame& frame, float pixel_slope) {
+int MeshStore::find_level(const Draw& draw, const Frame& frame, float pixel_slope) {
   if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
   if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
     throw std::invalid_argument("mesh " + std::to_string(draw.mesh->id) + ": scalars must be one a vertex");
   }
   Levels& levels = find_or_measure(*draw.mesh);
   levels.last_frame = frame_;
+  const bool is_as_given = (has_scalars(frame.overlay) && draw.scalars != nullptr) || frame.overlay.has_wires;
+  return is_as_given ? kAsGiven
+                     : level_of(draw, levels.centre, levels.radius, frame.camera.position, pixel_slope);
+}
+
+void MeshStore::make_missing(const Frame& frame, const std::vector<int>& levels) {
+  std::vector<WantedShape> wanted;
+  std::vector<int> wanted_levels;
+  std::set<std::pair<std::uint64_t, int>> named;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const Mesh& mesh = *frame.draws[i].mesh;
+    if (meshes_.at(mesh.id).meshes.contains(levels[i]) || !named.emplace(mesh.id, levels[i]).second) continue;
+    wanted.push_back({&mesh, {}, {}});
+    if (levels[i] != kAsGiven) wanted.back().tolerance = std::exp2(static_cast<float>(levels[i]));
+    wanted_levels.push_back(levels[i]);
+  }
+  make_shapes(wanted);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    StoredMesh& stored = meshes_.at(wanted[i].mesh->id).meshes[wanted_levels[i]];
+    stored.id = next_id_++;
+    stored.shape = std::move(wanted[i].shape);
+    stored.vertices = gpu::Buffer::of(std::span<const DrawnVertex>(stored.shape.vertices));
+    stored.indices = gpu::Buffer::of(std::span<const std::uint32_t>(stored.shape.indices));
+    stored.shape.vertices = {};
+    stored.shape.indices = {};
+  }
+}
+
+void MeshStore::drop_unseen() {
+  std::erase_if(meshes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
+}
+
+Item MeshStore::make_item(const Draw& draw, const Frame& frame, int level, float pixel_slope) {
   const glm::vec3 eye = frame.camera.position;
   Item item;
-  const bool has_scalars =
-      frame.overlay.kind == OverlayKind::heat || frame.overlay.kind == OverlayKind::groups;
-  if (has_scalars) item.scalars = draw.scalars;
-  const bool is_as_given = item.scalars != nullptr || frame.overlay.has_wires;
-  const int level = is_as_given ? kAsGiven : level_of(draw, levels.centre, levels.radius, eye, pixel_slope);
-  item.stored = &find_or_upload(*draw.mesh, level, levels);
+  if (has_scalars(frame.overlay)) item.scalars = draw.scalars;
+  item.stored = &meshes_.at(draw.mesh->id).meshes.at(level);
   item.mesh_id = draw.mesh->id;
   item.stored_id = item.stored->id;
   item.world_from_body = draw.world_from_body;
@@ -199,7 +217,8 @@ void MeshStore::upload_rows(const std::vector<Item>& items) {
   std::vector<float> scalars;
   for (const Item& item : items) {
     const auto first_scalar = item.scalars ? static_cast<std::uint32_t>(scalars.size()) : kNone;
-    draws.push_back({item.world_from_body, {item.paints.first, item.paints.count / 3U, first_scalar, item.id}});
+    draws.push_back(
+        {item.world_from_body, {item.paints.first, item.paints.count / 3U, first_scalar, item.id}});
     if (item.scalars) scalars.insert(scalars.end(), item.scalars->begin(), item.scalars->end());
   }
   draw_rows_.assign(std::span<const DrawRow>(draws));
@@ -221,9 +240,12 @@ void MeshStore::forget() {
 void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope) {
   ++frame_;
   const std::array<glm::vec4, 4> sides = find_sides(clip_from_world);
+  std::vector<int> levels;
+  for (const Draw& draw : frame.draws) levels.push_back(find_level(draw, frame, pixel_slope));
+  make_missing(frame, levels);
   std::vector<Item> items;
   for (const Draw& draw : frame.draws) {
-    Item item = make_item(draw, frame, pixel_slope);
+    Item item = make_item(draw, frame, levels[items.size()], pixel_slope);
     item.row = static_cast<int>(items.size());
     item.id = draw.id;
     item.is_on_screen &= std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {

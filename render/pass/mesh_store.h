@@ -75,9 +75,10 @@ class MeshStore {
     std::uint64_t last_frame = 0;
   };
   Levels& find_or_measure(const Mesh& mesh);
-  const StoredMesh& find_or_upload(const Mesh& mesh, int level, Levels& levels);
+  int find_level(const Draw& draw, const Frame& frame, float pixel_slope);
+  void make_missing(const Frame& frame, const std::vector<int>& levels);
   void drop_unseen();
-  Item make_item(const Draw& draw, const Frame& frame, float pixel_slope);
+  Item make_item(const Draw& draw, const Frame& frame, int level, float pixel_slope);
   void compare_with_earlier(std::vector<Item>& items, const Frame& frame);
   void upload_rows(const std::vector<Item>& items);
 

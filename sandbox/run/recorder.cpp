@@ -67,6 +67,9 @@ void Recorder::note_pictures(const Painted& painted, int first) {
       record.passes[pass].second.push_back(times[i]);
     }
   }
+  std::erase_if(record.passes, [](const auto& pass) {  // those that only other shots of the film have
+    return std::all_of(pass.second.begin(), pass.second.end(), [](double time) { return time == 0.0; });
+  });
 }
 
 void Recorder::finish(const world::World& world, double wall_seconds) {
