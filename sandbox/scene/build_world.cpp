@@ -16,6 +16,14 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
+/// About the frame's origin and about the centre of mass, which is known.
+void find_radii(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
+  for (const Vec3& p : mesh.positions) {
+    plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
+    plan.reach = std::max(plan.reach, (p - plan.centre).norm());
+  }
+}
+
 std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, const ShellForm& form,
                                                       const SceneDescription& scene, BodyPlan& plan,
                                                       std::vector<std::string>& notes, Problems& problems) {
@@ -26,8 +34,8 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
   shell.thickness = form.thickness.value_or(material.thickness);
   shell.is_breakable = form.is_breakable;
   shell.clamped = find_clamped(built->mesh, body.rotation, body.support, body.place, problems);
-  for (const Vec3& p : built->mesh.positions) plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
   plan.centre = geometry::shell_mass_properties(built->mesh, shell.thickness, 1.0).centre;
+  find_radii(built->mesh, plan);
   shell.mesh = std::move(built->mesh);
   shell.parts = std::move(built->parts);
   return shell;
@@ -45,8 +53,8 @@ std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, con
          "close the mesh's holes, or write kind = \"shell\" with a thickness");
     return std::nullopt;
   }
-  for (const Vec3& p : built->mesh.positions) plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
   plan.centre = geometry::solid_mass_properties(built->mesh, 1.0).centre;
+  find_radii(built->mesh, plan);
   world::SolidDescription solid;
   solid.is_breakable = form.is_breakable;
   solid.element_size = form.element_size.value_or(0.0);
@@ -88,10 +96,10 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
   description.contact_duration = body.contact_duration;
   if (const auto* box = std::get_if<BoxForm>(&body.form)) {
     description.form = world::BoxDescription{0.5 * box->size};
-    plan.bounding_radius = 0.5 * box->size.norm();
+    plan.bounding_radius = plan.reach = 0.5 * box->size.norm();
   } else if (const auto* sphere = std::get_if<SphereForm>(&body.form)) {
     description.form = world::SphereDescription{sphere->radius};
-    plan.bounding_radius = sphere->radius;
+    plan.bounding_radius = plan.reach = sphere->radius;
   } else if (const auto* form = std::get_if<ShellForm>(&body.form)) {
     auto shell = describe_shell(body, *form, scene, plan, notes, problems);
     if (!shell) return std::nullopt;

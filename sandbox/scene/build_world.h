@@ -18,6 +18,7 @@ struct BodyPlan {
   world::BodyDescription description;
   double bounding_radius = 0.0;  // m, about the frame's origin; 0 for planes
   Vec3 centre = Vec3::Zero();    // centre of mass in the mesh's frame, m
+  double reach = 0.0;            // m, of the farthest point from there
 };
 
 struct ScenePlan {

@@ -158,6 +158,29 @@ TEST_CASE("what a camera without a place must see reaches down to where bodies w
   CHECK(held.centre.y() == Approx(2.0));
 }
 
+TEST_CASE("a camera without a place goes down with what only falls, and stands where things are thrown") {
+  const auto look = [](const std::string& text, double time) {
+    const auto reading =
+        scene::read("[[body]]\nkind = \"plane\"\n[[body]]\nkind = \"sphere\"\nradius = 0.1\n" + text);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    scene::Problems problems;
+    const auto plan = scene::plan_bodies(*reading.scene, problems);
+    REQUIRE(plan.has_value());
+    return view::viewpoint_at(reading.scene->camera, view::find_subject(*reading.scene, *plan), time);
+  };
+  const std::string falling = "position = [0, 2, 0]\n";
+  CHECK(look(falling, 0.0).target.y() == Approx(2.0).margin(0.01));
+  CHECK(look(falling, 0.4).target.y() == Approx(2.0 - 0.5 * 9.81 * 0.16).margin(0.01));
+  CHECK(look(falling, 0.8).target.y() == Approx(0.0).margin(1e-9));
+  CHECK((look(falling, 0.8).position - look(falling, 0.8).target).norm() < 1.0);
+  for (const char* more : {"velocity = [3, 0, 0]\n", "motion = \"static\"\n"}) {
+    const auto begin = look(falling + more, 0.0), end = look(falling + more, 1.0);
+    CHECK(begin.target == end.target);
+    CHECK(begin.position == end.position);
+  }
+}
+
 TEST_CASE("the overlay level_set cuts solids open towards the eye and shows their distance to the surface") {
   const auto reading = scene::read(
       "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.4, 0.2, 0.6]\nposition = [0, 1, 0]\nbreakable "
