@@ -64,10 +64,10 @@ inline world::World make_everything() {
 inline constexpr int kBitSteps = 4;
 
 /// The chained hash behind each of the steps.
-inline std::vector<std::uint64_t> play_hashes() {
+inline std::vector<std::uint64_t> play_hashes(int steps = kBitSteps) {
   world::World w = make_everything();
   std::vector<std::uint64_t> hashes;
-  for (int i = 0; i < kBitSteps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     w.step();
     hashes.push_back(w.state_hash());
   }
