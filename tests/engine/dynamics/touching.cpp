@@ -34,7 +34,7 @@ struct Touched {
   double fastest = 0.0;  // m/s, of any point of any body
 };
 
-Touched watch(test::Scene& scene, int steps) {
+Touched watch_touching(test::Scene& scene, int steps) {
   Touched outcome;
   for (int i = 0; i < steps; ++i) {
     scene.step();
@@ -57,7 +57,7 @@ void check_pair(const Kind& upper, const Kind& lower, double gap, bool has_gravi
     scene.settings.gravity.setZero();
   scene.add(lower.make(gap));
   scene.add(upper.make(2.0 * gap + lower.height));
-  const Touched outcome = watch(scene, 24);
+  const Touched outcome = watch_touching(scene, 24);
   INFO(upper.name << " on " << lower.name << ", gap " << gap / kWidth << " of their size, "
                   << (has_gravity ? "with" : "without") << " gravity: fastest " << outcome.fastest << " m/s");
   CHECK(outcome.cut == 0);
@@ -94,13 +94,13 @@ TEST_CASE("bowls nested within 1e-5 of their size stay so, and leave each other 
     const double shift = gap / core::sin(core::kPi / 16.0);
     scene.add(kBowl.make(0.0));
     scene.add(kBowl.make(shift));
-    const Touched still = watch(scene, 24);
+    const Touched still = watch_touching(scene, 24);
     INFO("gap " << gap / kWidth << " of their size: fastest " << still.fastest << " m/s");
     CHECK(still.cut == 0);
     CHECK(still.exempt == 0);
     CHECK(still.fastest < 1e-7);
     scene.bodies[1].velocity = Vec3(0, 1.0, 0);
-    const Touched leaving = watch(scene, 120);
+    const Touched leaving = watch_touching(scene, 120);
     CHECK(leaving.cut == 0);
     CHECK(scene.bodies[0].velocity.norm() < 1e-6);
     CHECK(scene.bodies[1].velocity.y() == Approx(1.0).epsilon(1e-6));
@@ -115,12 +115,12 @@ TEST_CASE("plates edge to edge in one plane within 1e-5 of their size stay so, a
     plate.pose.translation.x() = (1.0 + 1e-5) * kWidth * k;
     scene.add(plate);
   }
-  const Touched still = watch(scene, 24);
+  const Touched still = watch_touching(scene, 24);
   CHECK(still.cut == 0);
   CHECK(still.fastest < 1e-7);
   scene.bodies[2].velocity = Vec3(0.5, 0.2, 0.3);
   scene.bodies[0].velocity = Vec3(-0.5, 0.2, 0.3);
-  const Touched leaving = watch(scene, 120);
+  const Touched leaving = watch_touching(scene, 120);
   CHECK(leaving.cut == 0);
   CHECK(scene.bodies[1].velocity.norm() < 1e-6);
   CHECK(scene.bodies[2].velocity.x() == Approx(0.5).epsilon(1e-6));
