@@ -33,6 +33,13 @@ inline bool overlaps(const Box& a, const Box& b, double margin = 0.0) {
          a.low.z() <= b.high.z() + margin && b.low.z() <= a.high.z() + margin;
 }
 
+/// About all vertices.
+inline Box box_of(const TriangleMesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.positions) box.include(p);
+  return box;
+}
+
 struct TriangleTree {
   struct Node {
     int right = 0;  // number of the second child; the first follows its parent. Unused in leaves

@@ -34,12 +34,6 @@ std::vector<NearTriangle> list_near_triangles(const TriangleMesh& mesh, const Bo
   return near;
 }
 
-Box box_of(const TriangleMesh& mesh) {
-  Box box;
-  for (const Vec3& p : mesh.positions) box.include(p);
-  return box;
-}
-
 // What of b's triangle lies over a's, in the plane of a.
 std::vector<Vec3> common_polygon(const NearTriangle& a, const NearTriangle& b) {
   std::vector<Vec3> polygon;

@@ -17,13 +17,6 @@ using core::at;
 constexpr int kPad = 3;  // cells about the surface: more than the patches reach, so that the rim is outside
 constexpr float kUnknown = std::numeric_limits<float>::max();
 
-Box box_of(const TriangleMesh& surface) {
-  Box box;
-  for (const Triangle& triangle : surface.triangles)
-    for (const int vertex : triangle) box.include(surface.positions[at(vertex)]);
-  return box;
-}
-
 // A grid while it is made; distances in cells.
 class LevelSetGrid {
  public:

@@ -6,6 +6,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/hash.h"
+#include "engine/geometry/mass_properties.h"
 #include "render/frame/expand.h"
 
 namespace shatterbox::sandbox::view {
@@ -46,15 +47,8 @@ double greatest_depth(const scene::ScenePlan& plan) {
   for (const scene::BodyPlan& body : plan.bodies) {
     const auto* solid = std::get_if<world::SolidDescription>(&body.description.form);
     if (solid == nullptr) continue;
-    double six_volumes = 0.0, two_areas = 0.0;
-    for (const geometry::Triangle& t : solid->mesh.triangles) {
-      const auto corner = [&](std::size_t i) {
-        return solid->mesh.positions[static_cast<std::size_t>(t[i])];
-      };
-      six_volumes += corner(0).dot(corner(1).cross(corner(2)));
-      two_areas += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
-    }
-    if (two_areas > 0.0) most = std::max(most, 1e3 * six_volumes / two_areas);
+    const double area = geometry::surface_area(solid->mesh);
+    if (area > 0.0) most = std::max(most, 3e3 * geometry::enclosed_volume(solid->mesh) / area);
   }
   return most;
 }

@@ -145,9 +145,10 @@ void View::cut_open(const body::Body& body, DrawnShape& drawn, const Vec3& eye, 
   const auto entry = static_cast<std::size_t>(origin->second.entry);
   const auto [space, is_new] = level_set_spaces_.try_emplace(entry);
   if (is_new) space->second = geometry::make_level_set_space(2.0 * built_.plan.bodies[entry].bounding_radius);
-  if (drawn.level_set.level_set(*body.shape, space->second) == nullptr) return;
+  if (!drawn.slices) drawn.slices = std::make_unique<SliceShelf>();
+  if (drawn.slices->level_set(*body.shape, space->second) == nullptr) return;
   const Slice& slice =
-      drawn.level_set.slice(*body.shape, side_towards(body.pose.apply_inverse(eye)), next_mesh_);
+      drawn.slices->slice(*body.shape, side_towards(body.pose.apply_inverse(eye)), next_mesh_);
   draw.mesh = slice.mesh;
   draw.scalars = slice.distances;
 }
@@ -247,8 +248,9 @@ render::Frame View::make_frame(const Moment& moment, glm::vec2 lens) {
 world::PartCount View::level_sets() const {
   world::PartCount count{"level_sets", 0, 0.0};
   for (const auto& [shape, drawn] : shapes_) {
-    count.count += drawn.level_set.bytes() > 0.0 ? 1 : 0;
-    count.bytes += drawn.level_set.bytes();
+    if (!drawn.slices) continue;
+    count.count += drawn.slices->bytes() > 0.0 ? 1 : 0;
+    count.bytes += drawn.slices->bytes();
   }
   for (const auto& [entry, space] : level_set_spaces_) count.bytes += space.patches->figures().bytes;
   return count;

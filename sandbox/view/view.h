@@ -47,7 +47,7 @@ class View {
     std::shared_ptr<const body::Shape> shape;  // kept, so that its address is not used again
     std::shared_ptr<const render::Mesh> mesh;
     std::optional<GrainMesh> grains;
-    SliceShelf level_set;
+    std::unique_ptr<SliceShelf> slices;  // only where the overlay has asked
     std::uint64_t last_frame = 0;
   };
 
