@@ -33,32 +33,78 @@ class IslandSolver {
       : settings_(settings),
         island_(island),
         work_(work),
-        step_(settings.time_step / settings.substeps),
+        substep_(settings.time_step / settings.substeps),
+        step_(substep_),
         joints_(island, step_, work) {}
 
   void run() {
     begin();
     for (int i = 0; i < settings_.substeps; ++i) {
-      substep_start_ = i * step_;
       ride(i);
-      kick();
       if (i == 0) prepare(0);  // later ones begin where the one before ended
-      is_before_drift_ = true;
-      find_arrivals();
-      start_warm(0.5);
-      sweep_before_drift();
-      is_before_drift_ = false;
-      drift();
-      kick();
-      prepare(i + 1);
-      start_warm(0.5);
-      sweep_after_drift();
-      bounce();
-      book();
+      double gone = 0.0;
+      for (int cut = 0; gone < substep_; ++cut) {
+        part_start_ = i * substep_ + gone;
+        set_step(cut < kMostCuts ? until_first_arrival(substep_ - gone) : substep_ - gone);
+        take_part(i + 1);
+        gone = step_ < substep_ - gone ? gone + step_ : substep_;
+      }
+      for (const int k : island_.bodies)
+        if (body(k).shape->kind != body::ShapeKind::sphere)
+          body(k).substep_rotations.push_back(body(k).rotation);
     }
+    set_step(substep_);
   }
 
  private:
+  void take_part(int substeps) {
+    kick();
+    is_before_drift_ = true;
+    find_arrivals();
+    start_warm(0.5);
+    sweep_before_drift();
+    is_before_drift_ = false;
+    drift();
+    kick();
+    prepare(substeps);
+    start_warm(0.5);
+    sweep_after_drift();
+    bounce();
+    book();
+  }
+
+  // What contacts remember is of a part as long as this one.
+  void set_step(double step) {
+    if (step == step_) return;
+    const double ratio = step / step_;
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      c.warm *= ratio;
+      c.strained_from *= ratio;
+    }
+    step_ = step;
+  }
+
+  // Where contacts are few, a substep is cut where the first of them arrives: it bounces there and then, and
+  // what comes later, or never for that, bears nothing of it.
+  double until_first_arrival(double left) {
+    const bool is_large = island_.contacts.size() > kMostCutContacts;
+    if (is_large || has_scripted_ || !joints_.is_empty()) return left;
+    double first = left;
+    for (const int i : island_.contacts) {
+      const SolverContact& c = work_.contacts[at(i)];
+      const double speed = relative_velocity(c)[0];  // closing is negative
+      const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
+      const double way = std::max(0.0, c.slack) + kTouching * c.kept_gap;
+      const double speed_squared = speed * std::abs(speed) + 2.0 * drive * way;
+      if (speed_squared >= -c.threshold * c.threshold) continue;
+      first = std::min(first, 2.0 * way / (std::sqrt(-speed_squared) - speed));
+    }
+    const double least = kLeastPart * substep_;
+    first = std::max(first, least);
+    return left - first < least ? left : first;
+  }
+
   // The solver may be run again with more contacts: all begins at the start of the step.
   void begin() {
     seen_.assign(island_.contacts.size(), 0.0);
@@ -139,7 +185,6 @@ class IslandSolver {
       place_inertia(b);
       if (b.shape->kind != body::ShapeKind::sphere) {
         b.turn_angle += b.spin.norm() * step_;
-        b.substep_rotations.push_back(b.rotation);
       }
     }
   }
@@ -232,7 +277,7 @@ class IslandSolver {
       c.is_arriving = true;
       has_arrivals_ = true;
       c.arrival_speed = std::max(c.arrival_speed, speed);
-      if (c.closing_speed == 0.0) c.arrival_time = substep_start_ + std::min(step_, way / -after_kick);
+      if (c.closing_speed == 0.0) c.arrival_time = part_start_ + std::min(step_, way / -after_kick);
       if (speed > c.closing_speed) {
         c.closing_speed = speed;
         c.effective_mass = c.weights[0];
@@ -251,7 +296,7 @@ class IslandSolver {
 
   // Friction on the normal impulse that `change` leads to, and at the pose that its own drift is to mend.
   void rub(const SolverContact& c, const Vec3& velocity, Vec3& change) const {
-    const Vec2 back = is_before_drift_ ? way_back(c, step_) : Vec2(Vec2::Zero());
+    const Vec2 back = is_before_drift_ ? way_back(c, substep_) : Vec2(Vec2::Zero());
     change.tail<2>() = friction_change(c, velocity.tail<2>() + back, c.impulse[0] + change[0]);
   }
 
@@ -368,7 +413,7 @@ class IslandSolver {
     // turn.
     if (c.slack > kTouching * c.kept_gap) return -c.slack / step_;
     if (c.slack > 0.0) return 0.0;
-    const double opening = std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / step_;
+    const double opening = std::min(0.2 * -c.slack, 0.4 * c.kept_gap) / substep_;
     const double bearable = (c.has_sides || c.can_creep ? kEased : kEasedMoving) * c.strained_from;
     if (c.warm[0] <= bearable) return opening;
     // What is wedged cannot be opened: insisting would only press its bodies against each other, without end.
@@ -529,18 +574,22 @@ class IslandSolver {
   static constexpr double kBounced = 1e-9;      // of the speed: error of a bounce
   static constexpr double kStill = 0.25;        // of what a sweep may leave
   static constexpr double kFastSpin = 0.005;    // rad a substep
-  static constexpr int kJointSweeps = 8;        // of an island with joints in which nothing arrives
+  static constexpr std::size_t kMostCutContacts = 64;  // of an island in which substeps are cut
+  static constexpr int kMostCuts = 8;                  // of a substep
+  static constexpr double kLeastPart = 1.0 / 1024.0;   // of a substep
+  static constexpr int kJointSweeps = 8;               // of an island with joints in which nothing arrives
 
   const ContactSettings& settings_;
   const Island& island_;
   MotionWork& work_;
-  const double step_;
+  const double substep_;  // s
+  double step_;           // s, of the part of it that is taken
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
   std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island
   double course_square_ = 0.0;               // N2 s2, of the last change
-  double substep_start_ = 0.0;               // s since the step's start
+  double part_start_ = 0.0;                  // s since the step's start
   bool has_arrivals_ = false;
   bool has_scripted_ = false;  // a scripted body is in it
   bool is_before_drift_ = false;

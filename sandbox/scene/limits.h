@@ -16,7 +16,7 @@ inline constexpr double kMostFall = 0.02;
 inline constexpr double kMostMassRatio = 1e4;
 /// Bounces as elastic as this keep their energy only at so many steps a second (study contact: gas).
 inline constexpr double kElastic = 0.9;
-inline constexpr int kElasticRate = 960;
+inline constexpr int kElasticRate = 120;
 
 /// Sentences about gravity too strong for the step, and about masses too far apart, of the bodies that can
 /// move, bounces too elastic for the step, and solids that resist a change of volume more than their stress

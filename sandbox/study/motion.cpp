@@ -182,7 +182,6 @@ Plan make_plan(bool is_quick) {
       "bounce",
       "a ball of restitution 0.8 dropped from 1 to 1.1 m (worst of 8), 1.9 s later, against its parabolas",
       {"height", "energy"});
-  ball.theory = {1.0};
   add_rates(plan, ball, rates,
             [](int rate) { return worst_of_starts([rate](double h) { return bounce(rate, h); }, 1.0); });
   Table rolling = rate_table(

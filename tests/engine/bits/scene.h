@@ -38,7 +38,7 @@ inline world::World make_everything() {
   solid.element_size = 0.04;
   slab.form = solid;
   slab.pose.rotation = Quat(Eigen::Quaterniond(0.97, 0.1, 0.15, 0.16).normalized());
-  add(slab, plaster_number, Vec3(0.3, 0.07, 0), Vec3(0, -8, 0));
+  add(slab, plaster_number, Vec3(0.3, 0.07, 0), Vec3(0, -10, 0));
   box.form = world::BoxDescription{Vec3::Constant(0.02)};
   std::vector<body::BodyId> stack;
   for (int k = 0; k < 3; ++k)

@@ -2,8 +2,13 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cfenv>
+#include <chrono>
+#include <csetjmp>
+#include <csignal>
 #include <mutex>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -96,6 +101,64 @@ TEST_CASE("a loop within a loop is whole, though another chunk of the outer one 
     CHECK(broken == 0);
   }
   set_thread_count(0);
+}
+
+namespace {
+
+thread_local sigjmp_buf before_trap;
+
+void leave_trap(int) {
+  siglongjmp(before_trap, 1);
+}
+
+/// Whether `work` traps on this thread.
+template <class Work>
+bool does_trap(const Work& work) {
+  const int traps = fegetexcept();
+  if (sigsetjmp(before_trap, 1) != 0) {
+    feenableexcept(traps);  // a handler runs without
+    return true;
+  }
+  work();
+  return false;
+}
+
+/// Of a division by zero, the root of a negative number and an overflow, how many trap on this thread.
+int count_traps() {
+  static volatile double zero = 0.0, great = 1e300;
+  int traps = does_trap([] { [[maybe_unused]] const volatile double x = 1.0 / zero; }) ? 1 : 0;
+  traps += does_trap([] { [[maybe_unused]] const volatile double x = zero / zero; }) ? 1 : 0;
+  traps += does_trap([] { [[maybe_unused]] const volatile double x = great * great; }) ? 1 : 0;
+  return traps;
+}
+
+}  // namespace
+
+TEST_CASE("what is no number traps on every thread of a loop") {
+  using Clock = std::chrono::steady_clock;
+  struct sigaction act = {}, old = {};
+  act.sa_handler = leave_trap;
+  REQUIRE(sigaction(SIGFPE, &act, &old) == 0);
+  set_thread_count(3);
+  std::mutex mutex;
+  std::set<std::thread::id> seen;
+  std::atomic<int> traps = 0;
+  std::atomic<std::size_t> threads = 0;
+  // Each chunk waits for another thread, so that a machine that is busy does not do all on one.
+  const auto patience = Clock::now() + std::chrono::seconds(20);
+  parallel_for(12, 1, [&](std::size_t) {
+    traps += count_traps();
+    {
+      const std::lock_guard lock(mutex);
+      seen.insert(std::this_thread::get_id());
+      threads = seen.size();
+    }
+    while (threads < 2 && Clock::now() < patience) std::this_thread::yield();
+  });
+  set_thread_count(0);
+  sigaction(SIGFPE, &old, nullptr);
+  CHECK(threads >= 2);
+  CHECK(traps == 3 * 12);
 }
 
 }  // namespace shatterbox::core

@@ -52,30 +52,36 @@ Outcome run(test::Scene& scene, int steps) {
 }  // namespace
 
 TEST_CASE("free fall does not know of the failsafe until something is hit") {
-  test::Scene scene;
-  scene.settings.has_sleep = false;
-  scene.add(test::make_plane());
-  for (int k = 0; k < 3; ++k) {
-    auto bowl = test::make_shell(test::bowl_mesh(0.1, 4, 12, -0.2));
-    bowl.pose.translation = Vec3(0.01 * k, 0.5 + 0.05 * k, 0);  // each in the one below, and none touches
-    scene.add(bowl);
+  int cut = 0;
+  for (const double height : {0.5, 0.52, 0.54}) {
+    test::Scene scene;
+    scene.settings.has_sleep = false;
+    scene.add(test::make_plane());
+    for (int k = 0; k < 3; ++k) {
+      auto bowl = test::make_shell(test::bowl_mesh(0.1, 4, 12, -0.2));
+      bowl.pose.translation =
+          Vec3(0.01 * k, height + 0.05 * k, 0);  // each in the one below, and none touches
+      scene.add(bowl);
+    }
+    const auto start = scene.bodies;
+    const double energy = scene.energy();
+    const auto falling = run(scene, 60);
+    CHECK(falling.cut == 0);
+    for (std::size_t k = 1; k < 4; ++k) {
+      const double fallen = start[k].pose.translation.y() - scene.bodies[k].pose.translation.y();
+      CHECK(fallen == Approx(0.5 * 9.81 * 0.0625).epsilon(1e-12));
+    }
+    const auto landing = run(scene, 900);
+    WARN("three bowls: " << landing.cut << " body-steps cut in " << landing.forced
+                         << " forced steps, longest " << landing.longest << ", fastest at the end "
+                         << scene.bodies[3].velocity.norm());
+    cut += landing.cut;
+    CHECK(landing.longest <= 3);
+    CHECK(landing.most <= energy * (1.0 + 1e-9));
+    CHECK(scene.kinetic() < 1e-3);  // of 0.5 kg
+    for (std::size_t k = 1; k < 4; ++k) CHECK(scene.bodies[k].pose.translation.y() < 0.2);
   }
-  const auto start = scene.bodies;
-  const double energy = scene.energy();
-  const auto falling = run(scene, 60);
-  CHECK(falling.cut == 0);
-  for (std::size_t k = 1; k < 4; ++k) {
-    const double fallen = start[k].pose.translation.y() - scene.bodies[k].pose.translation.y();
-    CHECK(fallen == Approx(0.5 * 9.81 * 0.0625).epsilon(1e-12));
-  }
-  const auto landing = run(scene, 900);
-  WARN("three bowls: " << landing.cut << " body-steps cut in " << landing.forced << " forced steps, longest "
-                       << landing.longest << ", fastest at the end " << scene.bodies[3].velocity.norm());
-  CHECK(landing.cut > 3);
-  CHECK(landing.longest <= 3);
-  CHECK(landing.most <= energy * (1.0 + 1e-9));
-  CHECK(scene.kinetic() < 1e-3);  // of 0.5 kg
-  for (std::size_t k = 1; k < 4; ++k) CHECK(scene.bodies[k].pose.translation.y() < 0.2);
+  CHECK(cut > 3);
 }
 
 TEST_CASE("a pile whose solver fails every tenth step comes to rest where others do, and gains nothing") {

@@ -155,7 +155,7 @@ TEST_CASE("a scene 1e5 m from the origin is the same scene") {
   const auto there = played_at(1.0, Vec3(1e5, -1e5, 1e5));
   for (std::size_t i = 0; i < here.size(); ++i) {
     CAPTURE(i);
-    CHECK((there[i] - here[i]).norm() < 1e-5);  // of boxes of 0.2 m
+    CHECK((there[i] - here[i]).norm() < 1e-4);  // of boxes of 0.2 m
   }
 }
 

@@ -37,7 +37,7 @@ double error_at_default(const Table& table, std::size_t error = 0) {
 
 }  // namespace
 
-TEST_CASE("study motion: exact flight and orders of spin and of bounces") {
+TEST_CASE("study motion: exact flight and bounces and the order of spin") {
   const StudyResult result = run_quick("motion");
   INFO(describe(result));
   const auto top = fit_order(table_of(result, "top"), 0);
@@ -46,10 +46,10 @@ TEST_CASE("study motion: exact flight and orders of spin and of bounces") {
   CHECK(error_at_default(table_of(result, "top"), 1) < 1e-12);
   for (const Row& row : table_of(result, "throw").rows) CHECK(row.errors[0] < 1e-12);
   for (const Row& row : table_of(result, "incline").rows) CHECK(row.errors[0] < 1e-5);
-  const auto bounce = fit_order(table_of(result, "bounce"), 0);
-  REQUIRE(bounce);
-  CHECK(bounce->order == Approx(1.0).margin(0.35));  // worst of 8 starts, over 4 step sizes
-  for (const Row& row : table_of(result, "bounce").rows) CHECK(row.errors[1] < 1e-6);
+  for (const Row& row : table_of(result, "bounce").rows) {
+    CHECK(row.errors[0] < 1e-4);  // it bounces where it arrives, whatever the step
+    CHECK(row.errors[1] < 1e-6);
+  }
   for (const Row& row : table_of(result, "roll").rows) {
     CHECK(row.errors[0] < 1e-6);
     CHECK(row.errors[1] < 1e-10);
@@ -113,7 +113,8 @@ TEST_CASE("study contact: weights are carried and momentum is kept, nothing cros
     }
   for (const char* name : {"gas-steps", "gas-substeps"})
     for (const Row& row : table_of(result, name).rows) {
-      CHECK(row.errors[0] < 0.02);
+      CHECK(row.errors[0] <
+            (row.is_default ? 1e-3 : 0.1));  // coarser ones may lose one of eight balls' bounce
       CHECK(row.errors[1] < 1e-12);
       CHECK(row.errors[2] == 0.0);
       CHECK(row.errors[3] > 20.0);
