@@ -78,17 +78,22 @@ double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
   return figures.kinetic_energy + figures.potential_energy;
 }
 
-/// Momentum that gravity and the logged impulses of what stands still (fixed bodies, sleepers) explain.
-Vec3 explained_momentum(const std::vector<body::Body>& bodies, const body::ImpulseLog& log,
-                        const Vec3& gravity, double time_step) {
+/// Momentum that gravity and the logged impulses of what stands still (fixed bodies, sleepers) explain. What
+/// broke and left its pieces its motion is in `before` alone, its pieces in `bodies` alone.
+Vec3 explained_momentum(const std::vector<body::Body>& before, const std::vector<body::Body>& bodies,
+                        const body::ImpulseLog& log, const Vec3& gravity, double time_step) {
+  const auto moved = [&](body::BodyId id) -> const body::Body* {
+    if (const body::Body* body = body::find_body(bodies, id))
+      return body->is_dynamic() && body->is_awake ? body : nullptr;
+    const body::Body* broken = body::find_body(before, id);
+    return broken && broken->is_dynamic() ? broken : nullptr;
+  };
   Vec3 sum = Vec3::Zero();
-  for (const body::Body& body : bodies)
-    if (body.is_dynamic() && body.is_awake) sum += body.shape->mass * time_step * gravity;
+  for (const body::Body& body : before)
+    if (moved(body.id)) sum += body.shape->mass * time_step * gravity;
   for (const body::LoggedImpulse& entry : log) {
-    const body::Body* a = body::find_body(bodies, entry.body_a);
-    const body::Body* b = body::find_body(bodies, entry.body_b);
-    if (a && a->is_dynamic() && a->is_awake) sum += entry.impulse_world;
-    if (b && b->is_dynamic() && b->is_awake) sum -= entry.impulse_world;
+    if (moved(entry.body_a)) sum += entry.impulse_world;
+    if (moved(entry.body_b)) sum -= entry.impulse_world;
   }
   return sum;
 }
@@ -341,7 +346,7 @@ void World::book_conservation(const std::vector<body::Body>& before, const body:
   ConservationFigures start;
   total_energy(before, s.settings.gravity, start);
   const double energy = total_energy(s.moving.bodies, s.settings.gravity, figures);
-  const Vec3 explained = explained_momentum(s.moving.bodies, log, s.settings.gravity, time_step);
+  const Vec3 explained = explained_momentum(before, s.moving.bodies, log, s.settings.gravity, time_step);
   const double error = (figures.momentum - start.momentum - explained).norm();
   figures.momentum_error = std::max(figures.momentum_error, error);
   const bool is_driven = std::any_of(s.moving.bodies.begin(), s.moving.bodies.end(),

@@ -35,6 +35,7 @@ material = "steel"
 position = [0, 0.05005, 0]
 )";
 
+constexpr int kUnbounded = 100;  // generations: no break of the study is ended by their number
 constexpr double kSoftHeight = 0.08, kHardHeight = 1.0;  // m
 constexpr double kLowest = 0.001, kHighest = 10.0;       // m, that a breaking height is sought between
 constexpr int kHalvings = 10;                            // of the logarithm of their ratio: to 1 %
@@ -64,7 +65,10 @@ ScenePlay bauble(const StepCase& how, double height, double speed, int seed) {
   overrides.push_back(fmt::format("whole.position=[0, {}, 0]", kBaubleRadius + height));
   overrides.push_back(fmt::format("whole.velocity=[0, {}, 0]", -speed));
   if (how.criterion == world::Criterion::penalty) overrides.emplace_back("scene.after_break=\"inherit\"");
-  return ScenePlay(scene_of(kBaubleText, overrides));
+  scene::SceneDescription description = scene_of(kBaubleText, overrides);
+  world::WorldSettings& settings = description.world;
+  settings.crack_generations = settings.piece_generations = settings.most_generations = kUnbounded;
+  return ScenePlay(std::move(description));
 }
 
 double fall_time(double height) {
@@ -113,6 +117,8 @@ HardHit play_hard_hit(const StepCase& how, int seeds, double after) {
       hit.guards += row.energy_guard_active ? 1 : 0;
       hit.bounds += row.generation_bound_active ? 1 : 0;
     }
+    for (const world::ImpactRow& row : report.impacts)
+      hit.bounds += row.verdict.find("used all its generations") != std::string::npos ? 1 : 0;
     if (!report.impacts.empty()) hit.ratio += report.impacts[0].ratio / seeds;
     if (report.breaks.empty()) continue;
     const world::BreakRow& first = report.breaks[0];
