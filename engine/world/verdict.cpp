@@ -305,9 +305,9 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   core::parallel_for(candidates.size(), 1, [&](std::size_t i) {
     const Candidate& candidate = candidates[i];
     fracture::FractureSettings how;
-    how.most_generations =
-        candidate.is_piece ? std::min(settings.piece_generations, settings.crack_generations)
-                           : settings.crack_generations;
+    how.most_generations = candidate.is_piece
+                               ? std::min(settings.piece_generations, settings.crack_generations)
+                               : settings.crack_generations;
     // Cracks of solids go on for longer before they part anything, and their solves cost less.
     if (std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject))
       how.most_generations = kSolidGenerations;

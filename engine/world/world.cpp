@@ -14,9 +14,17 @@ World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) 
   state_->contact_settings.substeps = settings.substeps;
 }
 
+World::World(std::unique_ptr<State> state) : state_(std::move(state)) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
+
+World World::copy() const {
+  auto state = std::make_unique<State>(*state_);
+  state->wants_to_stop = {};
+  state->watcher = {};
+  return World(std::move(state));
+}
 
 core::Result<int> World::add_material(const material::Material& material) {
   if (const auto fault = material::find_fault(material))

@@ -53,6 +53,10 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
+  /// The world as it is now, kept: it goes on as this one would, to the same bits, whatever becomes of this
+  /// one. It shares what never changes. Nobody stops or watches it.
+  World copy() const;
+
   /// Adds a material and returns its number. Reasons for refusal: a value out of its range.
   core::Result<int> add_material(const material::Material& material);
   void add_pair(const PairOverride& pair);
@@ -126,6 +130,7 @@ class World {
 
  private:
   struct State;
+  explicit World(std::unique_ptr<State> state);
 
   /// What a step leaves behind if it is abandoned: nothing.
   StepBegin note_begin() const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -94,9 +96,31 @@ Pool break_many(const char* text, const Vec3& velocity, int seeds, double after,
   return pool;
 }
 
-Measured fit_sizes(const char* text, const Vec3& velocity, int seeds, double edge, double low, double high) {
+/// The share of pieces heavier than each, of those that the law is fitted to, and the law: two curves.
+void add_curves(const char* name, const Pool& pool, const PowerLaw& law, Figure& figure) {
+  std::vector<double> sizes;
+  for (const double mass : pool.masses)
+    if (mass >= pool.least) sizes.push_back(mass / pool.least);
+  if (sizes.size() < 2) return;
+  std::sort(sizes.begin(), sizes.end());
+  Figure::Curve found{name, {}, {}}, fitted{fmt::format("density m^-{:.2f}", law.exponent), {}, {}};
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    found.x.push_back(sizes[i]);
+    found.y.push_back(static_cast<double>(sizes.size() - i) / static_cast<double>(sizes.size()));
+  }
+  for (const double size : {1.0, sizes.back()}) {
+    fitted.x.push_back(size);
+    fitted.y.push_back(std::pow(size, 1.0 - law.exponent));
+  }
+  figure.curves.push_back(found);
+  figure.curves.push_back(fitted);
+}
+
+Measured fit_sizes(const char* name, const char* text, const Vec3& velocity, int seeds, double edge,
+                   double low, double high, Figure& figure) {
   const Pool pool = break_many(text, velocity, seeds, seeds > 1 ? 0.1 : 0.0, edge);
   const PowerLaw law = fit_power_law(pool.masses, pool.least);
+  add_curves(name, pool, law, figure);
   const double outside = std::max({0.0, low - law.exponent, law.exponent - high});
   return {
       {outside, law.exponent, law.half_width, static_cast<double>(law.count), pool.pieces}, pool.seconds, ""};
@@ -335,10 +359,14 @@ Plan make_fragments_plan(bool is_quick) {
   sizes.is_plotted = false;
   const int seeds = is_quick ? 1 : 8;
   const double shell_edge = is_quick ? 0.006 : 0.003, pane_edge = is_quick ? 0.04 : 0.02;  // m
+  const auto figures = std::make_shared<std::map<std::string, Figure>>();  // by case: a job may run again
   const auto add = [&](const char* name, const char* text, const Vec3& velocity, double edge, double low,
                        double high) {
-    plan.jobs.push_back(
-        {0, name, kNoNumber, false, [=] { return fit_sizes(text, velocity, seeds, edge, low, high); }});
+    plan.jobs.push_back({0, name, kNoNumber, false, [=] {
+                           Figure& figure = (*figures)[name];
+                           figure.curves.clear();
+                           return fit_sizes(name, text, velocity, seeds, edge, low, high, figure);
+                         }});
   };
   add("glass sphere, floor at 4 m/s", kShell, Vec3(0, -4, 0), shell_edge, 1.1, 1.6);
   if (!is_quick) add("glass sphere, floor at 8 m/s", kShell, Vec3(0, -8, 0), shell_edge, 1.1, 1.6);
@@ -368,6 +396,18 @@ Plan make_fragments_plan(bool is_quick) {
   add_corners(plan, is_quick);
   add_heights(plan, is_quick);
   plan.conclude = conclude;
+  plan.draw = [figures](const std::vector<Table>&) {
+    Figure all{"sizes",
+               "shares of the pieces that are heavier, and the fitted densities",
+               "mass, of ten triangles",
+               "share of the pieces",
+               true,
+               true,
+               {}};
+    for (const auto& [name, figure] : *figures)
+      all.curves.insert(all.curves.end(), figure.curves.begin(), figure.curves.end());
+    return std::vector{all};
+  };
   return plan;
 }
 

@@ -24,9 +24,9 @@ struct Extent {
   int finest = 7680;       // of the references
   double edge = 0.0042;    // m
   int seeds = 5;
-  bool has_dust = true;                  // what a penalty breaks into thousands
-  double after = 0.05;                   // s, behind a hit that breaks
-  double rest = 60.0, paper_rest = 1.0;  // s; the paper's criterion solves in every step
+  bool has_dust = true;  // what a penalty breaks into thousands
+  double after = 0.05;   // s, behind a hit that breaks
+  double rest = 60.0;    // s
   std::shared_ptr<double> paper_duration = std::make_shared<double>(0.0);  // s, found when first asked for
 };
 
@@ -135,7 +135,11 @@ void add_breaks(Plan& plan, const Extent& extent) {
     const auto reference = std::make_shared<Reference<HardHit>>(judged, extent, play);
     Table table = rate_table(
         "break" + std::string(judged.suffix),
-        what_of(judged, "the bauble falls from 1 m and breaks, means over flaw seeds, beside a finer step"),
+        what_of(judged,
+                fmt::format("the bauble falls from 1 m and breaks, means over {} flaw seeds, no bound on "
+                            "generations, beside a finer step",
+                            extent.seeds)
+                    .c_str()),
         {"pieces of the first break", "pieces of the first break, number", "stress / strength", "crack area",
          "masses (Kolmogorov)", "pieces at the end, number", "first crack, of the radius off"});
     add_rates(plan, table, extent.rates, [judged, reference, play, extent](int rate) {
@@ -155,24 +159,28 @@ void add_breaks(Plan& plan, const Extent& extent) {
 }
 
 void add_rests(Plan& plan, const Extent& extent) {
-  const auto density = std::make_shared<double>(0.0);
   for (const Judged& judged : kAll) {
-    const double length = judged.criterion == Criterion::paper ? extent.paper_rest : extent.rest;
+    const auto density = std::make_shared<double>(0.0);
+    // The paper's criterion solves in every step: fewer triangles.
+    const double pane_edge = judged.criterion == Criterion::paper ? 0.05 : 0.025, length = extent.rest;
     const std::string what =
         judged.criterion == Criterion::event
             ? fmt::format(
                   "a ball rests on a pane for {:g} s, at 0.95 and 1.05 of what the pane bears: it must "
                   "hold and break",
                   length)
-            : fmt::format("the same under {} for {:g} s", judged.words, length);
+            : fmt::format(
+                  "the same under {} for {:g} s{}", judged.words, length,
+                  judged.criterion == Criterion::paper ? ", on a pane of half as fine triangles" : "");
     Table table = rate_table("rest" + std::string(judged.suffix), what,
                              {"wrong verdicts of 2", "breaks at 0.95", "breaks at 1.05"});
     table.is_relative = false;
     table.is_plotted = false;
     table.value_name.clear();
-    add_rates(plan, table, extent.rates, [judged, length, density, extent](int rate) {
-      if (*density == 0.0) *density = find_critical_density();
-      const StepCase how = case_of(extent, rate, judged.criterion);
+    add_rates(plan, table, extent.rates, [judged, length, pane_edge, density, extent](int rate) {
+      if (*density == 0.0) *density = find_critical_density(pane_edge);
+      StepCase how = case_of(extent, rate, judged.criterion);
+      how.pane_edge = pane_edge;
       Measured measured;
       measured.seconds = 0.0;
       const bool light = does_break_at_rest(how, 0.95 * *density, length, measured.seconds);
@@ -196,7 +204,7 @@ std::pair<double, double> extremes_of(const Table& table, std::size_t column) {
 }
 
 /// What a table says, of its kind ("hit") and criterion.
-std::string sentence_of(const std::string& kind, const Judged& judged, const Table& table) {
+std::string sentence_of(const std::string& kind, const Judged& judged, const Table& table, int seeds) {
   const Row &coarse = table.rows.front(), &fine = table.rows.back();
   const std::string steps = fmt::format("{} to {} steps a second", coarse.setting, fine.setting);
   if (kind == "hit") {
@@ -215,12 +223,16 @@ std::string sentence_of(const std::string& kind, const Judged& judged, const Tab
   }
   if (kind == "break") {
     const auto [low, high] = extremes_of(table, 1);
+    const double farthest = extremes_of(table, 4).second;
+    // Of two samples of one law, that are that large.
+    const double chance = 1.36 * std::sqrt(2.0 / (seeds * std::max(1.0, low)));
     return fmt::format(
-        "Pieces of the first break, {}: {:.3g} to {:.3g}, {:.3g} at {} steps a second and {:.3g} at {}; at "
-        "the "
-        "end {:.3g} and {:.3g}.",
-        judged.words, low, high, coarse.errors[1], coarse.setting, fine.errors[1], fine.setting,
-        coarse.errors[5], fine.errors[5]);
+        "Pieces of the first break, {}: {:.3g} to {:.3g}, {:.3g} at {} steps a second and {:.3g} at {}. "
+        "Their "
+        "masses are at most {:.2g} from the finer step's (Kolmogorov): {} than what two samples of one law "
+        "keep to nineteen times of twenty, {:.2g}.",
+        judged.words, low, high, coarse.errors[1], coarse.setting, fine.errors[1], fine.setting, farthest,
+        farthest <= chance ? "no more" : "more", chance);
   }
   double wrong = 0.0;
   for (const Row& row : table.rows) wrong += row.errors[0];
@@ -228,13 +240,13 @@ std::string sentence_of(const std::string& kind, const Judged& judged, const Tab
                      2 * table.rows.size());
 }
 
-std::vector<std::string> conclude(const std::vector<Table>& tables) {
+std::vector<std::string> conclude(const std::vector<Table>& tables, int seeds) {
   std::vector<std::string> sentences;
   for (const char* kind : {"hit", "height", "break", "rest"})
     for (const Judged& judged : kAll)
       for (const Table& table : tables)
         if (table.name == std::string(kind) + judged.suffix && table.rows.size() > 1)
-          sentences.push_back(sentence_of(kind, judged, table));
+          sentences.push_back(sentence_of(kind, judged, table, seeds));
   return sentences;
 }
 
@@ -248,7 +260,7 @@ Plan make_step_size_plan(bool is_quick) {
     extent.seeds = 1;
     extent.has_dust = false;
     extent.after = 0.005;
-    extent.rest = extent.paper_rest = 0.3;
+    extent.rest = 0.3;
   }
   Plan plan;
   add_hits(plan, extent);
@@ -257,7 +269,9 @@ Plan make_step_size_plan(bool is_quick) {
   add_breaks(plan, broken);
   if (!is_quick) add_heights(plan, extent);
   add_rests(plan, extent);
-  plan.conclude = conclude;
+  plan.conclude = [seeds = extent.seeds](const std::vector<Table>& tables) {
+    return conclude(tables, seeds);
+  };
   return plan;
 }
 

@@ -22,7 +22,6 @@ kind = "shell"
 shape = "pane"
 width = 0.5
 height = 0.5
-edge_length = 0.025
 rotation = [-90, 0, 0]
 material = "glass"
 thickness = 0.003
@@ -156,9 +155,10 @@ BreakingHeight find_breaking_height(const StepCase& how) {
   return found;
 }
 
-double find_critical_density() {
+double find_critical_density(double pane_edge) {
   const double light = 20000.0;  // kg/m3: what it does to the pane is in proportion
   Overrides overrides = overrides_of({60, world::Criterion::event});
+  overrides.push_back(fmt::format("pane.edge_length={}", pane_edge));
   overrides.push_back(fmt::format("ball.density={}", light));
   ScenePlay play(scene_of(kRestText, overrides));
   play.play_until(0.5);
@@ -171,6 +171,7 @@ double find_critical_density() {
 bool does_break_at_rest(const StepCase& how, double density, double length, double& seconds) {
   Overrides overrides = overrides_of(how);
   overrides.push_back(fmt::format("ball.density={}", density));
+  overrides.push_back(fmt::format("pane.edge_length={}", how.pane_edge));
   ScenePlay play(scene_of(kRestText, overrides));
   const long last = std::lround(length * how.rate);
   while (play.world().steps() < last && play.world().report().breaks.empty()) play.step();

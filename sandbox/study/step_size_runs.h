@@ -16,6 +16,7 @@ struct StepCase {
   int rate = 240;  // steps a second
   world::Criterion criterion = world::Criterion::event;
   double edge = 0.0042;          // m, of the bauble's triangles
+  double pane_edge = 0.025;      // m, of the pane's
   double paper_duration = 1e-3;  // s: strength times this is what the paper's criterion compares with
 };
 
@@ -53,8 +54,8 @@ struct BreakingHeight {
 };
 BreakingHeight find_breaking_height(const StepCase& how);
 
-/// The density (kg/m3) of a ball whose weight brings the pane under it to its strength.
-double find_critical_density();
+/// The density (kg/m3) of a ball whose weight brings the pane under it, of such triangles, to its strength.
+double find_critical_density(double pane_edge);
 /// Whether the pane breaks under a ball of that density within `length` s; adds to `seconds`.
 bool does_break_at_rest(const StepCase& how, double density, double length, double& seconds);
 
