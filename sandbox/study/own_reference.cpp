@@ -109,7 +109,7 @@ void add_varied(Plan& plan, const scene::SceneDescription& scene, int samples, c
   table.setting_name = varied.setting_name;
   table.value_name = varied.value_name;
   table.error_names = {"trajectories before the first break",
-                       "first break, s",
+                       "first break off by, s",
                        "masses at the end (Kolmogorov)",
                        "pieces",
                        "breaks",

@@ -160,8 +160,9 @@ std::string summary_rows(const StudyResult& result) {
 }
 
 std::string to_markdown(const StudyResult& result, const std::string& name, const std::string& what) {
-  std::string text = fmt::format("## {}\n\n{}.\n\n<!-- summary -->\n{}<!-- end of summary -->\n\n", name,
-                                 what, summary_rows(result));
+  const char* stop = what.ends_with('.') ? "" : ".";  // a scene's goal is a sentence
+  std::string text = fmt::format("## {}\n\n{}{}\n\n<!-- summary -->\n{}<!-- end of summary -->\n\n", name,
+                                 what, stop, summary_rows(result));
   const bool is_drawn = std::any_of(result.tables.begin(), result.tables.end(),
                                     [](const Table& table) { return table.is_plotted; });
   if (is_drawn) text += fmt::format("![error against run time]({}.png)\n\n", name);

@@ -53,7 +53,7 @@ Outcome run(test::Scene& scene, int steps) {
 
 TEST_CASE("free fall does not know of the failsafe until something is hit") {
   int cut = 0;
-  for (const double height : {0.5, 0.52, 0.54}) {
+  for (const double height : test::kIsSanitized ? std::vector{0.54} : std::vector{0.5, 0.52, 0.54}) {
     test::Scene scene;
     scene.settings.has_sleep = false;
     scene.add(test::make_plane());
