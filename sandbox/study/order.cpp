@@ -12,7 +12,7 @@ constexpr double kRounding = 2e-13;
 /// How far the order from one row to the next may lie from that of the fit.
 constexpr double kMostSpread = 0.55;
 /// An order below this gains next to nothing.
-constexpr double kLeastOrder = 0.2;
+constexpr double kLeastOrder = 0.25;
 
 struct Point {
   int row = 0;

@@ -1,5 +1,6 @@
 #include "sandbox/study/refine.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -78,6 +79,11 @@ void add_body(Plan& plan, const char* name, const std::string& what, const char*
   plan.tables.push_back(std::move(table));
 }
 
+bool has_same_errors(const Table& a, const Table& b) {
+  return std::equal(a.rows.begin(), a.rows.end(), b.rows.begin(), b.rows.end(),
+                    [](const Row& x, const Row& y) { return x.errors == y.errors; });
+}
+
 std::vector<std::string> conclude(const std::vector<Table>& tables) {
   std::vector<std::string> sentences;
   for (const Table& table : tables) {
@@ -89,6 +95,10 @@ std::vector<std::string> conclude(const std::vector<Table>& tables) {
                     table.name, coarse.errors[2], coarse.errors[3], coarse.setting, fine.errors[2],
                     fine.errors[3], fine.setting, percent(coarse.errors[5]), percent(fine.errors[5])));
   }
+  for (const Table& table : tables)
+    for (const Table& other : tables)
+      if (other.name == table.name + "-unguarded" && has_same_errors(table, other))
+        sentences.push_back(fmt::format("The energy guard changed nothing in {}.", table.name));
   return sentences;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -177,8 +178,10 @@ Plan make_scaling_plan(bool is_quick) {
                  {"solve, ms", "system, ms", "iterations"}, {kNoNumber, 1.0}),
       is_quick ? std::vector<int>{4, 6, 8, 10} : std::vector<int>{6, 8, 12, 16, 20},
       [](int n) { return 1.0 * n * n * n; }, solve_cube);
-  Table threads = cost_table("threads", is_quick ? "10 boats" : "300 boats", "threads",
-                             {"ms a step on the clock", "ms of all processors"}, {});
+  const std::string boats = fmt::format("{} boats, on a machine of {} processors that others may use too",
+                                        is_quick ? 10 : 300, std::thread::hardware_concurrency());
+  Table threads =
+      cost_table("threads", boats.c_str(), "threads", {"ms a step on the clock", "ms of all processors"}, {});
   threads.value_name.clear();
   for (const int count : {1, 2, 4})
     plan.jobs.push_back({plan.tables.size(), std::to_string(count), static_cast<double>(count), count == 1,

@@ -6,6 +6,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/random.h"
 #include "tests/engine/dynamics/bodies.h"
+#include "tests/support/sanitized.h"
 
 namespace shatterbox {
 namespace {
@@ -98,8 +99,7 @@ TEST_CASE("a box that is hit does not come into one that nobody thought it would
         for (std::size_t j = 0; j < i; ++j) {
           const auto &a = scene.bodies[i], &b = scene.bodies[j];
           Vec3 normal;
-          deepest =
-              std::min(deepest, collision::analytic_gap(*a.shape, a.pose, *b.shape, b.pose, normal));
+          deepest = std::min(deepest, collision::analytic_gap(*a.shape, a.pose, *b.shape, b.pose, normal));
         }
     }
     INFO(speed << " m/s");
@@ -299,7 +299,10 @@ TEST_CASE("light boxes carry one of a hundred or a thousand times their mass") {
     int light;
     double ratio;
   };
-  for (const Tower& tower : {Tower{1, 1000.0}, Tower{4, 100.0}, Tower{9, 1000.0}}) {
+  // A tower is solved on one thread: of more the sanitizers would see the same again.
+  for (const Tower& tower : test::kIsSanitized
+                                ? std::vector{Tower{1, 1000.0}}
+                                : std::vector{Tower{1, 1000.0}, Tower{4, 100.0}, Tower{9, 1000.0}}) {
     INFO(tower.light << " light boxes, " << tower.ratio << " times the mass on top");
     auto scene = ground_scene();
     scene.settings.has_sleep = false;

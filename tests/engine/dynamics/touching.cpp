@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "tests/engine/dynamics/piles.h"
+#include "tests/support/sanitized.h"
 
 namespace shatterbox {
 namespace {
@@ -127,8 +128,9 @@ TEST_CASE("plates edge to edge in one plane within 1e-5 of their size stay so, a
 }
 
 TEST_CASE("ten boxes placed exactly touching stand from the first step on") {
-  for (const int rate : {60, 240, 960}) {
-    for (const double height : {0.2, 0.1, 0.3333}) {
+  // A stack is solved on one thread: of more the sanitizers would see the same again.
+  for (const int rate : test::kIsSanitized ? std::vector{60} : std::vector{60, 240, 960}) {
+    for (const double height : test::kIsSanitized ? std::vector{0.1} : std::vector{0.2, 0.1, 0.3333}) {
       test::Scene scene;
       scene.settings.time_step = 1.0 / rate;
       scene.add(test::make_plane());

@@ -36,7 +36,7 @@ world::World make_falling() {
   slab.material = plaster_number;
   slab.pose.translation = Vec3(0.3, 0.07, 0);
   slab.pose.rotation = Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));
-  slab.velocity = Vec3(0, -8.0, 0);
+  slab.velocity = Vec3(0, -10.0, 0);
   world::SolidDescription solid;
   solid.mesh = geometry::make_box_surface(Vec3(0.08, 0.02, 0.05));
   solid.element_size = test::kIsSanitized ? 0.04 : 0.02;
