@@ -265,6 +265,9 @@ int Renderer::mesh_count() const {
 bool Renderer::has_shadow_maps() const {
   return rooms_->shadow.has_maps();
 }
+double Renderer::shadow_bytes() const {
+  return rooms_->shadow.bytes();
+}
 void Renderer::set_timing(bool on) {
   rooms_->is_timed = on;
   rooms_->times.passes.clear();

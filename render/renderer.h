@@ -56,6 +56,7 @@ class Renderer {
   bool is_llvmpipe() const;                // pictures are only comparable if so
   int mesh_count() const;                  // meshes on the GPU now
   bool has_shadow_maps() const;            // they are made when something first casts a shadow
+  double shadow_bytes() const;             // of those maps; 0 without
 
   void set_timing(bool on);
   const PassTimes& pass_times() const;

@@ -77,6 +77,7 @@ class Guard {
     }
     settle_cut_bodies();
     note_stuck_pairs();
+    report_.test_bytes = kept_bytes();
   }
 
  private:
@@ -106,6 +107,7 @@ class Guard {
     });
     bool has_hits = false;
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      report_.ways_tested += must_test_[p] ? 1 : 0;
       if (!must_test_[p] || hits_[p].empty()) continue;
       has_hits = true;
       report_.hits += was_hit_[p] ? 0 : 1;
@@ -404,6 +406,15 @@ class Guard {
     entry.impulse_world = change / w.inverse_mass;
     entry.impulse_a = w.end.rotation.conjugate() * entry.impulse_world;
     work_.continuous_log.push_back(entry);
+  }
+
+  double kept_bytes() const {
+    if (report_.ways_tested == 0) return 0.0;
+    std::size_t hits = 0;
+    for (const auto* lists : {&hits_, &known_})
+      for (const std::vector<PathHit>& list : *lists) hits += list.size();
+    const std::size_t a_pair = sizeof(spare_[0]) + 2 * sizeof(hits_[0]) + 3 * sizeof(must_test_[0]);
+    return static_cast<double>(work_.pairs.size() * a_pair + hits * sizeof(PathHit));
   }
 
   int count_hits() const {

@@ -329,6 +329,8 @@ void add_part(ContactReport&& part, ContactReport& step) {
   step.least_gap = std::min(step.least_gap, part.least_gap);
   step.hits += part.hits;
   step.rounds += part.rounds;
+  step.ways_tested += part.ways_tested;
+  step.test_bytes = std::max(step.test_bytes, part.test_bytes);
   step.failsafe_steps += part.failsafe_steps;
   step.longest_cut = std::max(step.longest_cut, part.longest_cut);
   step.crossing_pairs = part.crossing_pairs;

@@ -23,12 +23,14 @@ struct ContactReport {
   int contacts = 0;         // with a gap below twice the kept gap at the step's end
   int solver_contacts = 0;  // all that the solver was given, speculative ones included
   double least_gap =
-      1e300;               // m, over all pairs that do not cross, at the step's start; 1e300 without any near
-  int hits = 0;            // pairs in which the continuous pass had to act
-  int rounds = 0;          // rounds of the continuous pass
-  int failsafe_steps = 0;  // bodies whose step was cut short
-  int longest_cut = 0;     // steps in a row, of the pair that was cut longest
-  int crossing_pairs = 0;  // crossed when they were first seen, and still do
+      1e300;             // m, over all pairs that do not cross, at the step's start; 1e300 without any near
+  int hits = 0;          // pairs in which the continuous pass had to act
+  int rounds = 0;        // rounds of the continuous pass
+  long ways_tested = 0;  // pairs of bodies whose ways it tested, in all of them
+  double test_bytes = 0.0;  // that it kept for that
+  int failsafe_steps = 0;   // bodies whose step was cut short
+  int longest_cut = 0;      // steps in a row, of the pair that was cut longest
+  int crossing_pairs = 0;   // crossed when they were first seen, and still do
   std::vector<std::pair<body::BodyId, body::BodyId>> new_crossing_pairs;  // seen in this step
   std::vector<std::pair<body::BodyId, body::BodyId>> parted;  // lay exactly in each other: parting.h
   double frozen_share = 0.0;                                  // failsafe_steps / awake dynamic bodies

@@ -143,6 +143,18 @@ double element_area(const ShellElements& elements, int element) {
   return 0.5 * (elements.mesh.positions[at(t[1])] - a).cross(elements.mesh.positions[at(t[2])] - a).norm();
 }
 
+int count_virtual_vertices(const ShellMesh& mesh) {
+  std::vector<char> is_material(mesh.vertex_source.size(), 0);
+  for (const ShellCell& cell : mesh.cells)
+    for (int k = 0; k < cell.corner_count; ++k) {
+      const Vec2& b = mesh.corners[at(cell.first_corner + k)].barycentric;
+      const Vec3 weights(1.0 - (b.x() + b.y()), b.x(), b.y());
+      for (int i = 0; i < 3; ++i)
+        if (weights(i) == 1.0) is_material[at(cell.vertices[at(i)])] = 1;
+    }
+  return static_cast<int>(std::count(is_material.begin(), is_material.end(), 0));
+}
+
 Vec3 position_in_element(const ShellElements& elements, int element, const Vec2& barycentric) {
   const Triangle& t = elements.mesh.triangles[at(element)];
   const Vec3& a = elements.mesh.positions[at(t[0])];

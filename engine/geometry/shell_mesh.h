@@ -95,6 +95,9 @@ double area_fraction(const ShellMesh& mesh, const ShellCell& cell);
 /// Sum of the cells' areas, m2.
 double total_area(const ShellMesh& mesh);
 
+/// Virtual vertices at which there is none of the mesh's material: it lies beyond a cut.
+int count_virtual_vertices(const ShellMesh& mesh);
+
 /// Position in material space of barycentric weights (of corners 1 and 2) in an element.
 Vec3 position_in_element(const ShellElements& elements, int element, const Vec2& barycentric);
 

@@ -289,6 +289,16 @@ double total_volume(const SolidComplex& complex) {
   return sum;
 }
 
+int count_virtual_nodes(const SolidComplex& complex) {
+  const TetMesh& mesh = complex.elements->mesh;
+  std::vector<char> state(mesh.positions.size(), 0);  // 1: of an element here; 2: material
+  for (const SolidPart& cell : complex.cells)
+    for (const int node : mesh.tetrahedra[at(cell.element)]) state[at(node)] = 1;
+  for (const SolidVertex& vertex : complex.vertices)
+    if (vertex.nodes[0] >= 0 && vertex.nodes[1] < 0) state[at(vertex.nodes[0])] = 2;
+  return static_cast<int>(std::count(state.begin(), state.end(), 1));
+}
+
 PieceExtractor::PieceExtractor(const SolidComplex& complex)
     : complex_(complex),
       vertices_(complex.vertices.size()),

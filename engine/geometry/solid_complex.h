@@ -124,6 +124,10 @@ void settle(SolidComplex& complex);
 /// Sum of the cells' volumes, m3, of a settled complex.
 double total_volume(const SolidComplex& complex);
 
+/// Nodes of the complex's elements at which there is none of its material: it lies beyond a cut, or beyond
+/// the surface that was embedded.
+int count_virtual_nodes(const SolidComplex& complex);
+
 /// Takes pieces out of a settled complex; what it needs for that is made once.
 class PieceExtractor {
  public:

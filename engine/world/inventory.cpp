@@ -24,6 +24,37 @@ double bytes_in(const std::vector<Item>& items) {
   return static_cast<double>(items.size() * sizeof(Item));
 }
 
+/// What of the element matrices is for curvature: rows of strain, and stiffness of all but the corners'
+/// moves.
+double bending_bytes(const stress::ShellStiffness& stiffness) {
+  constexpr int kMembrane = 9, kCurvatures = 3;
+  constexpr int kEntries =
+      stress::kElementDofs * (stress::kElementDofs + 1) / 2 - kMembrane * (kMembrane + 1) / 2;
+  constexpr int kNumbers = kCurvatures * stress::kElementDofs + kEntries;
+  return static_cast<double>(stiffness.matrices.size() * kNumbers * sizeof(double));
+}
+
+/// Copies of nodes that pieces have beyond their own material.
+PartCount count_virtual_nodes(const Fragiles& fragiles) {
+  PartCount sum{"virtual_nodes", 0, 0.0};
+  for (const auto& [id, fragile] : fragiles) {
+    if (const auto* solid = std::get_if<fracture::SolidSubject>(&fragile->subject))
+      sum.count += geometry::count_virtual_nodes(*solid->complex);
+    else
+      sum.count += geometry::count_virtual_vertices(*std::get<fracture::ShellSubject>(fragile->subject).mesh);
+  }
+  sum.bytes = static_cast<double>(sum.count) * sizeof(Vec3);
+  return sum;
+}
+
+/// Bodies whose rest is being watched.
+PartCount count_resting(const std::vector<body::Body>& bodies) {
+  PartCount sum{"sleeping", 0, 0.0};
+  for (const body::Body& body : bodies) sum.count += body.is_dynamic() && body.quiet_time > 0.0 ? 1 : 0;
+  sum.bytes = static_cast<double>(sum.count) * (sizeof(Pose) + sizeof(double));
+  return sum;
+}
+
 }  // namespace
 
 std::vector<PartCount> World::inventory() const {
@@ -49,6 +80,9 @@ std::vector<PartCount> World::inventory() const {
     flaws.insert(subject.flaws.get());
     grains.insert(subject.grains.get());
   }
+  std::set<const stress::ShellStiffness*> bending;
+  for (const stress::ShellStiffness* stiffness : stiffnesses)
+    if (stiffness->properties.has_bending) bending.insert(stiffness);
   PartCount factors{"factors", 0, 0.0};
   for (const stress::ShellSystemCache* cache : systems) {
     if (cache == nullptr) continue;
@@ -82,6 +116,7 @@ std::vector<PartCount> World::inventory() const {
       count_shared(
           "shell_stiffness", stiffnesses,
           [](const stress::ShellStiffness& k) { return bytes_in(k.matrices) + bytes_in(k.vertex_rank); }),
+      count_shared("bending", bending, bending_bytes),
       factors,
       count_shared("tetrahedra", complexes,
                    [](const geometry::SolidComplex& c) {
@@ -93,9 +128,12 @@ std::vector<PartCount> World::inventory() const {
                    [](const fracture::GrainField& g) {
                      return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);
                    }),
+      count_virtual_nodes(s.moving.fragiles),
       {"impact_memory", memory, static_cast<double>(memory) * sizeof(ImpactMemory)},
       pairs,
       friction,
+      {"continuous_tests", s.report.contact.ways_tested, s.report.contact.test_bytes},
+      count_resting(s.moving.bodies),
       {"hands", hands, static_cast<double>(hands) * sizeof(dynamics::Hand)},
   };
 }

@@ -127,6 +127,8 @@ void book_contact(const dynamics::ContactReport& contact, const std::vector<body
   figures.frozen_share = (figures.frozen_share * n + contact.frozen_share) / (n + 1.0);
   figures.residual = contact.residual;
   figures.hits = contact.hits;
+  figures.ways_tested += contact.ways_tested;
+  figures.test_bytes = std::max(figures.test_bytes, contact.test_bytes);
   figures.drift = std::max(figures.drift, contact.drift);
 }
 

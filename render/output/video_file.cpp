@@ -38,6 +38,7 @@ struct VideoFile::Encoder {
   bool is_ending = false, is_closed = false;
   Status status;
   long frames = 0;
+  std::size_t most_waiting = 0;  // pictures
   std::atomic<double> cpu_ms{0};
 
   // What is kept is copied first, beside the part that it comes from: a run that is killed meanwhile loses
@@ -137,6 +138,7 @@ Status VideoFile::add(Image image) {
   if (!e.status) return e.status;
   e.waiting.push_back(std::move(image));
   ++e.frames;
+  e.most_waiting = std::max(e.most_waiting, e.waiting.size());
   lock.unlock();
   e.work.notify_one();
   return {};
@@ -175,6 +177,12 @@ long VideoFile::frames() const {
 
 double VideoFile::encode_cpu_ms() const {
   return encoder_->cpu_ms;
+}
+
+double VideoFile::waiting_bytes() const {
+  const std::lock_guard lock(encoder_->mutex);
+  return 3.0 * static_cast<double>(encoder_->most_waiting) * encoder_->settings.width *
+         encoder_->settings.height;
 }
 
 std::filesystem::path VideoFile::part_path() const {

@@ -82,6 +82,17 @@ void ShadowPass::make_maps(int size) {
   near_ = gpu::Framebuffer({&near_bounds_, &near_casters_}, nullptr);
 }
 
+double ShadowPass::bytes() const {
+  if (!has_maps()) return 0.0;
+  constexpr double kDepth = 4.0, kPair = 8.0;  // bytes a texel
+  double sum = 0.0;
+  for (const gpu::Texture* map : {&depth_compared_, &glass_compared_})
+    sum += kDepth * map->width() * map->height();
+  for (const gpu::Texture* map : {&tile_bounds_, &tile_casters_, &near_bounds_, &near_casters_})
+    sum += kPair * map->width() * map->height();
+  return sum;
+}
+
 void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& block) const {
   const glm::mat3 sun_frame = sun_from_world(glm::vec3(block.sun));
   SunBox casters;

@@ -25,6 +25,7 @@ class ShadowPass {
   void forget() { drawn_solids_ = drawn_glass_ = Drawn{}; }  // draws both when next asked
   void bind() const;                                         // texture units 0, 1, 2, 11
   bool has_maps() const { return depth_.name() != 0; }
+  double bytes() const;  // of the maps; 0 until there are any
 
  private:
   struct Caster {

@@ -156,6 +156,16 @@ struct Painter::Room {
     return image;
   }
 
+  void count_parts(const std::vector<render::Renderer>& renderers) {
+    world::PartCount shadow{"shadow", 0, 0.0}, encoder{"encoder", 0, 0.0};
+    for (const render::Renderer& renderer : renderers) {
+      shadow.count += renderer.has_shadow_maps() ? 1 : 0;
+      shadow.bytes += renderer.shadow_bytes();
+    }
+    if (video) encoder = {"encoder", 1, video->waiting_bytes()};
+    painted.parts = {shadow, encoder};
+  }
+
   render::Image expose(render::Renderer& renderer, const std::vector<render::Frame>& samples) {
     if (samples.size() == 1) return draw(renderer, samples.front());
     render::LightSum sum;
@@ -202,6 +212,7 @@ struct Painter::Room {
       const std::lock_guard lock(mutex);
       pictures.push_back({number, hash});
     }
+    count_parts(renderers);
   }
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/hash.h"
+#include "engine/world/inventory.h"
 #include "render/frame/frame.h"
 #include "render/renderer.h"
 #include "sandbox/report/run_record.h"
@@ -43,6 +44,7 @@ struct Painted {
   report::TimesByName passes;  // of drawing, if they were timed; 0 in frames that had none of it
   double start = 0.0;          // making the renderer and the warm-up picture
   std::string gl_renderer;
+  std::vector<world::PartCount> parts;  // shadow maps and the encoder
 };
 
 class Painter {

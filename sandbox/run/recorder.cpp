@@ -48,6 +48,7 @@ void Recorder::note_frame(const world::World& world, double simulate, double aud
 void Recorder::note_pictures(const Painted& painted, int first) {
   record.gl_renderer = painted.gl_renderer;
   record.load.emplace_back("renderer", painted.start);
+  note_parts(painted.parts);
   for (std::size_t i = 0; i < painted.frame.size(); ++i) {
     if (painted.numbers[i] < first) continue;
     const auto number = static_cast<std::size_t>(painted.numbers[i] - first);
@@ -72,12 +73,27 @@ void Recorder::note_pictures(const Painted& painted, int first) {
   });
 }
 
+void Recorder::note_parts(const std::vector<world::PartCount>& parts) {
+  for (const world::PartCount& part : parts) {
+    const auto known = std::find_if(record.inventory.begin(), record.inventory.end(),
+                                    [&part](const world::PartCount& row) { return row.part == part.part; });
+    if (known == record.inventory.end())
+      record.inventory.push_back(part);
+    else
+      *known = part;
+  }
+}
+
 void Recorder::finish(const world::World& world, double wall_seconds) {
   record.wall_seconds = wall_seconds;
   record.simulated_seconds = world.time();
   record.state_hash = world.state_hash();
   record.world = world.report();
-  record.inventory = world.inventory();
+  std::vector<world::PartCount> parts = world.inventory();
+  for (const char* of_pictures : {"level_sets", "overlays", "shadow", "encoder"})
+    parts.push_back({of_pictures, 0, 0.0});
+  std::swap(parts, record.inventory);
+  note_parts(parts);
   record.trace = std::move(tracer_.trace);
   for (const body::Body& body : world.bodies()) {
     ++record.bodies_end;

@@ -24,6 +24,8 @@ class Recorder {
   /// Times and hashes of the pictures that are this record's: its frames begin with number `first` of the
   /// film.
   void note_pictures(const Painted& painted, int first);
+  /// What has been made of optional parts of the picture; the world's come with finish().
+  void note_parts(const std::vector<world::PartCount>& parts);
   /// At the end: counts, hash, memory, what was used.
   void finish(const world::World& world, double wall_seconds);
 

@@ -59,6 +59,11 @@ std::vector<render::Frame> Showing::expose(bool is_drawn) {
   return samples;
 }
 
+void Showing::finish() {
+  projector_.finish();
+  recorder_.note_parts(view_.inventory());
+}
+
 int Showing::shown() const {
   return static_cast<int>(projector_.time_ahead() * job_.options.frames_per_second + 1e-6);
 }

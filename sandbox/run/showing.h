@@ -35,7 +35,7 @@ class Showing {
   /// How many they will be, at true speed.
   int expected() const;
   /// Steps on to the end of the scene.
-  void finish() { projector_.finish(); }
+  void finish();
 
   const world::World& world() const { return job_.built->world; }
   view::View& view() { return view_; }

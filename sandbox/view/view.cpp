@@ -240,9 +240,22 @@ render::Frame View::make_frame(const Moment& moment, glm::vec2 lens) {
   frame.title = title_at(moment.film);
   for (const body::Body& body : moment.bodies) add_body(body, frame);
   if (overlays_.name() == "impacts") mark_impacts(moment, frame);
+  if (overlays_.name() != "none") count_laid_over(frame);
   std::erase_if(shapes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
   if (scene_.render.has_caption) frame.caption = standard_caption(moment);
   return frame;
+}
+
+void View::count_laid_over(const render::Frame& frame) {
+  double bytes = 0.0;
+  for (const render::Draw& draw : frame.draws)
+    if (draw.scalars) bytes += static_cast<double>(draw.scalars->size() * sizeof(float));
+  laid_over_.count = std::max(laid_over_.count, static_cast<long>(frame.draws.size()));
+  laid_over_.bytes = std::max(laid_over_.bytes, bytes);
+}
+
+std::vector<world::PartCount> View::inventory() const {
+  return {level_sets(), laid_over_};
 }
 
 world::PartCount View::level_sets() const {

@@ -38,9 +38,9 @@ class View {
   /// The picture of the world as it is now.
   render::Frame make_frame();
 
-  /// Level sets that the overlay of that name has made, of what is in the last frame, and kept triangles'
-  /// work.
-  world::PartCount level_sets() const;
+  /// What has been made for overlays: level sets of what is in the last frame, with kept triangles' work; and
+  /// bodies with something laid over them, with its bytes, in the frame that had most.
+  std::vector<world::PartCount> inventory() const;
 
  private:
   struct DrawnShape {
@@ -52,6 +52,8 @@ class View {
   };
 
   DrawnShape& drawn_of(const std::shared_ptr<const body::Shape>& shape);
+  world::PartCount level_sets() const;
+  void count_laid_over(const render::Frame& frame);
   /// Where body number `entry` is at a moment.
   Whereabouts whereabouts(const Moment& moment) const;
   /// Time, bodies, pieces, and how fast the film goes where it is not as the world does.
@@ -76,6 +78,7 @@ class View {
   std::map<const body::Shape*, DrawnShape> shapes_;
   std::map<std::size_t, geometry::LevelSetSpace> level_set_spaces_;  // by entries of the scene
   std::shared_ptr<const render::Mesh> marker_;
+  world::PartCount laid_over_{"overlays", 0, 0.0};
   std::uint64_t next_mesh_;
   std::uint64_t frame_ = 0;
 };

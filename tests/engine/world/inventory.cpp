@@ -60,7 +60,8 @@ TEST_CASE(
     for (int i = 0; i < 24; ++i) w.step();
     CHECK(part(w, "surfaces").count == (has_shell ? 1 : 0));
     CHECK((part(w, "surfaces").bytes > 0.0) == has_shell);
-    for (const char* name : {"shell_stiffness", "factors", "flaws", "grains", "impact_memory", "hands"}) {
+    for (const char* name : {"shell_stiffness", "bending", "factors", "flaws", "grains", "virtual_nodes",
+                             "impact_memory", "hands"}) {
       INFO(name);
       CHECK(part(w, name).count == 0);
       CHECK(part(w, name).bytes == 0.0);
@@ -81,6 +82,10 @@ TEST_CASE(
     CHECK(part(w, "surfaces").count == 1);  // three copies
     CHECK(part(w, "shell_stiffness").count == 1);
     CHECK(part(w, "shell_stiffness").bytes > 1e4);
+    CHECK(part(w, "bending").count == 1);
+    CHECK(part(w, "bending").bytes > 0.4 * part(w, "shell_stiffness").bytes);
+    CHECK(part(w, "bending").bytes < part(w, "shell_stiffness").bytes);
+    CHECK(part(w, "virtual_nodes").count == 0);
     CHECK(part(w, "flaws").count == 3);  // each has its own
     CHECK(part(w, "impact_memory").count == 3);
     CHECK((part(w, "grains").count > 0) == has_grains);
@@ -91,6 +96,8 @@ TEST_CASE(
     CHECK(part(w, "factors").bytes > 1e5);
     for (long i = 0; i < test::how_many(12, 4); ++i) w.step();
     CHECK(w.report().breaks.size() > 0);
+    CHECK(part(w, "virtual_nodes").count > 10);
+    CHECK(part(w, "virtual_nodes").bytes > 0.0);
     for (const char* stage : {"snapshot", "stress", "fracture"}) CHECK(has_stage(w, stage));
     CHECK_FALSE(has_stage(w, "hands"));
     REQUIRE(w.grab(2, w.bodies()[1].pose.translation, 10.0) != 0);
@@ -129,6 +136,33 @@ TEST_CASE("what stands still has no pairs, what lies on something has, and frict
   }
 }
 
+TEST_CASE("ways are tested where something may be met, and rest is watched where sleep is wanted") {
+  struct Case {
+    double height;  // m, of a box over the floor
+    bool has_sleep, has_tests, rests;
+  };
+  for (const Case& one :
+       {Case{0.051, true, true, true}, Case{0.051, false, true, false}, Case{5.0, true, false, false}}) {
+    world::WorldSettings settings;
+    settings.has_sleep = one.has_sleep;
+    world::World w{settings};
+    REQUIRE(w.add_material(*material::find_preset("concrete")).ok());
+    world::BodyDescription floor;
+    floor.form = world::PlaneDescription{};
+    REQUIRE(w.add_body(floor).ok());
+    world::BodyDescription box;
+    box.form = world::BoxDescription{Vec3::Constant(0.05)};
+    box.pose.translation = Vec3(0, one.height, 0);
+    REQUIRE(w.add_body(box).ok());
+    for (int i = 0; i < 60; ++i) w.step();
+    INFO(one.height << ' ' << one.has_sleep);
+    CHECK((part(w, "continuous_tests").count > 0) == one.has_tests);
+    CHECK((part(w, "continuous_tests").bytes > 0.0) == one.has_tests);
+    CHECK(part(w, "sleeping").count == (one.rests ? 1 : 0));
+    CHECK((part(w, "sleeping").bytes > 0.0) == one.rests);
+  }
+}
+
 TEST_CASE("a solid has tetrahedra if it can break, and nothing of shells whether it can or not") {
   for (const bool is_breakable : {false, true}) {
     world::World w{world::WorldSettings{}};
@@ -146,6 +180,8 @@ TEST_CASE("a solid has tetrahedra if it can break, and nothing of shells whether
     CHECK((part(w, "tetrahedra").count > 0) == is_breakable);
     CHECK((part(w, "tetrahedra").bytes > 0.0) == is_breakable);
     CHECK((part(w, "flaws").count > 0) == is_breakable);
+    CHECK((part(w, "virtual_nodes").count > 0) == is_breakable);  // the lattice reaches beyond the surface
+    CHECK(part(w, "bending").count == 0);
     CHECK(part(w, "shell_stiffness").count == 0);
     CHECK(part(w, "shell_stiffness").bytes == 0.0);
     CHECK(has_stage(w, "fracture") == is_breakable);

@@ -93,6 +93,34 @@ TEST_CASE("plan tells what a scene needs and why, and the report what of it was 
   CHECK(g["time_ms"]["stages"].contains("stress"));
 }
 
+TEST_CASE("of a picture's parts only those are made that are asked for, and asking for one makes it") {
+  const Folder folder;
+  write_text(folder / "small.toml", kSmallScene);
+  struct Case {
+    const char *options, *made;  // names of parts
+  };
+  const std::vector<Case> cases{
+      {"--no-render", ""},
+      {"--frames f --set light.shadow=false", ""},
+      {"--frames f", "shadow"},
+      {"--frames f --set light.shadow=false --set render.overlay=velocity", "overlays"},
+      {"-o v.mp4", "shadow encoder"},
+  };
+  for (const Case& one : cases) {
+    const Outcome run = program(
+        folder, "run small.toml --seconds 0.1 --size 64x48 --report r.json " + std::string(one.options));
+    INFO(one.options << run.err);
+    REQUIRE(run.status == 0);
+    const auto parts = read_json(folder / "r.json")["parts"];
+    for (const char* name : {"level_sets", "overlays", "shadow", "encoder"}) {
+      INFO(name);
+      const bool is_made = std::string(one.made).find(name) != std::string::npos;
+      CHECK((parts[name]["count"].get<long>() > 0) == is_made);
+      CHECK((parts[name]["bytes"].get<double>() > 0.0) == is_made);
+    }
+  }
+}
+
 TEST_CASE("plan foresees what breaks and what holds by trying") {
   const Folder folder;
   const std::string floor = "[scene]\nseconds = 0.4\n[[body]]\nname = \"floor\"\nkind = \"plane\"\n";

@@ -212,14 +212,30 @@ TEST_CASE("the overlay level_set cuts solids open towards the eye and shows thei
   }
   CHECK(deepest == Approx(-100.0F).margin(3.0F));  // mm: half of the least side
   CHECK(worst < 3.5F);                             // a fifth of a cell of 15.6 mm
-  CHECK(view.level_sets().count == 1);
-  CHECK(view.level_sets().bytes > 1e5);
+  const auto part = [](const view::View& shown, const std::string& name) {
+    for (const world::PartCount& row : shown.inventory())
+      if (row.part == name) return row;
+    FAIL("no part is called " << name);
+    return world::PartCount{};
+  };
+  CHECK(part(view, "level_sets").count == 1);
+  CHECK(part(view, "level_sets").bytes > 1e5);
+  CHECK(part(view, "overlays").count == 2);
+  CHECK(part(view, "overlays").bytes >= sizeof(float) * static_cast<double>(positions.size()));
   auto plain = *reading.scene;
   plain.render.overlay = "stress";
   view::View without(plain, *built);
   CHECK(without.make_frame().draws.size() == 2);
-  CHECK(without.level_sets().count == 0);
-  CHECK(without.level_sets().bytes == 0.0);
+  CHECK(part(without, "level_sets").count == 0);
+  CHECK(part(without, "level_sets").bytes == 0.0);
+  CHECK(part(without, "overlays").count == 2);
+  plain.render.overlay = "none";
+  view::View bare(plain, *built);
+  CHECK(bare.make_frame().draws.size() == 2);
+  for (const char* name : {"level_sets", "overlays"}) {
+    CHECK(part(bare, name).count == 0);
+    CHECK(part(bare, name).bytes == 0.0);
+  }
   // The same cut is the same mesh.
   CHECK(view.make_frame().draws[0].mesh.get() == solid.mesh.get());
 }
