@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -49,11 +50,10 @@ FaceNormals find_face_normals(const Mesh& mesh) {
     const glm::uvec3 v = mesh.triangles[t];
     const glm::vec3 p[3] = {mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]};
     out.unit[t] = unit_or(glm::cross(p[1] - p[0], p[2] - p[0]), glm::vec3(0.0F));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const glm::vec3 a = unit_or(p[(k + 1) % 3] - p[k], glm::vec3(0.0F));
-      const glm::vec3 b = unit_or(p[(k + 2) % 3] - p[k], glm::vec3(0.0F));
-      out.angle[3 * t + k] = std::acos(std::clamp(glm::dot(a, b), -1.0F, 1.0F));
-    }
+    glm::vec3 along[3];  // from corner to corner
+    for (std::size_t k = 0; k < 3; ++k) along[k] = unit_or(p[(k + 1) % 3] - p[k], glm::vec3(0.0F));
+    for (std::size_t k = 0; k < 3; ++k)
+      out.angle[3 * t + k] = std::acos(std::clamp(-glm::dot(along[k], along[(k + 2) % 3]), -1.0F, 1.0F));
   }
   return out;
 }
@@ -61,16 +61,28 @@ FaceNormals find_face_normals(const Mesh& mesh) {
 std::vector<glm::vec3> crease_normals(const Mesh& mesh, const Fans& fans, const FaceNormals& faces) {
   const float least_cosine = std::cos(glm::radians(mesh.crease_angle));
   std::vector<glm::vec3> normals(mesh.triangles.size() * 3);
-  for (Corner c = 0; c < normals.size(); ++c) {
-    const glm::vec3 own = faces.unit[c / 3];
-    const std::uint32_t vertex = mesh.triangles[c / 3][static_cast<int>(c % 3)];
-    glm::vec3 sum(0.0F);
-    for (std::uint32_t i = fans.first[vertex]; i < fans.first[vertex + 1]; ++i) {
-      const Corner other = fans.corners[i];
-      const glm::vec3 n = faces.unit[other / 3];
-      if (glm::dot(n, own) >= least_cosine) sum += n * faces.angle[other];
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const std::span<const Corner> fan(fans.corners.data() + fans.first[v], fans.first[v + 1] - fans.first[v]);
+    bool is_smooth = false;  // no two faces have a crease between them: one normal for all corners
+    for (std::size_t k = 0; k < fan.size(); ++k) {
+      if (is_smooth) {
+        normals[fan[k]] = normals[fan[0]];
+        continue;
+      }
+      const glm::vec3 own = faces.unit[fan[k] / 3];
+      glm::vec3 sum(0.0F);
+      float least = 1.0F;
+      for (const Corner other : fan) {
+        const glm::vec3 n = faces.unit[other / 3];
+        const float cosine = glm::dot(n, own);
+        least = std::min(least, cosine);
+        if (cosine >= least_cosine) sum += n * faces.angle[other];
+      }
+      normals[fan[k]] = unit_or(sum, unit_or(own, glm::vec3(0.0F, 1.0F, 0.0F)));
+      // All within half the angle of one are within all of it of each other; a little less, for rounding.
+      is_smooth = k == 0 && glm::dot(sum, sum) > 0.0F && 2.0F * least * least - 1.0F > least_cosine + 1e-5F &&
+                  least > 0.0F;
     }
-    normals[c] = unit_or(sum, unit_or(own, glm::vec3(0.0F, 1.0F, 0.0F)));
   }
   return normals;
 }

@@ -70,7 +70,8 @@ class Simplifier {
         tolerance_squared_(kMeanShare * tolerance * tolerance),
         fans_(mesh.positions.size()),
         quadrics_(mesh.positions.size()),
-        waits_(mesh.positions.size(), 0) {
+        waits_(mesh.positions.size(), 0),
+        is_settled_(mesh.positions.size(), 0) {
     read();
     weigh();
   }
@@ -82,7 +83,11 @@ class Simplifier {
       for (std::uint32_t v = 0; v < fans_.size(); ++v) {
         if (fans_[v].empty()) continue;
         ++left;
-        if (waits_[v] == 0 && collapse(v)) ++collapsed;
+        if (waits_[v] != 0 || is_settled_[v] != 0) continue;
+        if (collapse(v))
+          ++collapsed;
+        else
+          is_settled_[v] = 1;
       }
       if (collapsed * 50 <= left) return;
     }
@@ -255,20 +260,32 @@ class Simplifier {
     }
     const Triangle& any = triangles_[fans_[v].front()];
     const glm::vec3 normal = any.normal[static_cast<std::size_t>(any.corner_of(v))];
-    double least = tolerance_squared_;
-    std::uint32_t best = v;
-    for (const std::uint32_t u : targets) {
-      const glm::dvec3 p(position(u));
-      const double cost = quadrics_[v].at(p) + quadrics_[u].at(p);
-      if (!(cost < least) || glm::dot(normal_beside(v, u), normal) < kLeastNormalCosine) continue;
-      if (!is_link_simple(ring, v, u) || !keeps_shape(v, u)) continue;
-      least = cost;
-      best = u;
+    std::array<double, Ring::kMostTriangles + 1> costs{};
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const glm::dvec3 p(position(targets[i]));
+      costs[i] = quadrics_[v].at(p) + quadrics_[targets[i]].at(p);
     }
-    if (best == v) return false;
-    for (const std::uint32_t n : ring.neighbours()) waits_[n] = 1;  // one collapse a neighbourhood and round
-    move(v, best);
-    return true;
+    // The cheapest that may be: what that asks costs more than the cost.
+    for (;;) {
+      const auto cheapest = std::min_element(costs.begin(), costs.begin() + targets.size());
+      if (!(*cheapest < tolerance_squared_)) return false;
+      const std::uint32_t u = targets[static_cast<std::size_t>(cheapest - costs.begin())];
+      *cheapest = std::numeric_limits<double>::max();
+      if (glm::dot(normal_beside(v, u), normal) < kLeastNormalCosine) continue;
+      if (!is_link_simple(ring, v, u) || !keeps_shape(v, u)) continue;
+      for (const std::uint32_t n : ring.neighbours())
+        waits_[n] = 1;  // one collapse a neighbourhood and round
+      move(v, u);
+      unsettle(ring);
+      return true;
+    }
+  }
+
+  // Whose neighbours, or theirs, are not as they were may collapse after all.
+  void unsettle(const Ring& ring) {
+    for (const std::uint32_t n : ring.neighbours())
+      for (const std::uint32_t i : fans_[n])
+        for (const std::uint32_t w : triangles_[i].vertex) is_settled_[w] = 0;
   }
 
   // The flag of the edge between two corners of a triangle.
@@ -314,7 +331,8 @@ class Simplifier {
   std::vector<Triangle> triangles_;
   std::vector<std::vector<std::uint32_t>> fans_;  // triangles about each vertex
   std::vector<Quadric> quadrics_;
-  std::vector<char> waits_;
+  std::vector<char> waits_;       // until the next round
+  std::vector<char> is_settled_;  // could not collapse, and nothing about it has changed
 };
 
 }  // namespace
