@@ -49,6 +49,8 @@ std::vector<std::string> words_of(const BatchRun& run, const BatchOptions& optio
   }
   if (!has_word(words, "--no-render") && !has_word(words, "-o"))
     words.insert(words.end(), {"-o", "film.mp4"});
+  if (options.has_gallery && !has_word(words, "--no-render") && !has_word(words, "--record"))
+    words.insert(words.end(), {"--record", kGalleryRecording});
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (!has_word(words, "--threads"))
     words.insert(words.end(), {"--threads", fmt::format("{}", std::max(1, cores / jobs))});
@@ -227,7 +229,8 @@ int run_batch(const BatchOptions& options) {
   std::string fault = tell(rows, sweeps, options.folder);
   if (fault.empty() && options.has_gallery) {
     std::vector<Exhibit> exhibits;
-    for (const Row& row : rows) exhibits.push_back({row.run.name, row.folder, row.report});
+    for (const Row& row : rows)
+      exhibits.push_back({row.run.name, row.folder, row.report, measure_drawing(row.folder)});
     fault = write_gallery(options.folder, exhibits);
   }
   std::fflush(stdout);

@@ -84,15 +84,14 @@ std::string take_stills(const Exhibit& exhibit) {
   return status ? std::string() : status.error;
 }
 
-/// What drawing a frame took, pass by pass, that of the median frame.
-std::string passes_of(const nlohmann::json& shot) {
-  const auto passes = shot["time_ms"].find("passes");
-  if (passes == shot["time_ms"].end() || passes->empty()) return {};
-  std::string text;
-  for (const auto& [name, spread] : passes->items())
+/// What drawing alone reaches, and where its time goes, by the median of each.
+std::string told(const DrawingCost& cost) {
+  std::string passes;
+  for (const auto& [name, spread] : cost.passes.items())
     if (const double median = spread.value("median", 0.0); median >= 0.05)
-      text += fmt::format("{}{} {:.1f}", text.empty() ? "; of drawing " : ", ", name, median);
-  return text.empty() ? text : text + " ms";
+      passes += fmt::format("{}{} {:.1f}", passes.empty() ? "" : ", ", name, median);
+  return fmt::format("drawn in {} quality: {:.0f} frames a second, worst frame {:.0f} ms{}", cost.quality,
+                     cost.frames_per_second, cost.worst, passes.empty() ? "" : "; " + passes + " ms");
 }
 
 std::string numbers_of(const nlohmann::json& shot) {
@@ -102,14 +101,13 @@ std::string numbers_of(const nlohmann::json& shot) {
     return frame.contains(key) && frame[key].is_number() ? frame[key].get<double>() : 0.0;
   };
   return fmt::format(
-             "{} of {}, {} triangles at most, {}; {:.3g} s of film in {:.3g} s; a frame {:.1f} "
-             "ms "
-             "(median; worst {:.0f})",
-             scene::counted(shot.value("pieces", 0L), "piece"),
-             scene::counted(static_cast<long>(shot["breaks"].size()), "break"),
-             shot["triangles"].value("max", 0L), scene::counted(shot.value("steps", 0L), "step"),
-             number("video_seconds"), number("wall_seconds"), of_frame("median"), of_frame("max")) +
-         passes_of(shot);
+      "{} of {}, {} triangles at most, {}; {:.3g} s of film in {:.3g} s; a frame {:.1f} "
+      "ms "
+      "(median; worst {:.0f})",
+      scene::counted(shot.value("pieces", 0L), "piece"),
+      scene::counted(static_cast<long>(shot["breaks"].size()), "break"), shot["triangles"].value("max", 0L),
+      scene::counted(shot.value("steps", 0L), "step"), number("video_seconds"), number("wall_seconds"),
+      of_frame("median"), of_frame("max"));
 }
 
 std::string entry_of(const Exhibit& exhibit, const std::string& fault) {
@@ -134,6 +132,8 @@ std::string entry_of(const Exhibit& exhibit, const std::string& fault) {
   for (const nlohmann::json& shot : shots)
     text += fmt::format("<p class=\"numbers\">{}{}</p>\n",
                         has_shots ? escaped(shot.value("scene", "")) + ": " : "", escaped(numbers_of(shot)));
+  for (const DrawingCost& cost : exhibit.drawing)
+    text += fmt::format("<p class=\"numbers\">{}</p>\n", escaped(told(cost)));
   return text + "</section>\n";
 }
 

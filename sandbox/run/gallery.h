@@ -1,4 +1,4 @@
-// A page that shows what runs have made: of each its goal, two pictures, numbers and the film.
+// A page that shows what runs have made: of each its goal, three pictures, numbers and the film.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sandbox/run/drawing_cost.h"
+
 namespace shatterbox::sandbox::run {
 
 struct Exhibit {
   std::string name;
   std::filesystem::path folder;  // has film.mp4
   nlohmann::json report;         // of the run; a film of several shots has a list of them
+  std::vector<DrawingCost> drawing;
 };
 
 /// Writes index.html into `folder`, and beside each film a picture of what broke and one of its end. What has

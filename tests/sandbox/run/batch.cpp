@@ -120,7 +120,17 @@ TEST_CASE("a gallery shows three pictures of each film, its goal and its numbers
     ++pictures;
   }
   CHECK(pictures == 6);
-  CHECK(page.find("; of drawing ") != std::string::npos);
+  for (const char* quality : {"preview", "full"}) {
+    const std::size_t first = page.find(std::string("drawn in ") + quality);
+    REQUIRE(first != std::string::npos);
+    CHECK(page.find(std::string("drawn in ") + quality, first + 1) != std::string::npos);
+    const std::string line = page.substr(first, page.find('<', first) - first);
+    INFO(line);
+    CHECK(line.find("frames a second, worst frame ") != std::string::npos);
+    CHECK(line.find("shadow ") != std::string::npos);
+    CHECK(std::stod(line.substr(line.find(": ") + 2)) > 0.0);
+  }
+  CHECK_FALSE(fs::exists(folder / "b/balls/film.rec"));
   // What makes no film is told without pictures.
   REQUIRE(program(folder, "batch balls.toml -o c --gallery -- --seconds 0.1 --no-render").status == 0);
   CHECK(read_text(folder / "c/index.html").find("no pictures") != std::string::npos);
