@@ -1,12 +1,14 @@
 #include "sandbox/run/foresee.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "engine/core/clock.h"
+#include "sandbox/run/interrupt.h"
 #include "sandbox/run/projector.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/scene/words.h"
@@ -19,7 +21,6 @@ using core::Clock;
 using core::milliseconds_since;
 using scene::SceneDescription;
 
-constexpr double kPatience = 1e4;  // ms, for one trial
 constexpr double kPressed = 1e-3;  // m/s: what comes no faster presses
 
 /// The scene in which body number `tried` alone can break.
@@ -123,6 +124,25 @@ void note_break(const scene::BuiltScene& built, int tried, std::span<const body:
   }
 }
 
+/// Asks the projector to break off, in the middle of a step too, after some time or at Ctrl-C.
+class Patience {
+ public:
+  Patience(Projector& projector, double seconds) : seconds_(seconds) {
+    projector.set_stop([this] {
+      const bool is_over = is_interrupted() || milliseconds_since(begin_) > 1e3 * seconds_;
+      if (is_over) is_over_ = true;
+      return is_over;
+    });
+  }
+  void begin_anew() { begin_ = Clock::now(); }
+  bool is_over() const { return is_over_; }
+
+ private:
+  double seconds_;
+  Clock::time_point begin_ = Clock::now();
+  std::atomic<bool> is_over_{false};
+};
+
 /// Steps on behind a break, and counts what it left and cost.
 void note_aftermath(Projector& projector, const scene::BuiltScene& built, int tried, double break_ms,
                     Foreseen& found) {
@@ -142,12 +162,13 @@ void note_aftermath(Projector& projector, const scene::BuiltScene& built, int tr
     found.pieces += built.world.ancestry(part->id).parent != 0 ? 1 : 0;
 }
 
-void play_trial(const SceneDescription& scene, scene::BuiltScene& built, int tried, Foreseen& found) {
+void play_trial(const SceneDescription& scene, scene::BuiltScene& built, int tried, double most_seconds,
+                Foreseen& found) {
   Recorder unread;
   Projector projector(scene, built, unread, false, static_cast<int>(scene.world.steps_per_second), 1);
   const double bytes = bytes_of(built.world);
   std::vector<body::Body> before;
-  const auto begin = Clock::now();
+  Patience patience(projector, most_seconds);
   for (auto start = Clock::now(); projector.next(); start = Clock::now()) {
     const double milliseconds = milliseconds_since(start);
     const world::WorldReport& report = built.world.report();
@@ -156,21 +177,25 @@ void play_trial(const SceneDescription& scene, scene::BuiltScene& built, int tri
     if (report.breaks.empty()) {
       note_meetings(built, tried, found);
       before.assign(built.world.bodies().begin(), built.world.bodies().end());
-      found.was_given_up = milliseconds_since(begin) > kPatience;
-      if (!found.was_given_up) continue;
-      found.time = built.world.time();
-      return;
+      continue;
     }
     note_break(built, tried, before, found);
+    patience.begin_anew();
     note_aftermath(projector, built, tried, milliseconds, found);
     found.bytes = std::max(0.0, bytes_of(built.world) - bytes);
-    return;
+    break;
+  }
+  found.was_given_up = patience.is_over();
+  if (found.was_given_up) {
+    found.given_up_at = built.world.time();
+    found.patience = most_seconds;
   }
 }
 
 }  // namespace
 
-std::vector<Foreseen> foresee(const SceneDescription& scene, const scene::ScenePlan& plan, std::size_t most) {
+std::vector<Foreseen> foresee(const SceneDescription& scene, const scene::ScenePlan& plan, std::size_t most,
+                              double patience) {
   int bodies = 0, breakable = 0;
   for (const scene::BodyEntry& body : scene.bodies) {
     bodies += body.repeat.total();
@@ -190,7 +215,7 @@ std::vector<Foreseen> foresee(const SceneDescription& scene, const scene::SceneP
     auto built = scene::raise_world(trial.scene, trial.plan, problems);
     if (!built) continue;
     built->world.prepare();
-    play_trial(trial.scene, *built, static_cast<int>(i), found);
+    play_trial(trial.scene, *built, static_cast<int>(i), patience, found);
     all.push_back(std::move(found));
   }
   return all;
@@ -205,15 +230,18 @@ std::string describe(const Foreseen& f) {
                           : f.speed < kPressed
                               ? fmt::format("is pressed by \"{}\"", f.other)
                               : fmt::format("meets \"{}\" with {:.3g} m/s", f.other, f.speed);
+  const std::string given_up =
+      fmt::format("; the step that begins at {:.3f} s was not over after {:g} s: the trial was given up",
+                  f.given_up_at, f.patience);
   if (f.pieces > 0)
     return fmt::format(
         "{}: {} at {:.3f} s and breaks, {:.3g} times as stressed as it bears: {} after "
-        "{:g} s; that took {:.0f} ms, then {:.3g} ms a step{}",
+        "{:g} s; that took {:.0f} ms, then {:.3g} ms a step{}{}",
         who, met, f.time, f.ratio, scene::counted(f.pieces, "piece"), kAftermath, f.break_ms, f.later_ms,
-        f.bytes < 1e5 ? "" : fmt::format(", {:.2g} MB more", f.bytes / 1e6));
+        f.bytes < 1e5 ? "" : fmt::format(", {:.2g} MB more", f.bytes / 1e6), f.was_given_up ? given_up : "");
   if (f.was_given_up)
-    return fmt::format("{}: holds until {:.2f} s, {}; the trial was given up there after {:g} s", who, f.time,
-                       met.empty() ? "and meets nothing" : "at its hardest it " + met, 1e-3 * kPatience);
+    return fmt::format("{}: holds until {:.3f} s{}{}", who, f.given_up_at,
+                       met.empty() ? "" : ", at its hardest it " + met, given_up);
   if (met.empty()) return who + ": meets nothing";
   const std::string stressed =
       f.ratio > 0.0 ? fmt::format(", at most {:.2g} of what it bears", f.ratio) : "; far from what it bears";

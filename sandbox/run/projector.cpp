@@ -20,7 +20,12 @@ Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& bu
       frames_per_second_(frames_per_second),
       slots_(slots) {
   if (has_audit) built_.world.keep_ways();
-  built_.world.set_stop(is_interrupted);
+  set_stop(is_interrupted);
+}
+
+void Projector::set_stop(core::StopQuestion wants_to_stop) {
+  wants_to_stop_ = std::move(wants_to_stop);
+  built_.world.set_stop(wants_to_stop_);
 }
 
 double Projector::steps_at(double film) const {
@@ -84,10 +89,10 @@ std::optional<view::Moment> Projector::next() {
   const auto is_over = [&] {
     return frame > 0 && script_.clock().simulated_at(middle) > scene_.seconds * (1.0 + 1e-12);
   };
-  while (!is_over() && static_cast<double>(world.steps()) < steps_at(film) && !is_interrupted()) {
+  while (!is_over() && static_cast<double>(world.steps()) < steps_at(film) && !wants_to_stop_()) {
     if (step(film)) recorder_.note_step(world);
   }
-  if (is_over() || is_interrupted()) return std::nullopt;
+  if (is_over() || wants_to_stop_()) return std::nullopt;
   const script::FilmClock& clock = script_.clock();
   view::Moment moment{film, clock.simulated_at(film), clock.factor_at(film), world.bodies()};
   if (const double steps = steps_at(film); steps < static_cast<double>(world.steps())) {
@@ -99,8 +104,8 @@ std::optional<view::Moment> Projector::next() {
 
 void Projector::finish() {
   const auto last_step = static_cast<long>(scene_.seconds * scene_.world.steps_per_second + 0.5);
-  while (built_.world.steps() < last_step && !is_interrupted()) (void)step(1e300);
-  if (is_interrupted()) return;
+  while (built_.world.steps() < last_step && !wants_to_stop_()) (void)step(1e300);
+  if (wants_to_stop_()) return;
   for (std::string& sentence : throws_.missed()) recorder_.record.warnings.push_back(std::move(sentence));
 }
 

@@ -21,7 +21,12 @@ class Projector {
   Projector(const scene::SceneDescription& scene, scene::BuiltScene& built, Recorder& recorder,
             bool has_audit, int frames_per_second, int slots = 1);
 
-  /// Steps to the next moment, which is good until the next call; nothing when the film is over.
+  /// Whoever is to be asked whether the film is to break off, in the middle of a step too; until then it is
+  /// whether the run is interrupted.
+  void set_stop(core::StopQuestion wants_to_stop);
+
+  /// Steps to the next moment, which is good until the next call; nothing when the film is over or broken
+  /// off.
   std::optional<view::Moment> next();
 
   /// What the script asked of the picture up to that moment.
@@ -35,7 +40,7 @@ class Projector {
   void finish();
 
  private:
-  /// False if the step was broken off, because the run is interrupted.
+  /// False if the step was broken off.
   bool step(double film);
   /// Before the coming step.
   view::Moment now() const;
@@ -52,6 +57,7 @@ class Projector {
   view::CameraRig rig_;  // as the script sees it: at step borders, whatever frames there are
   Inspector inspector_;
   Throws throws_;
+  core::StopQuestion wants_to_stop_;
   int frames_per_second_, slots_;
   int slot_ = -1;                   // of the last moment, counted through all frames
   std::vector<body::Body> before_;  // before the last step, if a frame shows a moment within it

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "sandbox/run/doubts.h"
+#include "sandbox/run/foresee.h"
 #include "sandbox/run/projector.h"
 #include "tests/sandbox/script/building.h"
 
@@ -90,4 +91,22 @@ TEST_CASE("a throw that can meet nothing is doubted before the run, and told aft
   // Who falls, or may be pushed away, is where nobody can tell.
   CHECK(
       doubts_of(miss + "[[event]]\nat = 0\ndo = \"push\"\nbody = \"crate\"\nimpulse = [9, 0, 0]\n").empty());
+}
+
+TEST_CASE(
+    "a trial that takes longer than one has patience for is given up in the middle of a step and says so") {
+  const auto reading = scene::read(std::string("[scene]\nseconds = 0.1\n") + kFloor +
+                                   "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.05\n"
+                                   "thickness = 0.0006\nedge_length = 0.02\nmaterial = \"glass\"\n"
+                                   "position = [0, 0.1, 0]\n");
+  const auto built = build(reading);
+  for (const double patience : {0.0, 600.0}) {
+    const auto all = run::foresee(*reading.scene, built->plan, 1, patience);
+    REQUIRE(all.size() == 1);
+    INFO(run::describe(all.front()));
+    CHECK(all.front().was_given_up == (patience == 0.0));
+    CHECK(all.front().given_up_at == 0.0);
+    CHECK(has(run::describe(all.front()), "given up") == (patience == 0.0));
+    CHECK(all.front().pieces == 0);
+  }
 }
