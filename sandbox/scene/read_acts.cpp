@@ -15,12 +15,18 @@ std::vector<std::string> body_names(const SceneDescription& scene) {
   return names;
 }
 
-Vec3 read_needed(TableReader& reader, const std::string& key, const Range& range, const char* example) {
+/// Nothing, with a problem, if it is missing or no such vector.
+std::optional<Vec3> find_needed(TableReader& reader, const std::string& key, const Range& range,
+                                const char* example) {
   const auto value = reader.vector(key, range);
   if (!reader.has(key))
     reader.add_problem(reader.table().place, fmt::format("{} has no \"{}\"", reader.what(), key),
                        fmt::format("add {} = {}", key, example));
-  return value.value_or(Vec3::Zero());
+  return value;
+}
+
+Vec3 read_needed(TableReader& reader, const std::string& key, const Range& range, const char* example) {
+  return find_needed(reader, key, range, example).value_or(Vec3::Zero());
 }
 
 ScreenPlace read_screen_place(TableReader& reader, const TomlValue& value) {
@@ -102,8 +108,9 @@ int read_acted_body(TableReader& reader, const SceneDescription& scene) {
 
 Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
   Push push;
-  push.impulse = read_needed(reader, "impulse", between(-1e6, 1e6, "N s"), "[x, y, z] (N s)");
-  if (reader.has("impulse") && push.impulse.squaredNorm() == 0.0)
+  const auto impulse = find_needed(reader, "impulse", between(-1e6, 1e6, "N s"), "[x, y, z] (N s)");
+  push.impulse = impulse.value_or(Vec3::Zero());
+  if (impulse && impulse->squaredNorm() == 0.0)
     reader.add_problem_at("impulse", "an impulse of nothing pushes nothing");
   push.point = reader.vector("point", coordinate());
   if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)

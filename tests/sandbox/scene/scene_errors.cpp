@@ -326,8 +326,16 @@ TEST_CASE("each broken scene is refused at its place, with a way to mend it") {
 }
 
 TEST_CASE("one fault is told once") {
-  const Reading reading = read("[[body]]\nkind = \"sphere\"\nradius = -1\n");
-  CHECK(reading.problems.size() == 1);
+  const std::string push =
+      "[[body]]\nname = \"b\"\nkind = \"sphere\"\n[[event]]\nat = 0\ndo = \"push\"\nbody = \"b\"\nimpulse = ";
+  const std::string one_fault[] = {"[[body]]\nkind = \"sphere\"\nradius = -1\n", push + "[1, 0]\n",
+                                   push + "[0, 0, 0]\n"};
+  for (const std::string& text : one_fault) {
+    const Reading reading = read(text);
+    INFO(reading.text);
+    CHECK(reading.problems.size() == 1);
+  }
+  CHECK(read(push + "[1, 0, 0]\n").problems.empty());
 }
 
 TEST_CASE("several faults are told at once, in the order of the text") {
