@@ -1,5 +1,6 @@
 #include "engine/audit/surface.h"
 #include "engine/core/index.h"
+#include "engine/geometry/generators.h"
 
 #include <algorithm>
 #include <numeric>
@@ -81,6 +82,10 @@ std::shared_ptr<const Surface> make_surface(const std::shared_ptr<const body::Sh
   surface->shape = shape;
   if (shape->kind == body::ShapeKind::box) {
     add_box(shape->half_extent, *surface);
+  } else if (shape->kind == body::ShapeKind::capsule) {
+    geometry::TriangleMesh mesh = geometry::make_capsule_surface(shape->radius, shape->half_length);
+    surface->vertices = std::move(mesh.positions);
+    surface->triangles = std::move(mesh.triangles);
   } else if (body::is_mesh(shape->kind)) {
     surface->vertices = shape->surface.positions;
     surface->triangles = shape->surface.triangles;

@@ -13,11 +13,12 @@
 namespace shatterbox::body {
 
 enum class ShapeKind : std::uint8_t {
-  plane,   // the half space y <= 0 of body space is solid; always static
-  box,     // half_extent about the origin
-  sphere,  // radius about the origin
-  shell,   // an infinitely thin triangle mesh; open or closed
-  solid,   // the inside of a closed triangle mesh
+  plane,    // the half space y <= 0 of body space is solid; always static
+  box,      // half_extent about the origin
+  sphere,   // radius about the origin
+  capsule,  // all that is no further than radius from the y axis between -half_length and half_length
+  shell,    // an infinitely thin triangle mesh; open or closed
+  solid,    // the inside of a closed triangle mesh
 };
 
 /// True for what is a triangle mesh to contact, pictures, audit and export.
@@ -25,10 +26,16 @@ constexpr bool is_mesh(ShapeKind kind) {
   return kind == ShapeKind::shell || kind == ShapeKind::solid;
 }
 
+/// True for what rolls: the material point that touches is another one a moment later.
+constexpr bool is_round(ShapeKind kind) {
+  return kind == ShapeKind::sphere || kind == ShapeKind::capsule;
+}
+
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Vec3 half_extent = Vec3::Zero();  // box, m
-  double radius = 0.0;              // sphere, m
+  double radius = 0.0;              // sphere and capsule, m
+  double half_length = 0.0;         // capsule, m: from its middle to the middle of each round end
 
   // Shell and solid: the one surface for contact, pictures, audit and export.
   geometry::TriangleMesh surface;         // body space

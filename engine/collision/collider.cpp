@@ -81,6 +81,16 @@ std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
       collider->triangles = {{0, 0, 0}};
       topology.first_triangle = {0};
       break;
+    case body::ShapeKind::capsule:
+      collider->radius = shape.radius;
+      collider->vertices = {Vec3(0.0, -shape.half_length, 0.0), Vec3(0.0, shape.half_length, 0.0)};
+      // Without area: what is nearest to it is on its edge.
+      collider->triangles = {{0, 1, 1}};
+      topology.edges = {{0, 1}};
+      topology.triangle_edges = {{0, 0, 0}};
+      topology.first_triangle = {0, 1};
+      topology.edge_triangles = {0};
+      break;
     case body::ShapeKind::box:
       add_box_surface(shape.half_extent, *collider);
       topology = geometry::build_edge_topology(collider->triangles);

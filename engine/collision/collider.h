@@ -1,6 +1,6 @@
 // What collision needs of a shape, built once: features (vertices, edges, triangles), who is whose neighbour,
-// and the triangle tree. Shells, solids, boxes and spheres are all seen as features: a sphere is one vertex
-// with a radius.
+// and the triangle tree. Shells, solids, boxes, spheres and capsules are all seen as features: a sphere is
+// one vertex with a radius, a capsule one edge with a radius.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@ namespace shatterbox::collision {
 struct Collider {
   body::ShapeKind kind = body::ShapeKind::shell;
   std::vector<Vec3> vertices;                      // |V| x 3, body space, m
-  std::vector<geometry::Triangle> triangles;       // |T| x 3; a sphere has one that is its centre thrice
+  std::vector<geometry::Triangle> triangles;       // |T| x 3; a sphere has one that is its centre thrice, a
+                                                   // capsule one of its two ends
   std::vector<std::array<int, 2>> edges;           // |E| x 2
   std::vector<std::array<int, 3>> triangle_edges;  // |T| x 3: edge i joins corners i and (i + 1) % 3
   std::vector<int> neighbour_begin;                // |V| + 1
@@ -29,7 +30,7 @@ struct Collider {
   std::vector<int> owned_edge_begin, owned_edges;       // |T| + 1
   geometry::TriangleTree tree;
   geometry::Box box;             // of the vertices, radius included, body space
-  double radius = 0.0;           // of a sphere's one vertex, m
+  double radius = 0.0;           // about the vertices and edges of spheres and capsules, m
   double bounding_radius = 0.0;  // about the origin, m, radius included
 };
 

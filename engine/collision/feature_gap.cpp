@@ -59,28 +59,44 @@ bool leads_away_at_triangle(const Collider& c, const std::vector<Vec3>& position
   return leads_away_at_vertex(c, positions, corners[at(last_positive)], direction, slack);
 }
 
-}  // namespace
-
-FeaturePoints gather(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
-                     const Collider& b, const std::vector<Vec3>& positions_b) {
+template <class PlaceA, class PlaceB>
+FeaturePoints gather_points(const FeaturePair& pair, const Collider& a, const PlaceA& place_a,
+                            const Collider& b, const PlaceB& place_b) {
   FeaturePoints result;
+  result.radius_a = a.radius;
+  result.radius_b = b.radius;
   if (pair.kind == FeatureKind::edge_edge) {
     const auto& edge_a = a.edges[at(pair.a)];
     const auto& edge_b = b.edges[at(pair.b)];
     result.is_edge_edge = true;
-    result.points = {positions_a[at(edge_a[0])], positions_a[at(edge_a[1])], positions_b[at(edge_b[0])],
-                     positions_b[at(edge_b[1])]};
+    result.points = {place_a(edge_a[0]), place_a(edge_a[1]), place_b(edge_b[0]), place_b(edge_b[1])};
     return result;
   }
   result.is_flipped = pair.kind == FeatureKind::triangle_vertex;
-  const Collider& face_body = result.is_flipped ? a : b;
-  const auto& face_positions = result.is_flipped ? positions_a : positions_b;
-  const auto& triangle = face_body.triangles[at(result.is_flipped ? pair.a : pair.b)];
-  result.radius = (result.is_flipped ? b : a).radius;
-  result.points = {result.is_flipped ? positions_b[at(pair.b)] : positions_a[at(pair.a)],
-                   face_positions[at(triangle[0])], face_positions[at(triangle[1])],
-                   face_positions[at(triangle[2])]};
+  if (result.is_flipped) {
+    const auto& t = a.triangles[at(pair.a)];
+    result.points = {place_b(pair.b), place_a(t[0]), place_a(t[1]), place_a(t[2])};
+  } else {
+    const auto& t = b.triangles[at(pair.b)];
+    result.points = {place_a(pair.a), place_b(t[0]), place_b(t[1]), place_b(t[2])};
+  }
   return result;
+}
+
+}  // namespace
+
+FeaturePoints gather(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
+                     const Collider& b, const std::vector<Vec3>& positions_b) {
+  return gather_points(
+      pair, a, [&](int v) -> const Vec3& { return positions_a[at(v)]; }, b,
+      [&](int v) -> const Vec3& { return positions_b[at(v)]; });
+}
+
+FeaturePoints gather(const FeaturePair& pair, const Collider& a, const Pose& pose_a, const Collider& b,
+                     const Pose& pose_b) {
+  return gather_points(
+      pair, a, [&](int v) { return pose_a.apply(a.vertices[at(v)]); }, b,
+      [&](int v) { return pose_b.apply(b.vertices[at(v)]); });
 }
 
 FeatureGap measure(const FeaturePoints& f, const Vec3& hint) {
@@ -101,7 +117,7 @@ FeatureGap measure(const FeaturePoints& f, const Vec3& hint) {
     result.distance = c.distance;
   }
   const Vec3 e = f.points[3] - f.points[2];
-  if (result.distance > kNoDirection * (e.cwiseAbs().maxCoeff() + f.radius) && result.distance > 1e-150) {
+  if (result.distance > kNoDirection * (e.cwiseAbs().maxCoeff() + f.radii()) && result.distance > 1e-150) {
     result.normal = (result.on_a - result.on_b) / result.distance;
   } else {
     spare = f.is_edge_edge ? Vec3((f.points[1] - f.points[0]).cross(e))
@@ -110,23 +126,18 @@ FeatureGap measure(const FeaturePoints& f, const Vec3& hint) {
     result.normal = length > 1e-150 ? Vec3(spare / length) : Vec3::UnitY();
     if (result.normal.dot(hint) < 0.0) result.normal = -result.normal;
   }
-  result.gap = result.distance - f.radius;
-  if (f.radius > 0.0) {
-    if (f.is_flipped) {
-      result.on_b += f.radius * result.normal;
-    } else {
-      result.on_a -= f.radius * result.normal;
-    }
-  }
+  result.gap = result.distance - f.radii();
+  if (f.radius_a > 0.0) result.on_a -= f.radius_a * result.normal;
+  if (f.radius_b > 0.0) result.on_b += f.radius_b * result.normal;
   return result;
 }
 
 double separation_along(const FeaturePoints& f, const Vec3& direction) {
   std::array<double, 4> along;
   for (std::size_t i = 0; i < 4; ++i) along[i] = direction.dot(f.points[i]);
-  if (f.is_edge_edge) return std::min(along[0], along[1]) - std::max(along[2], along[3]);
-  if (f.is_flipped) return std::min({along[1], along[2], along[3]}) - along[0] - f.radius;
-  return along[0] - std::max({along[1], along[2], along[3]}) - f.radius;
+  if (f.is_edge_edge) return std::min(along[0], along[1]) - std::max(along[2], along[3]) - f.radii();
+  if (f.is_flipped) return std::min({along[1], along[2], along[3]}) - along[0] - f.radii();
+  return along[0] - std::max({along[1], along[2], along[3]}) - f.radii();
 }
 
 bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Collider& a,
@@ -212,8 +223,8 @@ Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& star
   for (int i = 0; i < 4; ++i) (i < split ? first : second) += hit.weights[at(i)] * start.points[at(i)];
   c.on_a = start.is_flipped ? second : first;
   c.on_b = start.is_flipped ? first : second;
-  if (start.radius > 0.0)
-    (start.is_flipped ? c.on_b : c.on_a) += (start.is_flipped ? 1.0 : -1.0) * start.radius * hit.normal;
+  if (start.radius_a > 0.0) c.on_a -= start.radius_a * hit.normal;
+  if (start.radius_b > 0.0) c.on_b += start.radius_b * hit.normal;
   c.gap = c.normal.dot(c.on_a - c.on_b);
   return c;
 }

@@ -15,20 +15,26 @@ namespace shatterbox::collision {
 /// The up to four vertices of a feature pair: [vertex, triangle] or [edge of a, edge of b].
 struct FeaturePoints {
   bool is_edge_edge = false;
-  bool is_flipped = false;  // the vertex is body b's
-  double radius = 0.0;      // of the vertex, m
+  bool is_flipped = false;                // the vertex is body b's
+  double radius_a = 0.0, radius_b = 0.0;  // m, about the features of either body
   std::array<Vec3, 4> points;
+
+  double radii() const { return radius_a + radius_b; }
 };
 
 /// Gathers them from vertex positions of both bodies.
 FeaturePoints gather(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
                      const Collider& b, const std::vector<Vec3>& positions_b);
 
+/// Gathers them where both bodies have these poses.
+FeaturePoints gather(const FeaturePair& pair, const Collider& a, const Pose& pose_a, const Collider& b,
+                     const Pose& pose_b);
+
 struct FeatureGap {
   std::array<double, 4> weights{};                // of the four points in the closest points
-  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // m, world, on the surfaces (radius included)
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // m, world, on the surfaces (radii included)
   Vec3 normal = Vec3::UnitY();                    // unit, from b towards a
-  double gap = 0.0;                               // m, radius subtracted; only a sphere's may be negative
+  double gap = 0.0;                               // m, radii subtracted; negative only where there are any
   double distance = -1.0;                         // m, of the features themselves; negative: not measured
 };
 

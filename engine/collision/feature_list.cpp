@@ -215,7 +215,8 @@ void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Places&
   const TightWay way(relative_way);
   Descent descent(a, boxes_a, b, boxes_b, way, margin);
   Planes planes(a, places_a, b, places_b, relative_way, margin);
-  const bool a_has_faces = a.radius == 0.0, b_has_faces = b.radius == 0.0;
+  // A sphere is but a vertex: what touches it, it touches with that.
+  const bool a_has_faces = !a.edges.empty(), b_has_faces = !b.edges.empty();
   const auto add = [&](FeatureKind kind, int i, const TightBox& box_a, int j, const TightBox& box_b) {
     if (!descent.is_about_near(box_a, box_b)) return;
     const float squared = distance_squared(box_a, box_b);

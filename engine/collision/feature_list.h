@@ -22,6 +22,15 @@ struct FeaturePair {
     return (static_cast<std::uint64_t>(kind) << 60) | (static_cast<std::uint64_t>(a) << 30) |
            static_cast<std::uint64_t>(b);
   }
+  /// The pair that has this key.
+  static FeaturePair of_key(std::uint64_t key) {
+    constexpr std::uint64_t kNumber = (std::uint64_t{1} << 30) - 1;
+    FeaturePair pair;
+    pair.kind = static_cast<FeatureKind>(key >> 60);
+    pair.a = static_cast<int>((key >> 30) & kNumber);
+    pair.b = static_cast<int>(key & kNumber);
+    return pair;
+  }
 };
 
 using FeatureList = std::vector<FeaturePair>;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "engine/core/elementary.h"
+#include "engine/geometry/generators.h"
 
 namespace shatterbox::dynamics {
 
@@ -66,11 +67,15 @@ std::vector<Facet> ball_facets(double radius) {
 std::vector<Facet> facets_of(const body::Shape& shape) {
   if (shape.kind == ShapeKind::box) return box_facets(shape.half_extent);
   if (shape.kind == ShapeKind::sphere) return ball_facets(shape.radius);
+  const geometry::TriangleMesh capsule = shape.kind == ShapeKind::capsule
+                                             ? geometry::make_capsule_surface(shape.radius, shape.half_length)
+                                             : geometry::TriangleMesh{};
+  const geometry::TriangleMesh& surface = shape.kind == ShapeKind::capsule ? capsule : shape.surface;
   std::vector<Facet> facets;
-  for (const geometry::Triangle& t : shape.surface.triangles) {
-    const Vec3& a = shape.surface.positions[static_cast<std::size_t>(t[0])];
-    const Vec3& b = shape.surface.positions[static_cast<std::size_t>(t[1])];
-    const Vec3& c = shape.surface.positions[static_cast<std::size_t>(t[2])];
+  for (const geometry::Triangle& t : surface.triangles) {
+    const Vec3& a = surface.positions[static_cast<std::size_t>(t[0])];
+    const Vec3& b = surface.positions[static_cast<std::size_t>(t[1])];
+    const Vec3& c = surface.positions[static_cast<std::size_t>(t[2])];
     facets.push_back({(a + b + c) / 3.0, 0.5 * (b - a).cross(c - a)});
   }
   return facets;

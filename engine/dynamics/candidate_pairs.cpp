@@ -196,8 +196,8 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.is_plane = a.shape->kind == ShapeKind::plane || b.shape->kind == ShapeKind::plane;
   pair.is_flipped = a.shape->kind == ShapeKind::plane;
   pair.is_analytic = collision::is_analytic_pair(a.shape->kind, b.shape->kind);
-  pair.has_sides = pair.is_plane || pair.is_analytic || a.shape->kind == ShapeKind::sphere ||
-                   b.shape->kind == ShapeKind::sphere;
+  pair.has_sides =
+      pair.is_plane || pair.is_analytic || body::is_round(a.shape->kind) || body::is_round(b.shape->kind);
   pair.margin =
       2.0 * usual_gap +
       (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));

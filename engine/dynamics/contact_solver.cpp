@@ -27,6 +27,12 @@ Moved moved(const WorkBody& body, int substeps) {
   return {ride.way, ride.turn.toRotationMatrix()};
 }
 
+// Most have no round part, and then nothing is added: rounding would be.
+Vec3 turned(const Moved& body, const Vec3& arm, const Vec3& round) {
+  if (round.isZero(0.0)) return body.turn * arm;
+  return body.turn * (arm - round) + round;
+}
+
 class IslandSolver {
  public:
   IslandSolver(const ContactSettings& settings, const Island& island, MotionWork& work)
@@ -197,7 +203,8 @@ class IslandSolver {
       SolverContact& c = work_.contacts[at(i)];
       const WorkBody &a = body(c.a), &b = body(c.b);
       const Moved ma = moved(a, substeps), mb = moved(b, substeps);
-      const Vec3 turned_a = ma.turn * c.arm_a_start, turned_b = mb.turn * c.arm_b_start;
+      const Vec3 turned_a = turned(ma, c.arm_a_start, c.round_a),
+                 turned_b = turned(mb, c.arm_b_start, c.round_b);
       const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
       c.change = change;
       const double gap = c.gap_start + c.normal.dot(change);

@@ -54,6 +54,16 @@ double share_at_ball(const Segment& s, double radius) {
   return begin < std::min(1.0, (-b + root) / a) ? begin : 1.0;
 }
 
+/// The ball that is swept along the axis: the first of both ends and of the cylinder between them.
+double share_at_capsule(const Segment& s, double radius, double half_length) {
+  double least = 1.0;
+  for (const double end : {-half_length, half_length})
+    least = std::min(least, share_at_ball({s.from - Vec3(0.0, end, 0.0), s.way}, radius));
+  const double flat = share_at_ball({{s.from.x(), 0.0, s.from.z()}, {s.way.x(), 0.0, s.way.z()}}, radius);
+  const bool is_on_side = std::abs(s.from.y() + flat * s.way.y()) <= half_length;
+  return is_on_side ? std::min(least, flat) : least;
+}
+
 double share_at_plane(const Segment& s) {
   if (s.from.y() < 0.0) return 0.0;
   const double end = s.from.y() + s.way.y();
@@ -114,6 +124,7 @@ double LineOfSight::share_before(const Screen& screen, const Vec3& from, const V
   s.way = body.pose.apply_inverse(to) - s.from;
   if (shape.kind == ShapeKind::plane) return share_at_plane(s);
   if (shape.kind == ShapeKind::sphere) return share_at_ball(s, shape.radius);
+  if (shape.kind == ShapeKind::capsule) return share_at_capsule(s, shape.radius, shape.half_length);
   if (shape.kind == ShapeKind::box) {
     const auto [begin, end] = within(s, -shape.half_extent, shape.half_extent);
     return begin < end ? begin : 1.0;

@@ -29,6 +29,11 @@ Vec3 direction_hint(const WorkBody& a, const WorkBody& b, const collision::Featu
 
 Vec3 carry(const WorkBody& body, const Vec3& point, const Pose& from, const Pose& to) {
   if (body.shape->kind == body::ShapeKind::sphere) return point - from.translation + to.translation;
+  if (body.shape->kind == body::ShapeKind::capsule) {  // what is nearest on its axis turns with it
+    const double half = body.shape->half_length;
+    const Vec3 on_axis(0.0, std::clamp(from.apply_inverse(point).y(), -half, half), 0.0);
+    return to.apply(on_axis) + (point - from.apply(on_axis));
+  }
   return to.apply(from.apply_inverse(point));
 }
 

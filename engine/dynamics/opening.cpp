@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
 
 namespace shatterbox::dynamics {
@@ -83,29 +84,50 @@ void give(MotionWork& work, const Opening& o, double size, double closing, body:
   work.continuous_log.push_back(entry);
 }
 
+struct Meeting {
+  Vec3 on_a, on_b, normal;
+  double gap = 0.0;  // m
+};
+
+// Where a contact seen from the start is at the share `knot` of the step. What touches of a capsule slides
+// along it: there its features are measured anew.
+Meeting meet_on_way(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  const Pose pose_a = pose_on_way(a, knot), pose_b = pose_on_way(b, knot);
+  const bool has_capsule =
+      a.shape->kind == body::ShapeKind::capsule || b.shape->kind == body::ShapeKind::capsule;
+  if (has_capsule && !pair.is_plane) {
+    const auto features = collision::FeaturePair::of_key(contact.key);
+    const auto points = collision::gather(features, *a.collider, pose_a, *b.collider, pose_b);
+    const collision::FeatureGap found = collision::measure(points, contact.normal);
+    return {found.on_a, found.on_b, found.normal, found.gap};
+  }
+  Meeting meeting{carry(a, contact.on_a, a.start, pose_a), carry(b, contact.on_b, b.start, pose_b),
+                  contact.normal};
+  meeting.gap = contact.normal.dot(meeting.on_a - meeting.on_b);
+  return meeting;
+}
+
 }  // namespace
 
 double gap_on_way(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot) {
-  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-  return contact.normal.dot(carry(a, contact.on_a, a.start, pose_on_way(a, knot)) -
-                            carry(b, contact.on_b, b.start, pose_on_way(b, knot)));
+  return meet_on_way(pair, work, contact, knot).gap;
 }
 
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot,
                      double wanted) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-  const Pose pose_a = pose_on_way(a, knot), pose_b = pose_on_way(b, knot);
+  const Meeting there = meet_on_way(pair, work, contact, knot);
   Opening o;
   o.a = pair.a;
   o.b = pair.b;
-  o.normal = contact.normal;
+  o.normal = there.normal;
   o.share = knot;
-  const Vec3 end_a = carry(a, contact.on_a, a.start, pose_a), end_b = carry(b, contact.on_b, b.start, pose_b);
-  o.gap = contact.normal.dot(end_a - end_b);
+  o.gap = there.gap;
   o.wanted = wanted;
-  const Vec3 middle = contact.lean * end_a + (1.0 - contact.lean) * end_b;
-  o.arm_a = middle - pose_a.translation;
-  o.arm_b = middle - pose_b.translation;
+  const Vec3 middle = contact.lean * there.on_a + (1.0 - contact.lean) * there.on_b;
+  o.arm_a = middle - pose_on_way(a, knot).translation;
+  o.arm_b = middle - pose_on_way(b, knot).translation;
   o.weight = weight(work, o, Yielding::by_mass);
   return o;
 }

@@ -27,7 +27,7 @@ std::vector<double> lump_mass(const body::Shape& shape, const collision::Collide
   for (const auto& t : collider.triangles) {
     const Vec3 &p = collider.vertices[at(t[0])], &q = collider.vertices[at(t[1])],
                &r = collider.vertices[at(t[2])];
-    const double area = shape.kind == ShapeKind::sphere ? 1.0 : (q - p).cross(r - p).norm();
+    const double area = body::is_round(shape.kind) ? 1.0 : (q - p).cross(r - p).norm();
     for (const int corner : t) share[at(corner)] += area;
     total += 3.0 * area;
   }

@@ -204,6 +204,33 @@ core::Result<TriangleMesh> make_torus(double ring_radius, double wire_radius, co
   return mesh;
 }
 
+TriangleMesh make_capsule_surface(double radius, double half_length, int around) {
+  const int rings = around / 4;  // of each round end
+  TriangleMesh mesh;
+  mesh.positions.emplace_back(0.0, half_length + radius, 0.0);
+  const auto add_ring = [&](double polar, double middle) {
+    for (int i = 0; i < around; ++i) {
+      const double turn = 2.0 * core::kPi * i / around, ring = radius * core::sin(polar);
+      mesh.positions.emplace_back(ring * core::cos(turn), middle + radius * core::cos(polar),
+                                  -ring * core::sin(turn));
+    }
+  };
+  for (int k = 1; k <= rings; ++k) add_ring(0.5 * core::kPi * k / rings, half_length);
+  for (int k = rings; k < 2 * rings; ++k) add_ring(0.5 * core::kPi * k / rings, -half_length);
+  mesh.positions.emplace_back(0.0, -half_length - radius, 0.0);
+  const int count = 2 * rings, last = static_cast<int>(mesh.positions.size()) - 1;
+  const auto corner = [around](int ring, int i) { return 1 + ring * around + i % around; };
+  for (int i = 0; i < around; ++i) {
+    mesh.triangles.push_back({0, corner(0, i), corner(0, i + 1)});
+    for (int ring = 0; ring + 1 < count; ++ring) {
+      mesh.triangles.push_back({corner(ring, i), corner(ring + 1, i), corner(ring + 1, i + 1)});
+      mesh.triangles.push_back({corner(ring, i), corner(ring + 1, i + 1), corner(ring, i + 1)});
+    }
+    mesh.triangles.push_back({corner(count - 1, i), last, corner(count - 1, i + 1)});
+  }
+  return mesh;
+}
+
 TriangleMesh make_box_surface(const Vec3& half_extent) {
   TriangleMesh mesh;
   for (int corner = 0; corner < 8; ++corner) {

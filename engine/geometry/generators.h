@@ -72,6 +72,10 @@ core::Result<TriangleMesh> make_pane(double width, double height, const Meshing&
 /// The surface of a box about the origin: its eight corners and twelve triangles.
 TriangleMesh make_box_surface(const Vec3& half_extent);
 
+/// A capsule about the y axis as a polyhedron of `around` sides whose corners lie on it: what takes surfaces
+/// only, as exports do, sees it so.
+TriangleMesh make_capsule_surface(double radius, double half_length, int around = 32);
+
 /// A vase with a wall: foot on y = 0, belly, neck, flared rim with a round lip; closed, for solids. Finer
 /// than twice the wall, whatever `meshing` says, so that the two sides of the wall keep apart.
 struct VaseSizes {
@@ -107,8 +111,8 @@ struct EggSizes {
 core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing);
 
 /// An upright animal in bands of armour: feet on y = 0, looking along z, 0.85 as wide as high. From an
-/// implicit surface; closed. Edges are at most an eightieth of its height; `Meshing::jitter` and `seed` do not
-/// apply.
+/// implicit surface; closed. Edges are at most an eightieth of its height; `Meshing::jitter` and `seed` do
+/// not apply.
 core::Result<TriangleMesh> make_figure(double height, const Meshing& meshing);
 
 /// An open hull, double-ended: keel along x through the origin's height, bow at +x, gunwales up. A lattice of

@@ -112,6 +112,20 @@ MassProperties sphere_mass_properties(double radius, double density) {
   return result;
 }
 
+MassProperties capsule_mass_properties(double radius, double half_length, double density) {
+  const double square = radius * radius, height = 2.0 * half_length;
+  const double cylinder = core::kPi * square * height * density;
+  const double ball = 4.0 / 3.0 * core::kPi * square * radius * density;
+  // Each half ball has its centre of mass 3/8 of the radius beyond its flat side.
+  const double along = 0.5 * cylinder * square + 0.4 * ball * square;
+  const double across = cylinder * (height * height / 12.0 + 0.25 * square) +
+                        ball * (0.4 * square + half_length * half_length + 0.75 * radius * half_length);
+  MassProperties result;
+  result.mass = cylinder + ball;
+  result.inertia = Vec3(across, along, across).asDiagonal();
+  return result;
+}
+
 MassProperties transformed(const MassProperties& properties, const Pose& pose) {
   const Mat3 rotation = pose.rotation.toRotationMatrix();
   return {properties.mass, pose.apply(properties.centre),

@@ -52,9 +52,11 @@ MassProperties shell_mass_properties(const TriangleMesh& mesh, double thickness,
 /// The solid inside the closed surface `mesh` (counter-clockwise seen from outside) of `density` kg/m3.
 MassProperties solid_mass_properties(const TriangleMesh& mesh, double density);
 
-/// A solid box about the origin, and a solid sphere about the origin.
+/// A solid box about the origin, a solid sphere about the origin, and a solid capsule about the y axis, whose
+/// round ends have their middles at -half_length and half_length.
 MassProperties box_mass_properties(const Vec3& half_extent, double density);
 MassProperties sphere_mass_properties(double radius, double density);
+MassProperties capsule_mass_properties(double radius, double half_length, double density);
 
 /// The same mass after the rigid motion `pose`.
 MassProperties transformed(const MassProperties& properties, const Pose& pose);

@@ -47,6 +47,12 @@ struct SphereDescription {
   double radius = 0.5;  // m
 };
 
+/// A cylinder about the y axis with a half sphere on either end.
+struct CapsuleDescription {
+  double radius = 0.25;  // m
+  double length = 1.0;   // m, from tip to tip; more than twice the radius
+};
+
 /// The half space y <= 0 of the body's own frame is solid. Never dynamic; scripted ones do not turn.
 struct PlaneDescription {};
 
@@ -60,7 +66,9 @@ struct PathDescription {
 
 struct BodyDescription {
   std::string name;
-  std::variant<PlaneDescription, BoxDescription, SphereDescription, ShellDescription, SolidDescription> form;
+  std::variant<PlaneDescription, BoxDescription, SphereDescription, CapsuleDescription, ShellDescription,
+               SolidDescription>
+      form;
   int material = 0;                             // from World::add_material
   body::Motion motion = body::Motion::dynamic;  // what is clamped or held is always fixed
   Pose pose;                                    // of the mesh's (or the analytic form's) own frame

@@ -128,6 +128,10 @@ std::string find_form_fault(const BodyDescription& description) {
     if (!(box->half_extent.minCoeff() > 0.0)) return "a box needs an extent above zero along every axis";
   if (const auto* sphere = std::get_if<SphereDescription>(&description.form))
     if (!(sphere->radius > 0.0)) return "a sphere needs a radius above zero";
+  if (const auto* capsule = std::get_if<CapsuleDescription>(&description.form)) {
+    if (!(capsule->radius > 0.0)) return "a capsule needs a radius above zero";
+    if (!(capsule->length > 2.0 * capsule->radius)) return "a capsule is longer than twice its radius";
+  }
   if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
     std::string fault = find_mesh_fault(shell->mesh, shell->parts, "shell");
     if (!fault.empty()) return fault;
@@ -168,6 +172,12 @@ std::shared_ptr<const body::Shape> make_analytic_shape(const BodyDescription& de
     shape->kind = body::ShapeKind::sphere;
     shape->radius = shape->bounding_radius = sphere->radius;
     mass = geometry::sphere_mass_properties(sphere->radius, density);
+  } else if (const auto* capsule = std::get_if<CapsuleDescription>(&description.form)) {
+    shape->kind = body::ShapeKind::capsule;
+    shape->radius = capsule->radius;
+    shape->half_length = 0.5 * capsule->length - capsule->radius;
+    shape->bounding_radius = 0.5 * capsule->length;
+    mass = geometry::capsule_mass_properties(capsule->radius, shape->half_length, density);
   } else {
     shape->kind = body::ShapeKind::plane;
   }

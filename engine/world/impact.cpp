@@ -134,7 +134,7 @@ double contact_average(double step) {
 stress::HertzContact find_hertz_contact(const body::Body& struck, const body::Body* other) {
   const auto surface = [](const body::Body& body) {
     double radius = body.shape->bounding_radius;
-    if (body.shape->kind == body::ShapeKind::sphere) radius = body.shape->radius;
+    if (body::is_round(body.shape->kind)) radius = body.shape->radius;
     if (body.shape->kind == body::ShapeKind::plane || body.shape->kind == body::ShapeKind::box) radius = 0.0;
     return stress::ContactSurface{body.young, body.poisson, radius};
   };

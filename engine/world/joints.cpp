@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "engine/core/index.h"
+#include "engine/geometry/generators.h"
 #include "engine/world/acts.h"
 #include "engine/world/state.h"
 
@@ -29,6 +30,9 @@ geometry::TriangleMesh world_surface(const body::Body& body, const body::Body& o
     }
     mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
                       {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  } else if (body.shape->kind == body::ShapeKind::capsule) {
+    mesh = geometry::make_capsule_surface(body.shape->radius, body.shape->half_length);
+    for (Vec3& p : mesh.positions) p = body.pose.apply(p);
   } else if (body.shape->kind == body::ShapeKind::plane) {
     const double half = 2.0 * other.shape->bounding_radius;
     Vec3 middle = body.pose.apply_inverse(other.pose.translation);

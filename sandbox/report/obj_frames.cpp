@@ -55,6 +55,9 @@ std::string make_obj(std::span<const body::Body> bodies, double time) {
       case body::ShapeKind::sphere:
         made = sphere_surface(body.shape->radius);
         break;
+      case body::ShapeKind::capsule:
+        made = geometry::make_capsule_surface(body.shape->radius, body.shape->half_length);
+        break;
       case body::ShapeKind::shell:
       case body::ShapeKind::solid:
         mesh = &body.shape->surface;

@@ -100,6 +100,9 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
   } else if (const auto* sphere = std::get_if<SphereForm>(&body.form)) {
     description.form = world::SphereDescription{sphere->radius};
     plan.bounding_radius = plan.reach = sphere->radius;
+  } else if (const auto* capsule = std::get_if<CapsuleForm>(&body.form)) {
+    description.form = world::CapsuleDescription{capsule->radius, capsule->length};
+    plan.bounding_radius = plan.reach = 0.5 * capsule->length;
   } else if (const auto* form = std::get_if<ShellForm>(&body.form)) {
     auto shell = describe_shell(body, *form, scene, plan, notes, problems);
     if (!shell) return std::nullopt;

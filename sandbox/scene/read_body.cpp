@@ -12,8 +12,7 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere"};
-const std::vector<std::string> kLaterKinds{"capsule"};
+const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere", "capsule"};
 const std::vector<std::string> kMaterialKeys{
     "young",         "poisson",    "strength",       "fracture_energy", "weibull_modulus",  "flaw_area",
     "crack_spacing", "grain_size", "grain_strength", "friction",        "rolling_friction", "restitution"};
@@ -77,6 +76,23 @@ Quat read_rotation(TableReader& reader) {
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
+CapsuleForm read_capsule(TableReader& reader) {
+  CapsuleForm form;
+  const auto radius = reader.number("radius", positive("m")), length = reader.number("length", positive("m"));
+  if (radius && !reader.has("length")) form.length = 4.0 * *radius;
+  if (length && !reader.has("radius")) form.radius = 0.25 * *length;
+  form.radius = radius.value_or(form.radius);
+  form.length = length.value_or(form.length);
+  if (radius && length && !(*length > 2.0 * *radius))
+    reader.add_problem_at("length",
+                          fmt::format("a capsule of radius {:g} m is {:g} m long with its round ends alone",
+                                      *radius, 2.0 * *radius),
+                          "length is from tip to tip; what is not longer is a sphere");
+  reader.foreign(shape_keys(), "a capsule has a radius and a length only");
+  reader.foreign({"size"}, "a capsule has a radius and a length only");
+  return form;
+}
+
 decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind,
                                     const SceneDescription& scene) {
   if (kind != "solid") reader.foreign({"element_size"}, "it is for kind = \"solid\"");
@@ -91,6 +107,7 @@ decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind
     reader.foreign({"size"}, "a sphere has a radius only");
     return form;
   }
+  if (kind == "capsule") return read_capsule(reader);
   if (kind == "box") {
     BoxForm form;
     form.size = reader.number_or_vector("size", positive("m")).value_or(form.size);
@@ -167,7 +184,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.name = reader.text("name").value_or(name);
   body.is_held_back = is_held_back;
   const bool looks_like_shell = !reader.has("kind") && (reader.has("mesh") || reader.has("shape"));
-  const auto kind = reader.choice("kind", kKinds, kLaterKinds);
+  const auto kind = reader.choice("kind", kKinds);
   if (!reader.has("kind") && !looks_like_shell) {
     reader.add_problem(table.place, fmt::format("{} has no kind", reader.what()),
                        fmt::format("add kind = one of {}", quoted_list(kKinds)));

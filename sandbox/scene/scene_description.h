@@ -66,6 +66,10 @@ struct BoxForm {
 struct SphereForm {
   double radius = 0.1;
 };
+struct CapsuleForm {
+  double radius = 0.1;
+  double length = 0.4;  // m, from tip to tip, along its own y axis
+};
 struct MeshForm {
   MeshShape shape;
   std::optional<double> edge_length;  // m, of generated meshes; nothing: kUsualTriangles, a boat 300
@@ -80,7 +84,7 @@ struct ShellForm : MeshForm {
 struct SolidForm : MeshForm {
   std::optional<double> element_size;  // m, of the tetrahedra; nothing: about 10000 of them
 };
-using Form = std::variant<PlaneForm, BoxForm, SphereForm, ShellForm, SolidForm>;
+using Form = std::variant<PlaneForm, BoxForm, SphereForm, CapsuleForm, ShellForm, SolidForm>;
 
 /// The mesh of a shell or a solid; nothing of what has none.
 inline const MeshForm* find_mesh_form(const Form& form) {
@@ -232,7 +236,7 @@ inline const std::vector<std::string> kLookNames{
 inline const std::vector<std::string> kGroundNames{"none", "plain", "concrete", "wood", "dark", "checker"};
 inline const std::vector<std::string> kBackdropNames{"studio", "dark", "sky", "white", "evening", "overcast"};
 inline const std::vector<std::string> kLightNames{"studio", "noon", "evening", "overcast"};
-inline const std::vector<std::string> kOverlayNames{"none",    "stress",   "pieces",   "grains",
+inline const std::vector<std::string> kOverlayNames{"none",    "stress",   "pieces",    "grains",
                                                     "impacts", "velocity", "wireframe", "level_set"};
 
 }  // namespace shatterbox::sandbox::scene

@@ -15,10 +15,11 @@ namespace {
 using body::ShapeKind;
 using geometry::TriangleMesh;
 
-/// A form in world space: the surface of a shell, a solid or a box, the ball of a sphere, or a half space.
+/// A form in world space: the surface of a shell, a solid, a box or a capsule, the ball of a sphere, or a
+/// half space.
 struct Placed {
   ShapeKind kind = ShapeKind::shell;
-  TriangleMesh surface;  // shells, solids and boxes, m
+  TriangleMesh surface;  // of all but planes and spheres, m
   Pose pose;             // of the form's own frame
   Vec3 half_extent = Vec3::Zero();
   double radius = 0.0;                             // of the sphere, m
@@ -51,6 +52,9 @@ Placed placed(const world::BodyDescription& description) {
   } else if (const auto* sphere = std::get_if<world::SphereDescription>(&description.form)) {
     form.kind = ShapeKind::sphere;
     form.radius = sphere->radius;
+  } else if (const auto* capsule = std::get_if<world::CapsuleDescription>(&description.form)) {
+    form.kind = ShapeKind::capsule;
+    form.surface = geometry::make_capsule_surface(capsule->radius, 0.5 * capsule->length - capsule->radius);
   } else {
     form.kind = ShapeKind::plane;
   }
@@ -64,8 +68,10 @@ Placed placed(const body::Body& body) {
   form.pose = body.pose;
   form.half_extent = body.shape->half_extent;
   if (form.kind == ShapeKind::sphere) form.radius = body.shape->radius;
-  form.surface =
-      form.kind == ShapeKind::box ? geometry::make_box_surface(form.half_extent) : body.shape->surface;
+  form.surface = form.kind == ShapeKind::box ? geometry::make_box_surface(form.half_extent)
+                 : form.kind == ShapeKind::capsule
+                     ? geometry::make_capsule_surface(body.shape->radius, body.shape->half_length)
+                     : body.shape->surface;
   place(form);
   return form;
 }
@@ -119,7 +125,8 @@ double winding_number(const TriangleMesh& surface, const Vec3& point) {
 
 /// One whose surface does not cross the solid's lies wholly in it.
 bool is_in_solid(const Placed& form, const Placed& solid) {
-  if (solid.kind != ShapeKind::solid || form.kind == ShapeKind::plane) return false;
+  const bool has_inside = solid.kind == ShapeKind::solid || solid.kind == ShapeKind::capsule;
+  if (!has_inside || form.kind == ShapeKind::plane) return false;
   const Vec3& point = form.kind == ShapeKind::sphere ? form.pose.translation : form.surface.positions.front();
   return winding_number(solid.surface, point) > 0.5;
 }

@@ -67,6 +67,9 @@ std::shared_ptr<const render::Mesh> make_mesh(const body::Shape& shape, std::uin
       return render::make_box(id, to_glm(2.0 * shape.half_extent));
     case body::ShapeKind::sphere:
       return render::make_sphere(id, static_cast<float>(shape.radius));
+    case body::ShapeKind::capsule:
+      return render::make_capsule(id, static_cast<float>(shape.radius),
+                                  static_cast<float>(2.0 * shape.half_length));
     case body::ShapeKind::plane:
       return render::make_box(id, to_glm(Vec3(kSlabWidth, kSlabDepth, kSlabWidth)));
     case body::ShapeKind::shell:

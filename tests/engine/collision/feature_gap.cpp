@@ -165,7 +165,8 @@ TEST_CASE("features are no further apart along any direction than they are") {
       FeaturePoints f;
       f.is_edge_edge = kind == FeatureKind::edge_edge;
       f.is_flipped = kind == FeatureKind::triangle_vertex;
-      f.radius = f.is_edge_edge ? 0.0 : random.uniform(0.0, 0.1);
+      f.radius_a = random.uniform(0.0, 0.1);
+      f.radius_b = random.uniform(0.0, 0.1);
       for (Vec3& p : f.points) p = draw(random);
       const FeatureGap gap = measure(f, Vec3::UnitY());
       CHECK(separation_along(f, draw(random).normalized()) <= gap.gap + 1e-14);

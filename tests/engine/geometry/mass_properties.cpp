@@ -177,4 +177,20 @@ TEST_CASE("scale from micrometres to megametres keeps the relative error") {
   CHECK(sphere.inertia(1, 1) == Approx(0.4 * sphere.mass * 9e-4).epsilon(1e-14));
 }
 
+TEST_CASE(
+    "a capsule weighs and turns as its polyhedron of many sides does and as a sphere if it has no middle") {
+  const double radius = 0.03, half_length = 0.07;
+  const MassProperties capsule = capsule_mass_properties(radius, half_length, 900.0);
+  const MassProperties polyhedron =
+      solid_mass_properties(make_capsule_surface(radius, half_length, 256), 900.0);
+  CHECK(capsule.mass == Approx(polyhedron.mass).epsilon(1e-3));
+  CHECK(polyhedron.mass < capsule.mass);  // its corners lie on the capsule
+  CHECK(difference(polyhedron.inertia, capsule.inertia) < 1e-3);
+  CHECK(polyhedron.centre.norm() < 1e-12);
+  const MassProperties ball = capsule_mass_properties(radius, 0.0, 900.0),
+                       sphere = sphere_mass_properties(radius, 900.0);
+  CHECK(ball.mass == Approx(sphere.mass).epsilon(1e-14));
+  CHECK(difference(ball.inertia, sphere.inertia) < 1e-14);
+}
+
 }  // namespace shatterbox::geometry

@@ -167,6 +167,20 @@ TEST_CASE("bodies without a name are called by their number") {
   CHECK(std::get<SphereForm>(reading.scene->bodies[0].form).radius == 0.25);
 }
 
+TEST_CASE("a capsule has a radius and a length and each has a sense without the other") {
+  const auto capsule_of = [](const std::string& sizes) {
+    const Reading reading = read("[[body]]\nkind = \"capsule\"\n" + sizes);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    return std::get<CapsuleForm>(reading.scene->bodies[0].form);
+  };
+  CHECK(capsule_of("radius = 0.1\nlength = 0.5\n").radius == 0.1);
+  CHECK(capsule_of("radius = 0.1\nlength = 0.5\n").length == 0.5);
+  CHECK(capsule_of("radius = 0.2\n").length == 0.8);
+  CHECK(capsule_of("length = 0.2\n").radius == 0.05);
+  CHECK(capsule_of("").length > 2.0 * capsule_of("").radius);
+}
+
 TEST_CASE("a script's events play on any scene, its faults bear its name") {
   const std::string file = "test_script.toml";
   std::ofstream(file)

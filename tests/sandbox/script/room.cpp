@@ -30,6 +30,7 @@ world::BodyDescription make(const char* kind, const Vec3& position) {
     solid.is_breakable = false;
     description.form = solid;
   }
+  if (word == "capsule") description.form = world::CapsuleDescription{0.25, 1.0};
   if (word == "marble") description.form = world::SphereDescription{0.1};
   return description;
 }
@@ -51,7 +52,9 @@ TEST_CASE("bodies just apart leave room, bodies just in each other do not") {
       {"plane", "solid", {0, 0.51, 0}, {0, 0.49, 0}},   {"solid", "box", {1.01, 0.1, 0}, {0.99, 0.1, 0}},
       {"solid", "sphere", {0, 1.01, 0}, {0, 0.99, 0}},  {"solid", "shell", {0, 0, 0.51}, {0.1, 0, 0.2}},
       {"solid", "marble", {0.61, 0, 0}, {0.1, 0.2, 0}}, {"solid", "crumb", {0.61, 0, 0}, {0.1, 0.2, 0}},
-      {"crumb", "solid", {0.61, 0, 0}, {0.1, 0.2, 0}},
+      {"crumb", "solid", {0.61, 0, 0}, {0.1, 0.2, 0}},  {"plane", "capsule", {0, 0.51, 0}, {0, 0.49, 0}},
+      {"box", "capsule", {0.76, 0.1, 0}, {0.74, 0, 0}}, {"capsule", "sphere", {0, 1.01, 0}, {0, 0.99, 0}},
+      {"capsule", "marble", {0.36, 0, 0}, {0, 0.2, 0}}, {"capsule", "capsule", {0.51, 0, 0}, {0.49, 0, 0}},
   };
   for (const Case& c : cases) {
     INFO(c.fresh << " into " << c.old);
