@@ -39,6 +39,8 @@ struct Body {
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
   double inverse_mass = 0.0;             // 1/kg; 0 unless dynamic
   Mat3 inverse_inertia = Mat3::Zero();   // body space, 1/(kg m2); 0 unless dynamic
+  Vec3 force = Vec3::Zero();             // N, world, at the centre of mass, all the time; of dynamic bodies
+  Vec3 torque = Vec3::Zero();            // N m, world
 
   double friction = 0.5;
   double rolling_friction = 0.0;  // m: radius of the patch that it rolls, and spins, on
@@ -67,6 +69,11 @@ struct Body {
     const Mat3 r = pose.rotation.toRotationMatrix();
     return r * inverse_inertia * r.transpose();
   }
+  /// m/s2, of the centre of mass, where nothing touches.
+  Vec3 free_acceleration(const Vec3& gravity) const {
+    return is_forced() ? Vec3(gravity + inverse_mass * force) : gravity;
+  }
+  bool is_forced() const { return force.squaredNorm() + torque.squaredNorm() > 0.0; }
   Vec3 velocity_at(const Vec3& point_world) const {
     return velocity + angular_velocity.cross(point_world - pose.translation);
   }

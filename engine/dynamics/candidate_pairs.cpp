@@ -108,13 +108,14 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
     w.spin = b.angular_velocity;
     w.velocity_start = w.velocity;
     w.spin_start = w.spin;
-    w.gravity = settings.gravity;
+    w.gravity = b.free_acceleration(settings.gravity);
+    w.torque = b.torque;
     if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0) w.inverse_moments = w.inertia.moments.cwiseInverse();
     const Mat3 axes = (w.rotation * w.inertia.body_from_axes).toRotationMatrix();
     w.inverse_inertia = axes * w.inverse_moments.asDiagonal() * axes.transpose();
     w.predicted.translation += dt * w.velocity + (0.5 * dt * dt) * w.gravity;
     Vec3 spin = w.spin;
-    advance_spin(w.inertia, dt, SpinOrder::fourth, w.predicted.rotation, spin);
+    advance_turning(w, dt, w.predicted.rotation, spin);
     w.predicted_spin = spin;
     w.turn_angle = w.shape->kind == ShapeKind::sphere ? 0.0 : dt * std::max(w.spin.norm(), spin.norm());
   }
@@ -189,7 +190,8 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.size = 2.0 * (a_is_measure ? a.reach : b.reach);
   const double predicted = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
-  pair.motion = predicted + settings.gravity.norm() * settings.time_step * settings.time_step;
+  const double pull = std::max({settings.gravity.norm(), a.gravity.norm(), b.gravity.norm()});
+  pair.motion = predicted + pull * settings.time_step * settings.time_step;
   pair.rounding = 1e-14 * (pair.size + a.start.translation.cwiseAbs().maxCoeff() +
                            b.start.translation.cwiseAbs().maxCoeff());
   const double usual_gap = settings.kept_gap * pair.size;

@@ -175,7 +175,11 @@ class IslandSolver {
   SolverContact& contact(std::size_t k) { return work_.contacts[at(island_.contacts[k])]; }
 
   void kick() {
-    for (const int i : island_.bodies) body(i).velocity += body(i).gravity * (0.5 * step_);
+    for (const int i : island_.bodies) {
+      WorkBody& b = body(i);
+      b.velocity += b.gravity * (0.5 * step_);
+      if (!b.torque.isZero(0.0)) b.spin += b.inverse_inertia * b.torque * (0.5 * step_);
+    }
   }
 
   void drift() {

@@ -13,6 +13,17 @@ void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out) {
   for (std::size_t i = 0; i < vertices.size(); ++i) out[i] = r * vertices[i] + pose.translation;
 }
 
+void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin) {
+  const auto kick = [&] {
+    if (body.torque.isZero(0.0)) return;
+    const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
+    spin += 0.5 * time * (axes * body.inverse_moments.asDiagonal() * (axes.transpose() * body.torque));
+  };
+  kick();
+  advance_spin(body.inertia, time, SpinOrder::fourth, rotation, spin);
+  kick();
+}
+
 void place(WorkBody& body) {
   if (body.is_placed) return;
   body.placed.collider = body.collider;

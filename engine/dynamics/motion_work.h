@@ -31,7 +31,8 @@ struct WorkBody {
   double reach = 0.0;                   // m: greatest distance of a vertex from the centre
 
   Pose start, end;
-  Vec3 gravity = Vec3::Zero();  // m/s2; zero unless dynamic and awake
+  Vec3 gravity = Vec3::Zero();  // m/s2, the body's own force with it; zero unless dynamic and awake
+  Vec3 torque = Vec3::Zero();   // N m, likewise
   Vec3 velocity_start = Vec3::Zero(), spin_start = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();         // m/s, now
   Vec3 spin = Vec3::Zero();             // rad/s, now
@@ -207,6 +208,9 @@ class MotionWork {
   double substep = 0.0;       // s
   double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
 };
+
+/// Turns a dynamic body that nothing touches for `time` (s): its torque acts in two halves, before and after.
+void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin);
 
 /// Fills a body's vertices at the start of the step, once.
 void place(WorkBody& body);

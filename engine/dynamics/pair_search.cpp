@@ -69,7 +69,8 @@ std::vector<TurnedBox> box_ways(const MotionWork& work, const std::vector<collis
 void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
   const double dt = settings.time_step;
   w.looked_end = end;
-  w.reserve = 1.1 * settings.gravity.norm() * dt * dt + kBroadSlack * 2.0 * w.reach;
+  const double pull = std::max(settings.gravity.norm(), w.gravity.norm());
+  w.reserve = 1.1 * pull * dt * dt + kBroadSlack * 2.0 * w.reach;
   w.is_looked_straight = w.turn_angle <= kStraightTurn;
   w.looked = box_at(w, w.start);
   if (!w.is_active) return;

@@ -72,7 +72,7 @@ Pose free_end(const Body& body, const PrincipalInertia& inertia, const ContactSe
   const double dt = settings.time_step;
   end.translation += dt * velocity;
   if (body.is_dynamic()) {
-    end.translation += 0.5 * dt * dt * settings.gravity;
+    end.translation += 0.5 * dt * dt * body.free_acceleration(settings.gravity);
     advance_spin(inertia, dt, SpinOrder::fourth, end.rotation, spin);
   }
   return end;
@@ -297,7 +297,7 @@ ContactReport step_paper_motion(std::vector<Body>& bodies, const ContactSettings
     DriftingSurface& surface = state.surfaces[i];
     if (body.motion == body::Motion::fixed) continue;
     body.pose = free_end(body, surface.inertia, settings, body.velocity, body.angular_velocity);
-    if (body.is_dynamic()) body.velocity += settings.time_step * settings.gravity;
+    if (body.is_dynamic()) body.velocity += settings.time_step * body.free_acceleration(settings.gravity);
     report.awake_bodies += body.is_dynamic() ? 1 : 0;
     report.failsafe_steps += cloth.zoned[i] && body.is_dynamic() ? 1 : 0;
     for (std::size_t v = 0; v < surface.particles.size(); ++v) {

@@ -152,7 +152,7 @@ void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
     const int parts = w.straight_parts;
     for (int k = 0; k < parts; ++k) {
       if (is_dynamic)
-        advance_spin(w.inertia, settings.time_step / parts, SpinOrder::fourth, rotation, spin);
+        advance_turning(w, settings.time_step / parts, rotation, spin);
       else
         rotation = (rotation_by(settings.time_step / parts * w.spin) * rotation).normalized();
       rotations.push_back(rotation);

@@ -57,7 +57,8 @@ void apply_hands(std::vector<body::Body>& bodies, const std::vector<dynamics::Ha
     hand.place -= time_left * hand.velocity;
     body::Body* body = body::find_body(bodies, hand.body);
     if (body == nullptr || !body->is_dynamic()) continue;
-    const dynamics::HandPush push = dynamics::drive_by_hand(*body, hand, gravity, time_step);
+    const dynamics::HandPush push =
+        dynamics::drive_by_hand(*body, hand, body->free_acceleration(gravity), time_step);
     give(*body, push.impulse, push.point);
     body->angular_velocity += body->inverse_inertia_world() * push.spin;
     if (!(push.impulse.squaredNorm() > 0.0)) continue;

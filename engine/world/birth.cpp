@@ -93,6 +93,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   if (born.motion == body::Motion::dynamic) {
     born.inverse_mass = 1.0 / born.shape->mass;
     born.inverse_inertia = born.shape->inertia.inverse();
+    born.force = description.force;
+    born.torque = description.torque;
   }
   if (born.motion != body::Motion::fixed) {
     born.velocity = description.velocity;

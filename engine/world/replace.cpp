@@ -19,6 +19,10 @@ body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
   born.motion = piece.is_held ? body::Motion::fixed : body::Motion::dynamic;
   born.inverse_mass = piece.is_held ? 0.0 : 1.0 / piece.shape->mass;
   born.inverse_inertia = piece.is_held ? Mat3::Zero() : Mat3(piece.shape->inertia.inverse());
+  if (number >= 0) {
+    born.force *= piece.shape->mass / parent.shape->mass;
+    born.torque.setZero();
+  }
   born.is_awake = true;
   born.quiet_time = 0.0;
   return born;

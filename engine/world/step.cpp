@@ -73,7 +73,7 @@ double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
     if (!body.is_dynamic()) continue;
     figures.momentum += body.shape->mass * body.velocity;
     figures.kinetic_energy += body::kinetic_energy(body);
-    figures.potential_energy -= body.shape->mass * gravity.dot(body.pose.translation);
+    figures.potential_energy -= body.shape->mass * body.free_acceleration(gravity).dot(body.pose.translation);
   }
   return figures.kinetic_energy + figures.potential_energy;
 }
@@ -90,7 +90,7 @@ Vec3 explained_momentum(const std::vector<body::Body>& before, const std::vector
   };
   Vec3 sum = Vec3::Zero();
   for (const body::Body& body : before)
-    if (moved(body.id)) sum += body.shape->mass * time_step * gravity;
+    if (moved(body.id)) sum += body.shape->mass * time_step * body.free_acceleration(gravity);
   for (const body::LoggedImpulse& entry : log) {
     if (moved(entry.body_a)) sum += entry.impulse_world;
     if (moved(entry.body_b)) sum -= entry.impulse_world;
@@ -351,8 +351,9 @@ void World::book_conservation(const std::vector<body::Body>& before, const body:
   const Vec3 explained = explained_momentum(before, s.moving.bodies, log, s.settings.gravity, time_step);
   const double error = (figures.momentum - start.momentum - explained).norm();
   figures.momentum_error = std::max(figures.momentum_error, error);
-  const bool is_driven = std::any_of(s.moving.bodies.begin(), s.moving.bodies.end(),
-                                     [](const body::Body& b) { return b.is_driven(); });
+  const bool is_driven = std::any_of(s.moving.bodies.begin(), s.moving.bodies.end(), [](const body::Body& b) {
+    return b.is_driven() || !b.torque.isZero(0.0);
+  });
   if (!s.is_disturbed && !is_driven)
     figures.greatest_energy_rise = std::max(figures.greatest_energy_rise, energy - s.last_energy);
   s.is_disturbed = false;

@@ -91,6 +91,8 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
   description.pose = {body.rotation, body.position};
   description.velocity = body.velocity;
   description.angular_velocity = body.angular_velocity;
+  description.force = body.force;
+  description.torque = body.torque;
   description.group = group_number(groups, body.group);
   description.density = body.density;
   description.contact_duration = body.contact_duration;

@@ -139,10 +139,12 @@ void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body) 
     body.velocity = reader.vector("velocity", between(-1e4, 1e4, "m/s")).value_or(body.velocity);
     body.angular_velocity =
         reader.vector("angular_velocity", between(-1e5, 1e5, "rad/s")).value_or(body.angular_velocity);
+    body.force = reader.vector("force", between(-1e9, 1e9, "N")).value_or(body.force);
+    body.torque = reader.vector("torque", between(-1e9, 1e9, "N m")).value_or(body.torque);
   }
+  reader.foreign({"force", "torque"}, "they move what is motion = \"dynamic\"");
   reader.foreign({"path"}, "a camera has a path; a scripted body has keyframes");
   reader.later({"fixed"}, "a body that cannot move at all is motion = \"static\"");
-  reader.later({"force", "torque"}, "give it a velocity, or throw something at it");
 }
 
 }  // namespace shatterbox::sandbox::scene

@@ -144,6 +144,7 @@ struct BodyEntry {
   Quat rotation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // N, N m, world, all the time
   body::Motion motion = body::Motion::dynamic;
   std::optional<PathEntry> path;  // of a scripted body
   Support support;

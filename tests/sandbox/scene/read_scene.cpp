@@ -167,6 +167,14 @@ TEST_CASE("bodies without a name are called by their number") {
   CHECK(std::get<SphereForm>(reading.scene->bodies[0].form).radius == 0.25);
 }
 
+TEST_CASE("a body may have a force and a torque") {
+  const Reading reading = read("[[body]]\nkind = \"sphere\"\nforce = [1, 2, 3]\ntorque = [4, 5, 6]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  CHECK(reading.scene->bodies[0].force == Vec3(1, 2, 3));
+  CHECK(reading.scene->bodies[0].torque == Vec3(4, 5, 6));
+}
+
 TEST_CASE("a capsule has a radius and a length and each has a sense without the other") {
   const auto capsule_of = [](const std::string& sizes) {
     const Reading reading = read("[[body]]\nkind = \"capsule\"\n" + sizes);
