@@ -205,7 +205,9 @@ core::Result<TriangleMesh> make_torus(double ring_radius, double wire_radius, co
 }
 
 TriangleMesh make_capsule_surface(double radius, double half_length, int around) {
-  const int rings = around / 4;  // of each round end
+  const int rings = around / 4;                   // of each round end
+  const int shared = half_length == 0.0 ? 1 : 0;  // a sphere's two ends have their last one in common
+  const int count = 2 * rings - shared;
   TriangleMesh mesh;
   mesh.positions.emplace_back(0.0, half_length + radius, 0.0);
   const auto add_ring = [&](double polar, double middle) {
@@ -216,9 +218,9 @@ TriangleMesh make_capsule_surface(double radius, double half_length, int around)
     }
   };
   for (int k = 1; k <= rings; ++k) add_ring(0.5 * core::kPi * k / rings, half_length);
-  for (int k = rings; k < 2 * rings; ++k) add_ring(0.5 * core::kPi * k / rings, -half_length);
+  for (int k = rings + shared; k < 2 * rings; ++k) add_ring(0.5 * core::kPi * k / rings, -half_length);
   mesh.positions.emplace_back(0.0, -half_length - radius, 0.0);
-  const int count = 2 * rings, last = static_cast<int>(mesh.positions.size()) - 1;
+  const int last = static_cast<int>(mesh.positions.size()) - 1;
   const auto corner = [around](int ring, int i) { return 1 + ring * around + i % around; };
   for (int i = 0; i < around; ++i) {
     mesh.triangles.push_back({0, corner(0, i), corner(0, i + 1)});

@@ -72,8 +72,8 @@ core::Result<TriangleMesh> make_pane(double width, double height, const Meshing&
 /// The surface of a box about the origin: its eight corners and twelve triangles.
 TriangleMesh make_box_surface(const Vec3& half_extent);
 
-/// A capsule about the y axis as a polyhedron of `around` sides whose corners lie on it: what takes surfaces
-/// only, as exports do, sees it so.
+/// A capsule about the y axis, or, if half_length is 0, a sphere, as a polyhedron of `around` sides whose
+/// corners lie on it: what takes surfaces only, as exports do, sees it so.
 TriangleMesh make_capsule_surface(double radius, double half_length, int around = 32);
 
 /// A vase with a wall: foot on y = 0, belly, neck, flared rim with a round lip; closed, for solids. Finer

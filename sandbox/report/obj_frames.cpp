@@ -7,36 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "engine/core/elementary.h"
 #include "engine/geometry/generators.h"
 
 namespace shatterbox::sandbox::report {
-
-geometry::TriangleMesh sphere_surface(double radius) {
-  constexpr int kRings = 16, kSectors = 32;
-  geometry::TriangleMesh mesh;
-  mesh.positions.emplace_back(0.0, radius, 0.0);
-  for (int ring = 1; ring < kRings; ++ring) {
-    const double polar = core::kPi * ring / kRings;
-    for (int sector = 0; sector < kSectors; ++sector) {
-      const double turn = 2.0 * core::kPi * sector / kSectors;
-      mesh.positions.emplace_back(radius * core::sin(polar) * core::cos(turn), radius * core::cos(polar),
-                                  -radius * core::sin(polar) * core::sin(turn));
-    }
-  }
-  mesh.positions.emplace_back(0.0, -radius, 0.0);
-  const int last = static_cast<int>(mesh.positions.size()) - 1;
-  const auto at = [](int ring, int sector) { return 1 + (ring - 1) * kSectors + sector % kSectors; };
-  for (int sector = 0; sector < kSectors; ++sector) {
-    mesh.triangles.push_back({0, at(1, sector), at(1, sector + 1)});
-    for (int ring = 1; ring + 1 < kRings; ++ring) {
-      mesh.triangles.push_back({at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1)});
-      mesh.triangles.push_back({at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1)});
-    }
-    mesh.triangles.push_back({at(kRings - 1, sector), last, at(kRings - 1, sector + 1)});
-  }
-  return mesh;
-}
 
 std::string make_obj(std::span<const body::Body> bodies, double time) {
   std::string text;
@@ -53,7 +26,7 @@ std::string make_obj(std::span<const body::Body> bodies, double time) {
         made = geometry::make_box_surface(body.shape->half_extent);
         break;
       case body::ShapeKind::sphere:
-        made = sphere_surface(body.shape->radius);
+        made = geometry::make_capsule_surface(body.shape->radius, 0.0);
         break;
       case body::ShapeKind::capsule:
         made = geometry::make_capsule_surface(body.shape->radius, body.shape->half_length);

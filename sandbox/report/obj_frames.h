@@ -18,7 +18,4 @@ std::string make_obj(std::span<const body::Body> bodies, double time);
 std::string write_obj_frame(const std::string& folder, int number, std::span<const body::Body> bodies,
                             double time);
 
-/// The surface of a box or a sphere (latitudes and longitudes), for export.
-geometry::TriangleMesh sphere_surface(double radius);
-
 }  // namespace shatterbox::sandbox::report

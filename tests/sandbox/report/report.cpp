@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "engine/geometry/edge_topology.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/world/world.h"
@@ -158,12 +159,21 @@ TEST_CASE("the closing words tell verdicts, breaks and speed") {
   }
 }
 
-TEST_CASE("exported boxes and spheres are closed and wound outwards") {
+TEST_CASE("exported boxes and spheres and capsules are closed and wound outwards") {
   CHECK(geometry::enclosed_volume(geometry::make_box_surface(Vec3(0.5, 1.0, 1.5))) ==
         Approx(6.0).epsilon(1e-14));
-  const double volume = geometry::enclosed_volume(sphere_surface(1.0));
+  const double volume = geometry::enclosed_volume(geometry::make_capsule_surface(1.0, 0.0));
   CHECK(volume > 4.0);
   CHECK(volume < 4.18879);
+  const double middle = geometry::enclosed_volume(geometry::make_capsule_surface(1.0, 0.5)) - volume;
+  CHECK(middle > 3.1);
+  CHECK(middle < 3.14159);
+  for (const double half_length : {0.0, 0.5}) {
+    const auto topology =
+        geometry::build_edge_topology(geometry::make_capsule_surface(1.0, half_length).triangles);
+    for (int edge = 0; edge < static_cast<int>(topology.edges.size()); ++edge)
+      CHECK(topology.triangle_count(edge) == 2);
+  }
 }
 
 TEST_CASE("an OBJ frame has a group a body, in world space, to the bit") {
