@@ -84,14 +84,14 @@ void give(MotionWork& work, const Opening& o, double size, double closing, body:
   work.continuous_log.push_back(entry);
 }
 
-struct Meeting {
+struct PlaceOnWay {
   Vec3 on_a, on_b, normal;
   double gap = 0.0;  // m
 };
 
 // Where a contact seen from the start is at the share `knot` of the step. What touches of a capsule slides
 // along it: there its features are measured anew.
-Meeting meet_on_way(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot) {
+PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   const Pose pose_a = pose_on_way(a, knot), pose_b = pose_on_way(b, knot);
   const bool has_capsule =
@@ -102,8 +102,8 @@ Meeting meet_on_way(const WorkPair& pair, const MotionWork& work, const Contact&
     const collision::FeatureGap found = collision::measure(points, contact.normal);
     return {found.on_a, found.on_b, found.normal, found.gap};
   }
-  Meeting meeting{carry(a, contact.on_a, a.start, pose_a), carry(b, contact.on_b, b.start, pose_b),
-                  contact.normal};
+  PlaceOnWay meeting{carry(a, contact.on_a, a.start, pose_a), carry(b, contact.on_b, b.start, pose_b),
+                     contact.normal};
   meeting.gap = contact.normal.dot(meeting.on_a - meeting.on_b);
   return meeting;
 }
@@ -117,7 +117,7 @@ double gap_on_way(const WorkPair& pair, const MotionWork& work, const Contact& c
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot,
                      double wanted) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-  const Meeting there = meet_on_way(pair, work, contact, knot);
+  const PlaceOnWay there = meet_on_way(pair, work, contact, knot);
   Opening o;
   o.a = pair.a;
   o.b = pair.b;
