@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -122,8 +123,10 @@ Measured fit_sizes(const char* name, const char* text, const Vec3& velocity, int
   const PowerLaw law = fit_power_law(pool.masses, pool.least);
   add_curves(name, pool, law, figure);
   const double outside = std::max({0.0, low - law.exponent, law.exponent - high});
-  return {
-      {outside, law.exponent, law.half_width, static_cast<double>(law.count), pool.pieces}, pool.seconds, ""};
+  return {{outside, law.exponent, law.half_width, static_cast<double>(law.count), pool.pieces, law.distance,
+           law.usual_distance},
+          pool.seconds,
+          ""};
 }
 
 /// Mean corners of a flat shard: 4 is published for what breaks again and again along straight lines.
@@ -242,6 +245,15 @@ Measured breaking_height(const Drop& drop, double mass, int seeds, int halvings)
       ""};
 }
 
+std::string law_words(double distance, double usual) {
+  if (distance <= usual)
+    return fmt::format("a power law fits them, {:.2g} from it at most, as {:.2g} is usual", distance, usual);
+  return fmt::format(
+      "no power law fits them: they are up to {:.2g} from it, and 95 % of a power law's samples "
+      "within {:.2g}",
+      distance, usual);
+}
+
 std::vector<std::string> conclude(const std::vector<Table>& tables) {
   std::vector<std::string> sentences;
   for (const Table& table : tables) {
@@ -289,9 +301,10 @@ std::vector<std::string> conclude(const std::vector<Table>& tables) {
     if (table.name == "sizes")
       for (const Row& row : table.rows) {
         sentences.push_back(
-            fmt::format("{}: exponent {:.2f} +- {:.2f} of {:.0f} pieces; {}.", row.setting, row.errors[1],
+            fmt::format("{}: exponent {:.2f} +- {:.2f} of {:.0f} pieces; {}; {}.", row.setting, row.errors[1],
                         row.errors[2], row.errors[3],
-                        row.errors[0] == 0.0 ? "within what is published" : "outside of what is published"));
+                        row.errors[0] == 0.0 ? "within what is published" : "outside of what is published",
+                        law_words(row.errors[5], row.errors[6])));
         if (row.setting == kPaneAtTen)
           sentences.push_back(
               fmt::format("Tempered glass is not compared: a material holds no stress of its own, and it is "
@@ -359,8 +372,13 @@ Plan make_fragments_plan(bool is_quick) {
       "(1.35, Wittel et al. 2004), plates 1.0 to 1.5 (1.17 where they bend, 1.5 in their plane, Linna et al. "
       "2005)";
   sizes.setting_name = "";
-  sizes.error_names = {"outside of the published", "exponent", "half width, 95 %", "pieces fitted",
-                       "pieces a run"};
+  sizes.error_names = {"outside of the published",
+                       "exponent",
+                       "half width, 95 %",
+                       "pieces fitted",
+                       "pieces a run",
+                       "distance from the law",
+                       "95 % of its samples are within"};
   sizes.is_relative = false;
   sizes.is_plotted = false;
   const int seeds = is_quick ? 1 : 8;
@@ -422,15 +440,22 @@ Plan make_fragments_plan(bool is_quick) {
 
 PowerLaw fit_power_law(const std::vector<double>& masses, double least) {
   PowerLaw law;
-  double sum = 0.0;
+  std::vector<double> logs;  // of a power law they are an exponential's
   for (const double mass : masses)
-    if (mass >= least) {
-      sum += std::log(mass / least);
-      ++law.count;
-    }
-  if (law.count < 2 || !(sum > 0.0)) return {kNoNumber, kNoNumber, law.count};
-  law.exponent = 1.0 + law.count / sum;
-  law.half_width = 1.96 * (law.exponent - 1.0) / std::sqrt(static_cast<double>(law.count));
+    if (mass >= least) logs.push_back(std::log(mass / least));
+  std::sort(logs.begin(), logs.end());
+  const double sum = std::accumulate(logs.begin(), logs.end(), 0.0);
+  law.count = static_cast<int>(logs.size());
+  if (law.count < 2 || !(sum > 0.0)) return {kNoNumber, kNoNumber, law.count, kNoNumber, kNoNumber};
+  const double count = law.count, root = std::sqrt(count);
+  law.exponent = 1.0 + count / sum;
+  law.half_width = 1.96 * (law.exponent - 1.0) / root;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const double heavier = std::exp(-(law.exponent - 1.0) * logs[i]), place = static_cast<double>(i);
+    law.distance = std::max({law.distance, std::abs(1.0 - place / count - heavier),
+                             std::abs(1.0 - (place + 1.0) / count - heavier)});
+  }
+  law.usual_distance = 1.094 / (root + 0.26 + 0.5 / root) + 0.2 / count;
   return law;
 }
 

@@ -13,6 +13,10 @@ struct PowerLaw {
   double exponent = 0.0;
   double half_width = 0.0;
   int count = 0;  // masses above `least`
+  /// Greatest difference between the share of masses that are heavier and what the law says (Kolmogorov,
+  /// Smirnov), and what 95 % of samples of a power law stay below (Stephens 1974: an exponential's, fitted).
+  double distance = 0.0, usual_distance = 0.0;
+  bool is_one() const { return distance <= usual_distance; }
 };
 PowerLaw fit_power_law(const std::vector<double>& masses, double least);
 

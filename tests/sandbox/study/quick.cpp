@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/parallel.h"
+#include "engine/core/random.h"
 #include "sandbox/study/fragments.h"
 #include "sandbox/study/order.h"
 #include "sandbox/study/own_reference.h"
@@ -220,4 +221,20 @@ TEST_CASE("the exponent of a power law is found with its interval") {
   CHECK(law.count == 4000);
   CHECK(fit_power_law(masses, 4.0).exponent == Approx(1.5).epsilon(1e-2));
   CHECK(std::isnan(fit_power_law({1.0}, 1.0).exponent));
+  CHECK(law.is_one());
+}
+
+TEST_CASE("samples of a power law are told from what is none") {
+  shatterbox::core::Random random(11, 0);
+  int ones = 0;
+  for (int round = 0; round < 400; ++round) {
+    std::vector<double> masses;
+    for (int i = 0; i < 250; ++i) masses.push_back(std::pow(random.uniform(1e-9, 1.0), -1.25));
+    ones += fit_power_law(masses, 1.0).is_one() ? 1 : 0;
+  }
+  CHECK(ones >= 370);  // 380 are expected, and 4.4 the standard deviation
+  CHECK(ones <= 390);
+  std::vector<double> even;
+  for (int i = 0; i < 250; ++i) even.push_back(1.0 + 0.01 * i);
+  CHECK_FALSE(fit_power_law(even, 1.0).is_one());
 }
