@@ -73,6 +73,7 @@ class IslandSolver {
     drift();
     kick();
     prepare(substeps);
+    find_late_arrivals();
     start_warm(0.5);
     sweep_after_drift();
     bounce();
@@ -275,6 +276,7 @@ class IslandSolver {
       c.impulse.setZero();
       c.rolling_impulse.setZero();
       c.is_arriving = false;
+      c.was_apart = !is_touching(c);
       work_.pairs[at(c.pair)].work = 0.0;
       const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
       const double after_kick = relative_velocity(c)[0];
@@ -285,14 +287,29 @@ class IslandSolver {
       if (speed_squared >= 0.0) continue;
       const double speed = std::sqrt(-speed_squared);
       if (speed <= c.threshold) continue;
-      c.is_arriving = true;
-      has_arrivals_ = true;
-      c.arrival_speed = std::max(c.arrival_speed, speed);
-      if (c.closing_speed == 0.0) c.arrival_time = part_start_ + std::min(step_, way / -after_kick);
-      if (speed > c.closing_speed) {
-        c.closing_speed = speed;
-        c.effective_mass = c.weights[0];
-      }
+      arrive(c, speed, part_start_ + std::min(step_, way / -after_kick));
+    }
+  }
+
+  // Normals and arms turn on the way: what did not seem to arrive in this part may have all the same. It has
+  // come from beyond the kept gap: what is opened, or lies in each other by rounding, does not bounce.
+  void find_late_arrivals() {
+    for (const int i : island_.contacts) {
+      SolverContact& c = work_.contacts[at(i)];
+      if (!c.was_apart || c.is_arriving || c.impulse[0] > 0.0 || !is_touching(c)) continue;
+      const double speed = -relative_velocity(c)[0];
+      if (speed > c.threshold && speed * step_ > c.kept_gap) arrive(c, speed, part_start_ + step_);
+    }
+  }
+
+  void arrive(SolverContact& c, double speed, double time) {
+    c.is_arriving = true;
+    has_arrivals_ = true;
+    c.arrival_speed = std::max(c.arrival_speed, speed);
+    if (c.closing_speed == 0.0) c.arrival_time = time;
+    if (speed > c.closing_speed) {
+      c.closing_speed = speed;
+      c.effective_mass = c.weights[0];
     }
   }
 

@@ -121,6 +121,7 @@ struct SolverContact {
   double target = 0.0;                  // m/s, of the bounce
   double left_over = 0.0;               // m/s, along the normal, that the last visit's friction brought
   bool is_arriving = false;
+  bool was_apart = false;  // at the start of the part of a substep that is taken
 
   // Of the whole step.
   Vec3 total = Vec3::Zero();                                // N s, world, on a

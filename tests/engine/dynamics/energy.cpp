@@ -156,4 +156,28 @@ TEST_CASE("a splinter on a floor that resists its rolling wins no energy, whiche
   CHECK(most <= 1.0 + 1e-3);
 }
 
+TEST_CASE("elastic balls whose normal turns while they meet bounce all the same") {
+  // They pass each other at an angle: their straight ways touch a hair before the contact's plane says so.
+  for (const double rate : {60.0, 120.0, 240.0, 960.0}) {
+    for (int place = 0; place < 20; ++place) {
+      test::Scene scene;
+      scene.settings.gravity.setZero();
+      scene.settings.time_step = 1.0 / rate;
+      auto& first = scene.add(test::make_sphere(0.05, Vec3(-0.050339, 0.447064 + 1e-4 * place, 0.170242)));
+      first.velocity = Vec3(-0.8869, -1.65894, 0.70257);
+      auto& second = scene.add(test::make_sphere(0.05, Vec3(0.050345, 0.412884, 0.158445)));
+      second.velocity = Vec3(-1.67078, 2.00338, 0.47959);
+      for (body::Body& b : scene.bodies) {
+        b.friction = 0.0;
+        b.restitution = 1.0;
+      }
+      const double start = scene.kinetic();
+      for (double time = 0.0; time < 0.02; time += scene.settings.time_step) scene.step();
+      INFO(rate << " steps a second, place " << place);
+      CHECK(scene.kinetic() == Approx(start).epsilon(1e-4));
+      CHECK((scene.bodies[0].velocity - Vec3(-0.8869, -1.65894, 0.70257)).norm() > 1.0);
+    }
+  }
+}
+
 }  // namespace shatterbox
