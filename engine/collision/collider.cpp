@@ -59,7 +59,8 @@ void add_neighbours(Collider& collider, const geometry::EdgeTopology& topology) 
     neighbour_entries.emplace_back(w, v);
     for (int k = topology.first_triangle[e]; k < topology.first_triangle[e + 1]; ++k) {
       const Triangle& t = collider.triangles[at(topology.edge_triangles[at(k)])];
-      opposite_entries.emplace_back(static_cast<int>(e), t[0] + t[1] + t[2] - v - w);
+      const int opposite = t[0] + t[1] + t[2] - v - w;
+      if (opposite != v && opposite != w) opposite_entries.emplace_back(static_cast<int>(e), opposite);
     }
   }
   fill_rows(collider.vertices.size(), neighbour_entries, collider.neighbour_begin, collider.neighbours);
