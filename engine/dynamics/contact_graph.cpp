@@ -39,8 +39,6 @@ SolverContact make_solver_contact(const PairState& memory, const MotionWork& wor
   c.has_sides = pair.has_sides;
   c.is_close = pair.is_close;
   c.can_creep = a.is_quiet && b.is_quiet && !body::is_round(a.shape->kind) && !body::is_round(b.shape->kind);
-  if (a.shape->kind == body::ShapeKind::capsule) c.round_a = -a.shape->radius * found.normal;
-  if (b.shape->kind == body::ShapeKind::capsule) c.round_b = b.shape->radius * found.normal;
   const auto known =
       std::lower_bound(memory.contacts.begin(), memory.contacts.end(), found.key,
                        [](const RememberedContact& r, std::uint64_t key) { return r.feature_key < key; });

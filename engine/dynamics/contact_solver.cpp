@@ -27,10 +27,12 @@ Moved moved(const WorkBody& body, int substeps) {
   return {ride.way, ride.turn.toRotationMatrix()};
 }
 
-// Most have no round part, and then nothing is added: rounding would be.
-Vec3 turned(const Moved& body, const Vec3& arm, const Vec3& round) {
-  if (round.isZero(0.0)) return body.turn * arm;
-  return body.turn * (arm - round) + round;
+// An arm of `w` whose contact lies in the direction `outwards`. What is radius of a capsule's does not turn:
+// it touches with whatever point is lowest.
+Vec3 turned(const WorkBody& w, const Moved& moved, const Vec3& arm, const Vec3& outwards) {
+  if (w.shape->kind != body::ShapeKind::capsule) return moved.turn * arm;
+  const Vec3 round = w.shape->radius * outwards;
+  return moved.turn * (arm - round) + round;
 }
 
 class IslandSolver {
@@ -208,8 +210,8 @@ class IslandSolver {
       SolverContact& c = work_.contacts[at(i)];
       const WorkBody &a = body(c.a), &b = body(c.b);
       const Moved ma = moved(a, substeps), mb = moved(b, substeps);
-      const Vec3 turned_a = turned(ma, c.arm_a_start, c.round_a),
-                 turned_b = turned(mb, c.arm_b_start, c.round_b);
+      const Vec3 turned_a = turned(a, ma, c.arm_a_start, -c.normal),
+                 turned_b = turned(b, mb, c.arm_b_start, c.normal);
       const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
       c.change = change;
       const double gap = c.gap_start + c.normal.dot(change);

@@ -410,11 +410,8 @@ class Guard {
 
   double kept_bytes() const {
     if (report_.ways_tested == 0) return 0.0;
-    std::size_t hits = 0;
-    for (const auto* lists : {&hits_, &known_})
-      for (const std::vector<PathHit>& list : *lists) hits += list.size();
     const std::size_t a_pair = sizeof(spare_[0]) + 2 * sizeof(hits_[0]) + 3 * sizeof(must_test_[0]);
-    return static_cast<double>(work_.pairs.size() * a_pair + hits * sizeof(PathHit));
+    return static_cast<double>(work_.pairs.size() * a_pair);
   }
 
   int count_hits() const {

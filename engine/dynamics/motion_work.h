@@ -93,9 +93,7 @@ struct SolverContact {
   Vec3 tangent_u = Vec3::UnitX(), tangent_v = Vec3::UnitZ();
   Vec3 arm_a_start = Vec3::Zero(), arm_b_start = Vec3::Zero();  // m
   double gap_start = 0.0;                                       // m
-  // m: what of the arms does not turn with the body, for a capsule touches with whatever point is lowest.
-  Vec3 round_a = Vec3::Zero(), round_b = Vec3::Zero();
-  double lean = 0.5;  // as Contact::lean
+  double lean = 0.5;                                            // as Contact::lean
 
   // At the present pose.
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero(), point = Vec3::Zero();

@@ -85,7 +85,7 @@ void give(MotionWork& work, const Opening& o, double size, double closing, body:
 }
 
 struct PlaceOnWay {
-  Vec3 on_a, on_b, normal;
+  Vec3 centre_a, centre_b, on_a, on_b, normal;
   double gap = 0.0;  // m
 };
 
@@ -100,10 +100,10 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
     const auto features = collision::FeaturePair::of_key(contact.key);
     const auto points = collision::gather(features, *a.collider, pose_a, *b.collider, pose_b);
     const collision::FeatureGap found = collision::measure(points, contact.normal);
-    return {found.on_a, found.on_b, found.normal, found.gap};
+    return {pose_a.translation, pose_b.translation, found.on_a, found.on_b, found.normal, found.gap};
   }
-  PlaceOnWay meeting{carry(a, contact.on_a, a.start, pose_a), carry(b, contact.on_b, b.start, pose_b),
-                     contact.normal};
+  PlaceOnWay meeting{pose_a.translation, pose_b.translation, carry(a, contact.on_a, a.start, pose_a),
+                     carry(b, contact.on_b, b.start, pose_b), contact.normal};
   meeting.gap = contact.normal.dot(meeting.on_a - meeting.on_b);
   return meeting;
 }
@@ -116,7 +116,6 @@ double gap_on_way(const WorkPair& pair, const MotionWork& work, const Contact& c
 
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot,
                      double wanted) {
-  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   const PlaceOnWay there = meet_on_way(pair, work, contact, knot);
   Opening o;
   o.a = pair.a;
@@ -126,8 +125,8 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   o.gap = there.gap;
   o.wanted = wanted;
   const Vec3 middle = contact.lean * there.on_a + (1.0 - contact.lean) * there.on_b;
-  o.arm_a = middle - pose_on_way(a, knot).translation;
-  o.arm_b = middle - pose_on_way(b, knot).translation;
+  o.arm_a = middle - there.centre_a;
+  o.arm_b = middle - there.centre_b;
   o.weight = weight(work, o, Yielding::by_mass);
   return o;
 }

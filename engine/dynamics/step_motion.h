@@ -27,7 +27,7 @@ struct ContactReport {
   int hits = 0;          // pairs in which the continuous pass had to act
   int rounds = 0;        // rounds of the continuous pass
   long ways_tested = 0;  // pairs of bodies whose ways it tested, in all of them
-  double test_bytes = 0.0;  // that it kept for that
+  double test_bytes = 0.0;  // that it kept for that, hits apart
   int failsafe_steps = 0;   // bodies whose step was cut short
   int longest_cut = 0;      // steps in a row, of the pair that was cut longest
   int crossing_pairs = 0;   // crossed when they were first seen, and still do

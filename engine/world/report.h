@@ -112,7 +112,7 @@ struct ContactFigures {
   double residual = 0.0;      // m/s, worst normal velocity left by the solver, last step
   int hits = 0;               // pairs in which the continuous pass had to act, last step
   long ways_tested = 0;       // pairs of bodies, a step and round each, whose ways the continuous pass tested
-  double test_bytes = 0.0;    // that it kept for that, most in one step
+  double test_bytes = 0.0;    // that it kept for that, most in one step, hits apart
 };
 
 /// A scripted body with a path: how far its farthest point is from where it is to be, m.
