@@ -5,7 +5,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
+
+#include "render/frame/corner_table.h"
 
 namespace shatterbox::render {
 namespace {
@@ -37,27 +38,6 @@ Fans find_fans(const Mesh& mesh) {
   return fans;
 }
 
-// The triangle's unit normal times the angle at each corner.
-struct FaceNormals {
-  std::vector<glm::vec3> unit;  // |T|; zero if degenerate
-  std::vector<float> angle;     // 3|T|
-};
-
-FaceNormals find_face_normals(const Mesh& mesh) {
-  FaceNormals out{std::vector<glm::vec3>(mesh.triangles.size()),
-                  std::vector<float>(mesh.triangles.size() * 3)};
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const glm::uvec3 v = mesh.triangles[t];
-    const glm::vec3 p[3] = {mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]};
-    out.unit[t] = unit_or(glm::cross(p[1] - p[0], p[2] - p[0]), glm::vec3(0.0F));
-    glm::vec3 along[3];  // from corner to corner
-    for (std::size_t k = 0; k < 3; ++k) along[k] = unit_or(p[(k + 1) % 3] - p[k], glm::vec3(0.0F));
-    for (std::size_t k = 0; k < 3; ++k)
-      out.angle[3 * t + k] = std::acos(std::clamp(-glm::dot(along[k], along[(k + 2) % 3]), -1.0F, 1.0F));
-  }
-  return out;
-}
-
 std::vector<glm::vec3> crease_normals(const Mesh& mesh, const Fans& fans, const FaceNormals& faces) {
   const float least_cosine = std::cos(glm::radians(mesh.crease_angle));
   std::vector<glm::vec3> normals(mesh.triangles.size() * 3);
@@ -76,7 +56,7 @@ std::vector<glm::vec3> crease_normals(const Mesh& mesh, const Fans& fans, const 
         const glm::vec3 n = faces.unit[other / 3];
         const float cosine = glm::dot(n, own);
         least = std::min(least, cosine);
-        if (cosine >= least_cosine) sum += n * faces.angle[other];
+        if (cosine >= least_cosine) sum += n * faces.weight[other];
       }
       normals[fan[k]] = unit_or(sum, unit_or(own, glm::vec3(0.0F, 1.0F, 0.0F)));
       // All within half the angle of one are within all of it of each other; a little less, for rounding.
@@ -87,16 +67,31 @@ std::vector<glm::vec3> crease_normals(const Mesh& mesh, const Fans& fans, const 
   return normals;
 }
 
+// The angles at the corners, 3|T|, radians.
+std::vector<float> find_angles(const Mesh& mesh) {
+  std::vector<float> angles(mesh.triangles.size() * 3);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::uvec3 v = mesh.triangles[t];
+    const glm::vec3 p[3] = {mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]};
+    glm::vec3 along[3];  // from corner to corner
+    for (std::size_t k = 0; k < 3; ++k) along[k] = unit_or(p[(k + 1) % 3] - p[k], glm::vec3(0.0F));
+    for (std::size_t k = 0; k < 3; ++k)
+      angles[3 * t + k] = std::acos(std::clamp(-glm::dot(along[k], along[(k + 2) % 3]), -1.0F, 1.0F));
+  }
+  return angles;
+}
+
 // How far a vertex moves for one metre of offset of the faces about it; longer at a fold, at most twice.
 std::vector<glm::vec3> offset_directions(const Mesh& mesh, const Fans& fans, const FaceNormals& faces) {
   std::vector<glm::vec3> out(mesh.positions.size(), glm::vec3(0.0F));
+  const std::vector<float> angles = find_angles(mesh);
   for (std::size_t v = 0; v < out.size(); ++v) {
     glm::vec3 sum(0.0F);
     float weight = 0.0F;
     for (std::uint32_t i = fans.first[v]; i < fans.first[v + 1]; ++i) {
       const Corner c = fans.corners[i];
-      sum += faces.unit[c / 3] * faces.angle[c];
-      weight += faces.angle[c];
+      sum += faces.unit[c / 3] * angles[c];
+      weight += angles[c];
     }
     if (weight <= 0.0F) continue;
     const glm::vec3 direction = unit_or(sum, glm::vec3(0.0F));
@@ -105,24 +100,15 @@ std::vector<glm::vec3> offset_directions(const Mesh& mesh, const Fans& fans, con
   return out;
 }
 
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
-  return (static_cast<std::uint64_t>(std::min(a, b)) << 32U) | std::max(a, b);
-}
-
 // Corners whose edge (to the next corner) belongs to one triangle only.
 std::vector<Corner> find_boundary(const Mesh& mesh) {
-  std::unordered_map<std::uint64_t, int> uses;
-  uses.reserve(mesh.triangles.size() * 2);
-  for (const glm::uvec3& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) ++uses[edge_key(t[k], t[(k + 1) % 3])];
-  }
+  CornerTable table;
+  table.read(mesh);
   std::vector<Corner> boundary;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const glm::uvec3 v = mesh.triangles[t];
-      if (uses[edge_key(v[k], v[(k + 1) % 3])] == 1) {
-        boundary.push_back(static_cast<Corner>(3 * t) + static_cast<Corner>(k));
-      }
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (table.opposite(CornerTable::previous(4 * t + k)) == CornerTable::kNone)
+        boundary.push_back(3 * t + k);
     }
   }
   return boundary;
@@ -156,7 +142,9 @@ class Builder {
 
  private:
   static std::array<std::int16_t, 4> pack(glm::vec3 n) {
-    const auto level = [](float x) { return static_cast<std::int16_t>(std::lround(x * 32767.0F)); };
+    const auto level = [](float x) {
+      return static_cast<std::int16_t>(x * 32767.0F + (x < 0.0F ? -0.5F : 0.5F));
+    };
     return {level(n.x), level(n.y), level(n.z), 0};
   }
 
@@ -225,6 +213,27 @@ void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::
 
 }  // namespace
 
+FaceNormals find_face_normals(const Mesh& mesh) {
+  FaceNormals out{std::vector<glm::vec3>(mesh.triangles.size()),
+                  std::vector<float>(mesh.triangles.size() * 3)};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::uvec3 v = mesh.triangles[t];
+    const glm::vec3 along[3] = {mesh.positions[v.y] - mesh.positions[v.x],
+                                mesh.positions[v.z] - mesh.positions[v.y],
+                                mesh.positions[v.x] - mesh.positions[v.z]};
+    const glm::vec3 area = glm::cross(along[0], along[1]);
+    const float size = glm::length(area);
+    if (!(size > 0.0F) || !std::isfinite(size)) continue;
+    out.unit[t] = area / size;
+    const float squares[3] = {glm::dot(along[0], along[0]), glm::dot(along[1], along[1]),
+                              glm::dot(along[2], along[2])};
+    const float share = size / (squares[0] * squares[1] * squares[2]);
+    if (!std::isfinite(share)) continue;
+    for (std::size_t k = 0; k < 3; ++k) out.weight[3 * t + k] = share * squares[(k + 1) % 3];
+  }
+  return out;
+}
+
 std::vector<glm::vec3> find_corner_normals(const Mesh& mesh) {
   return crease_normals(mesh, find_fans(mesh), find_face_normals(mesh));
 }
@@ -248,6 +257,8 @@ void check(const Mesh& mesh) {
 DrawnMesh expand(const Mesh& mesh) {
   check(mesh);
   DrawnMesh out;
+  out.vertices.reserve(4 * mesh.positions.size());
+  out.indices.reserve(12 * mesh.triangles.size());
   Builder builder(mesh, out);
   const auto range_since = [&out](std::size_t first) {
     return IndexRange{static_cast<std::uint32_t>(first),

@@ -36,8 +36,16 @@ struct DrawnMesh {
   glm::vec3 box_least{0.0F}, box_most{0.0F};
 };
 
-// Corner normals (3|T|, unit): the angle-weighted mean over the triangles about a vertex that meet this one
-// at less than the crease angle. Degenerate triangles get +y and weigh nothing.
+// The triangle's unit normal, and its say at each corner: the area over the squares of the two edges there
+// (Max 1999), which gives a sphere's normal where all corners lie on one.
+struct FaceNormals {
+  std::vector<glm::vec3> unit;  // |T|; zero if degenerate
+  std::vector<float> weight;    // 3|T|, 1/m2
+};
+FaceNormals find_face_normals(const Mesh& mesh);
+
+// Corner normals (3|T|, unit): the weighted mean over the triangles about a vertex that meet this one at less
+// than the crease angle. Degenerate triangles get +y and weigh nothing.
 std::vector<glm::vec3> find_corner_normals(const Mesh& mesh);
 
 // Throws std::invalid_argument when an index is out of range or an array has a length its comment does not

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <numeric>
-#include <set>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -34,7 +34,7 @@ struct DrawRow {
 constexpr float kLeastPixels = 0.25F;     // bodies of a smaller radius are not drawn
 constexpr float kSeenPixels = 0.4F;       // a surface may be off by so much
 constexpr float kLeastTolerance = 1e-7F;  // m; nothing is simplified for eyes so near
-constexpr int kAsGiven = -1000;           // a level of its own: not simplified
+constexpr float kOctaveLevels = 2.0F;     // levels from a tolerance to its double
 constexpr GLuint kRowAttribute = 5;
 
 unsigned create_vertex_array() {
@@ -71,14 +71,15 @@ std::array<glm::vec4, 4> find_sides(const glm::mat4& clip_from_world) {
   return sides;
 }
 
-// Shells are drawn as coarsely as the eye does not see: in steps, so that it rarely changes.
-int level_of(const Draw& draw, glm::vec3 centre_body, float radius, glm::vec3 eye, float pixel_slope) {
-  if (draw.mesh->surface != Surface::shell) return kAsGiven;
+// Surfaces are drawn as coarsely as the eye does not see: in steps, so that it rarely changes.
+std::optional<int> level_of(const Draw& draw, glm::vec3 centre_body, float radius, glm::vec3 eye,
+                            float pixel_slope) {
   const float scale = glm::length(glm::vec3(draw.world_from_body[0]));
   const glm::vec3 centre(draw.world_from_body * glm::vec4(centre_body, 1.0F));
   const float nearest = glm::distance(centre, eye) - radius * scale;
   const float tolerance = kSeenPixels * pixel_slope * nearest / scale;
-  return tolerance > kLeastTolerance ? static_cast<int>(std::floor(std::log2(tolerance))) : kAsGiven;
+  if (!(tolerance > kLeastTolerance)) return {};
+  return static_cast<int>(std::floor(kOctaveLevels * std::log2(tolerance)));
 }
 
 bool has_scalars(const Overlay& overlay) {
@@ -119,7 +120,7 @@ MeshStore::Levels& MeshStore::find_or_measure(const Mesh& mesh) {
   return levels;
 }
 
-int MeshStore::find_level(const Draw& draw, const Frame& frame, float pixel_slope) {
+MeshStore::Choice MeshStore::choose(const Draw& draw, const Frame& frame, float pixel_slope) {
   if (draw.mesh == nullptr) throw std::invalid_argument("a draw without a mesh");
   if (draw.scalars != nullptr && draw.scalars->size() != draw.mesh->positions.size()) {
     throw std::invalid_argument("mesh " + std::to_string(draw.mesh->id) + ": scalars must be one a vertex");
@@ -127,24 +128,27 @@ int MeshStore::find_level(const Draw& draw, const Frame& frame, float pixel_slop
   Levels& levels = find_or_measure(*draw.mesh);
   levels.last_frame = frame_;
   const bool is_as_given = (has_scalars(frame.overlay) && draw.scalars != nullptr) || frame.overlay.has_wires;
-  return is_as_given ? kAsGiven
-                     : level_of(draw, levels.centre, levels.radius, frame.camera.position, pixel_slope);
+  if (is_as_given) return {&levels, kAsGiven};
+  const std::optional<int> level =
+      level_of(draw, levels.centre, levels.radius, frame.camera.position, pixel_slope);
+  return {&levels, level.value_or(kAsGiven)};
 }
 
-void MeshStore::make_missing(const Frame& frame, const std::vector<int>& levels) {
+void MeshStore::make_missing(const Frame& frame, const std::vector<Choice>& choices) {
   std::vector<WantedShape> wanted;
-  std::vector<int> wanted_levels;
-  std::set<std::pair<std::uint64_t, int>> named;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const Mesh& mesh = *frame.draws[i].mesh;
-    if (meshes_.at(mesh.id).meshes.contains(levels[i]) || !named.emplace(mesh.id, levels[i]).second) continue;
-    wanted.push_back({&mesh, {}, {}});
-    if (levels[i] != kAsGiven) wanted.back().tolerance = std::exp2(static_cast<float>(levels[i]));
-    wanted_levels.push_back(levels[i]);
+  std::vector<StoredMesh*> rooms;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const auto [room, is_new] = choices[i].levels->meshes.try_emplace(choices[i].level);
+    if (!is_new && room->second.id != 0) continue;
+    if (!is_new && std::find(rooms.begin(), rooms.end(), &room->second) != rooms.end()) continue;
+    wanted.push_back({frame.draws[i].mesh.get(), {}, {}});
+    if (choices[i].level != kAsGiven)
+      wanted.back().tolerance = std::exp2(static_cast<float>(choices[i].level) / kOctaveLevels);
+    rooms.push_back(&room->second);
   }
   make_shapes(wanted);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    StoredMesh& stored = meshes_.at(wanted[i].mesh->id).meshes[wanted_levels[i]];
+    StoredMesh& stored = *rooms[i];
     stored.id = next_id_++;
     stored.shape = std::move(wanted[i].shape);
     stored.vertices = gpu::Buffer::of(std::span<const DrawnVertex>(stored.shape.vertices));
@@ -158,11 +162,11 @@ void MeshStore::drop_unseen() {
   std::erase_if(meshes_, [this](const auto& entry) { return entry.second.last_frame != frame_; });
 }
 
-Item MeshStore::make_item(const Draw& draw, const Frame& frame, int level, float pixel_slope) {
+Item MeshStore::make_item(const Draw& draw, const Frame& frame, const StoredMesh& stored, float pixel_slope) {
   const glm::vec3 eye = frame.camera.position;
   Item item;
   if (has_scalars(frame.overlay)) item.scalars = draw.scalars;
-  item.stored = &meshes_.at(draw.mesh->id).meshes.at(level);
+  item.stored = &stored;
   item.mesh_id = draw.mesh->id;
   item.stored_id = item.stored->id;
   item.world_from_body = draw.world_from_body;
@@ -240,12 +244,15 @@ void MeshStore::forget() {
 void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, float pixel_slope) {
   ++frame_;
   const std::array<glm::vec4, 4> sides = find_sides(clip_from_world);
-  std::vector<int> levels;
-  for (const Draw& draw : frame.draws) levels.push_back(find_level(draw, frame, pixel_slope));
-  make_missing(frame, levels);
+  std::vector<Choice> choices;
+  choices.reserve(frame.draws.size());
+  for (const Draw& draw : frame.draws) choices.push_back(choose(draw, frame, pixel_slope));
+  make_missing(frame, choices);
   std::vector<Item> items;
+  items.reserve(frame.draws.size());
   for (const Draw& draw : frame.draws) {
-    Item item = make_item(draw, frame, levels[items.size()], pixel_slope);
+    const Choice& choice = choices[items.size()];
+    Item item = make_item(draw, frame, choice.levels->meshes.at(choice.level), pixel_slope);
     item.row = static_cast<int>(items.size());
     item.id = draw.id;
     item.is_on_screen &= std::all_of(sides.begin(), sides.end(), [&item](const glm::vec4& side) {
@@ -256,9 +263,14 @@ void MeshStore::prepare(const Frame& frame, const glm::mat4& clip_from_world, fl
   drop_unseen();
   compare_with_earlier(items, frame);
   upload_rows(items);
-  items_ = std::move(items);
-  std::stable_sort(items_.begin(), items_.end(),
-                   [](const Item& a, const Item& b) { return a.eye_distance < b.eye_distance; });
+  std::vector<std::size_t> order(items.size());  // rows of items are long: these are sorted instead
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&items](std::size_t i, std::size_t j) {
+    return items[i].eye_distance < items[j].eye_distance;
+  });
+  items_.clear();
+  items_.reserve(items.size());
+  for (const std::size_t i : order) items_.push_back(std::move(items[i]));
 }
 
 void MeshStore::bind_vertices() const {

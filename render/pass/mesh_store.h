@@ -67,7 +67,8 @@ class MeshStore {
   int mesh_count() const { return static_cast<int>(meshes_.size()); }
 
  private:
-  // Levels: simplified within 2^level metres; kAsGiven is the mesh itself.
+  // Levels: simplified within 2^(level / 2) metres; kAsGiven is the mesh itself.
+  static constexpr int kAsGiven = -1000;
   struct Levels {
     std::map<int, StoredMesh> meshes;
     glm::vec3 centre{0.0F};  // of the mesh's box; body space
@@ -75,10 +76,15 @@ class MeshStore {
     std::uint64_t last_frame = 0;
   };
   Levels& find_or_measure(const Mesh& mesh);
-  int find_level(const Draw& draw, const Frame& frame, float pixel_slope);
-  void make_missing(const Frame& frame, const std::vector<int>& levels);
+  // Of each draw, the levels of its mesh and which of them is drawn.
+  struct Choice {
+    Levels* levels = nullptr;
+    int level = kAsGiven;
+  };
+  Choice choose(const Draw& draw, const Frame& frame, float pixel_slope);
+  void make_missing(const Frame& frame, const std::vector<Choice>& choices);
   void drop_unseen();
-  Item make_item(const Draw& draw, const Frame& frame, int level, float pixel_slope);
+  Item make_item(const Draw& draw, const Frame& frame, const StoredMesh& stored, float pixel_slope);
   void compare_with_earlier(std::vector<Item>& items, const Frame& frame);
   void upload_rows(const std::vector<Item>& items);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <numeric>
 #include <thread>
 
 #include "render/frame/simplify.h"
@@ -12,19 +13,27 @@ namespace {
 
 constexpr std::size_t kWorthThreads = 4000;  // triangles: 3 ms of work; a thread costs a fiftieth of that
 
-void make_one(WantedShape& wanted) {
-  wanted.shape = expand(wanted.tolerance ? simplify(*wanted.mesh, *wanted.tolerance) : *wanted.mesh);
+void make_one(WantedShape& wanted, Simplifier& simplifier) {
+  wanted.shape =
+      expand(wanted.tolerance ? simplifier.simplify(*wanted.mesh, *wanted.tolerance) : *wanted.mesh);
 }
 
 }  // namespace
 
 void make_shapes(std::vector<WantedShape>& wanted) {
   std::vector<std::exception_ptr> faults(wanted.size());
+  std::vector<std::size_t> order(wanted.size());  // large ones first, so that no thread is left with one
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&wanted](std::size_t a, std::size_t b) {
+    return wanted[a].mesh->triangles.size() > wanted[b].mesh->triangles.size();
+  });
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
-    for (std::size_t i = next++; i < wanted.size(); i = next++) {
+    Simplifier simplifier;
+    for (std::size_t n = next++; n < order.size(); n = next++) {
+      const std::size_t i = order[n];
       try {
-        make_one(wanted[i]);
+        make_one(wanted[i], simplifier);
       } catch (...) {
         faults[i] = std::current_exception();
       }
