@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "render/frame/expand.h"
@@ -11,7 +12,7 @@ namespace {
 
 constexpr int kMostRounds = 12;
 constexpr double kMeanShare =
-    0.25;  // the mean of the squared distances may be this share of the greatest one's square
+    0.4;  // the mean of the squared distances may be this share of the greatest one's square
 constexpr float kLeastTurnCosine = 0.8F;     // a triangle's plane turns by no more in one collapse
 constexpr float kLeastNormalCosine = 0.95F;  // nor does the normal differ from end to end of a collapsed edge
 constexpr float kEqualCosine = 0.9999F;      // of normals between which is no crease
@@ -55,6 +56,9 @@ void Simplifier::read(const Mesh& mesh) {
   states_.assign(mesh.positions.size(), State::ready);
   stamps_.assign(mesh.positions.size(), 0);
   stamp_ = 0;
+  has_groups_ =
+      std::adjacent_find(mesh.parts.begin(), mesh.parts.end(), std::not_equal_to<>()) != mesh.parts.end() ||
+      mesh.surface == Surface::solid;
   crease_cosine_ = std::cos(glm::radians(mesh.crease_angle));
   find_faces();
   normals_ = mesh.normals.empty() ? &own_normals_ : &mesh.normals;
@@ -88,10 +92,12 @@ bool Simplifier::find_places() {
       if (!has_corner_normals) return false;
       continue;
     }
-    if (!has_corner_normals) find_normals(v, fan);
+    const bool is_smooth = !has_corner_normals && find_normals(v, fan);
+    // Where nothing but the outline can be a line, only its two edges are asked: the fan's first and last.
+    const std::size_t step = is_smooth && !has_groups_ ? fan.count : 1;
     int lines = 0;
-    for (std::size_t i = 0; i < fan.neighbours().size(); ++i) lines += is_line(fan, i) ? 1 : 0;
-    weigh(v, fan, lines > 0);
+    for (std::size_t i = 0; i < fan.neighbours().size(); i += step) lines += is_line(fan, i) ? 1 : 0;
+    weigh(v, fan, lines > 0 ? step : 0);
     // A solid's outline is a seam: the other side of it must find it where it is.
     const bool is_seam = fan.is_outline && mesh_->surface == Surface::solid;
     if (is_seam || (lines != 0 && lines != 2)) continue;
@@ -101,8 +107,8 @@ bool Simplifier::find_places() {
   return true;
 }
 
-// As find_corner_normals does: one for all corners where there is no crease.
-void Simplifier::find_normals(std::uint32_t v, const Fan& fan) {
+// As find_corner_normals does: one for all corners where there is no crease, which it tells.
+bool Simplifier::find_normals(std::uint32_t v, const Fan& fan) {
   for (std::size_t k = 0; k < fan.count; ++k) {
     const glm::vec3 own = units_[CornerTable::triangle(fan.corners[k])];
     glm::vec3 sum(0.0F);
@@ -122,19 +128,21 @@ void Simplifier::find_normals(std::uint32_t v, const Fan& fan) {
     if (is_smooth) {
       own_normals_[v] = mean;
       for (std::size_t i = 0; i < fan.count; ++i) normal_of_[fan.corners[i]] = v;
-      return;
+      return true;
     }
     normal_of_[fan.corners[k]] = static_cast<std::uint32_t>(own_normals_.size());
     own_normals_.push_back(mean);
   }
+  return false;
 }
 
-// Planes of the triangles about a vertex and, square to them, through the lines that end at it.
-void Simplifier::weigh(std::uint32_t v, const Fan& fan, bool has_lines) {
+// Planes of the triangles about a vertex and, square to them, through the lines that end at it, which are
+// among every `step`th edge of the fan (0: there are none).
+void Simplifier::weigh(std::uint32_t v, const Fan& fan, std::size_t step) {
   Quadric sum;
   for (std::size_t i = 0; i < fan.count; ++i) sum.add_plane(units_[CornerTable::triangle(fan.corners[i])]);
   const std::size_t size = fan.neighbours().size();
-  for (std::size_t i = 0; has_lines && i < size; ++i) {
+  for (std::size_t i = 0; step > 0 && i < size; i += step) {
     if (!is_line(fan, i)) continue;
     for (const bool is_after : {false, true}) {
       if (fan.is_outline && i == (is_after ? fan.count : 0)) continue;

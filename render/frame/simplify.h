@@ -37,9 +37,8 @@ class Simplifier {
   void read(const Mesh& mesh);
   void find_faces();
   bool find_places();
-  bool look_at(std::uint32_t v);
-  void find_normals(std::uint32_t v, const Fan& fan);
-  void weigh(std::uint32_t v, const Fan& fan, bool has_lines);
+  bool find_normals(std::uint32_t v, const Fan& fan);
+  void weigh(std::uint32_t v, const Fan& fan, std::size_t step);
   int take_round();
   Mesh result() const;
 
@@ -66,6 +65,7 @@ class Simplifier {
   std::vector<glm::vec3> units_;        // of the triangles given
   std::vector<float> weights_;          // of a triangle's normal at its corners
   float crease_cosine_ = 0.0F;
+  bool has_groups_ = false;               // more than one
   std::vector<std::uint32_t> normal_of_;  // by corner, among those given
   std::vector<std::uint8_t> cracks_;
   std::vector<Quadric> quadrics_;

@@ -5,6 +5,11 @@
 #include <string>
 
 namespace shatterbox::render::pass {
+namespace {
+
+constexpr unsigned kPatterns = 1023U;  // of what a frame shows; glass does not ask whether there are mirrors
+
+}  // namespace
 
 GlassPass::GlassPass(int samples_across)
     : samples_across_(samples_across),
@@ -14,6 +19,7 @@ GlassPass::GlassPass(int samples_across)
 }
 
 const gpu::Program& GlassPass::faces(unsigned pattern_kinds) {
+  pattern_kinds &= kPatterns;
   gpu::Program& program = faces_[pattern_kinds];
   if (program.name() == 0) {
     program = gpu::Program("tile.vert", "glass.frag", {side_, "PATTERNS " + std::to_string(pattern_kinds)});

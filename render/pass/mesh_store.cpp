@@ -32,7 +32,7 @@ struct DrawRow {
 };
 
 constexpr float kLeastPixels = 0.25F;     // bodies of a smaller radius are not drawn
-constexpr float kSeenPixels = 0.4F;       // a surface may be off by so much
+constexpr float kSeenPixels = 0.5F;       // a surface may be off by so much
 constexpr float kLeastTolerance = 1e-7F;  // m; nothing is simplified for eyes so near
 constexpr float kOctaveLevels = 2.0F;     // levels from a tolerance to its double
 constexpr GLuint kRowAttribute = 5;

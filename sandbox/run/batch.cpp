@@ -205,7 +205,8 @@ int run_batch(const BatchOptions& options) {
   std::vector<Row> rows;
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int jobs = options.jobs > 0 ? options.jobs : cores;
-  for (BatchRun& run : plan_batch(options.scenes, sweeps, problems)) {
+  BatchPlan plan = plan_batch(options.scenes, sweeps, options.with, problems);
+  for (BatchRun& run : plan.runs) {
     const fs::path folder = fs::absolute(fs::path(options.folder) / run.name);
     std::vector<std::string> words = words_of(run, options, jobs);
     rows.push_back({std::move(run), folder, std::move(words), -1, {}});
@@ -213,6 +214,8 @@ int run_batch(const BatchOptions& options) {
   if (!problems.empty()) return refuse(problems);
   for (const Row& row : rows) make_folder("-o", row.folder.string(), problems);
   if (!problems.empty()) return refuse(problems);
+  for (const LeftOut& left : plan.left_out)
+    fmt::print(stderr, "left out: {} (takes {}); --with {} takes it in\n", left.name, left.takes, left.name);
   catch_interrupts();
   for (Row& row : rows) {
     std::error_code ignored;
@@ -231,7 +234,7 @@ int run_batch(const BatchOptions& options) {
     std::vector<Exhibit> exhibits;
     for (const Row& row : rows)
       exhibits.push_back({row.run.name, row.folder, row.report, measure_drawing(row.folder)});
-    fault = write_gallery(options.folder, exhibits);
+    fault = write_gallery(options.folder, exhibits, plan.left_out);
   }
   std::fflush(stdout);
   if (!fault.empty()) fmt::print(stderr, "failed: {}\n", fault);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sandbox/scene/find_scene.h"
+#include "sandbox/scene/read_scene.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -16,10 +17,28 @@ namespace fs = std::filesystem;
 
 const scene::Place kSweepPlace{"--sweep", 0, 0};
 
-/// Its scene files, or itself. Of a folder, in the order of their names.
-std::vector<std::string> scenes_of(const std::string& what, scene::Problems& problems) {
+/// How long it says that it takes. What is wrong with it is told by its run.
+std::string takes_of(const std::string& file) {
+  scene::Problems ignored;
+  const auto scene = scene::read_scene_file(file, {}, ignored);
+  return scene ? scene->takes : std::string();
+}
+
+/// Its scene files, or itself. Of a folder, in the order of their names, without those that take hours and
+/// that `with` does not name.
+std::vector<std::string> scenes_of(const std::string& what, const std::vector<std::string>& with,
+                                   std::vector<LeftOut>& left_out, scene::Problems& problems) {
   std::vector<std::string> files = scene::find_shots(what);  // of a folder, here or of those that came along
-  if (!files.empty()) return files;
+  if (!files.empty()) {
+    std::erase_if(files, [&](const std::string& file) {
+      const std::string name = fs::path(file).stem().string();
+      if (std::find(with.begin(), with.end(), name) != with.end()) return false;
+      const std::string takes = takes_of(file);
+      if (!takes.empty()) left_out.push_back({name, takes});
+      return !takes.empty();
+    });
+    return files;
+  }
   scene::Problems own;
   const std::string file = scene::find_scene(what, own);
   if (!file.empty()) return {file};
@@ -83,11 +102,12 @@ Sweep parse_sweep(const std::string& text, scene::Problems& problems) {
   return sweep;
 }
 
-std::vector<BatchRun> plan_batch(const std::vector<std::string>& scenes, const std::vector<Sweep>& sweeps,
-                                 scene::Problems& problems) {
-  std::vector<BatchRun> runs;
+BatchPlan plan_batch(const std::vector<std::string>& scenes, const std::vector<Sweep>& sweeps,
+                     const std::vector<std::string>& with, scene::Problems& problems) {
+  BatchPlan plan;
+  std::vector<BatchRun>& runs = plan.runs;
   for (const std::string& what : scenes)
-    for (const std::string& file : scenes_of(what, problems))
+    for (const std::string& file : scenes_of(what, with, plan.left_out, problems))
       runs.push_back({in_file_name(fs::path(file).stem().string()), fs::absolute(file).string(), {}});
   for (const Sweep& sweep : sweeps) {
     std::vector<BatchRun> wider;
@@ -106,7 +126,16 @@ std::vector<BatchRun> plan_batch(const std::vector<std::string>& scenes, const s
     run.name = plain;
     for (int i = 2; !names.insert(run.name).second; ++i) run.name = fmt::format("{}_{}", plain, i);
   }
-  return runs;
+  for (const std::string& name : with) {
+    const bool is_there = std::any_of(runs.begin(), runs.end(), [&name](const BatchRun& run) {
+      return fs::path(run.scene).stem().string() == name;
+    });
+    if (!is_there)
+      scene::book(problems, scene::Place{"--with", 0, 0},
+                  fmt::format("no scene of these folders is called \"{}\"", name),
+                  "give the name of its file without .toml");
+  }
+  return plan;
 }
 
 }  // namespace shatterbox::sandbox::run

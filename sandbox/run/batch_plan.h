@@ -24,8 +24,19 @@ struct BatchRun {
   std::vector<std::pair<std::string, std::string>> values;  // of the sweeps
 };
 
+/// A scene of a folder that says itself that it takes hours.
+struct LeftOut {
+  std::string name, takes;
+};
+
+struct BatchPlan {
+  std::vector<BatchRun> runs;
+  std::vector<LeftOut> left_out;
+};
+
 /// All scenes (files, names, or folders of them) with all combinations of the values, the last sweep fastest.
-std::vector<BatchRun> plan_batch(const std::vector<std::string>& scenes, const std::vector<Sweep>& sweeps,
-                                 scene::Problems& problems);
+/// What takes hours is left out of folders, unless `with` names it.
+BatchPlan plan_batch(const std::vector<std::string>& scenes, const std::vector<Sweep>& sweeps,
+                     const std::vector<std::string>& with, scene::Problems& problems);
 
 }  // namespace shatterbox::sandbox::run

@@ -124,6 +124,10 @@ void add_batch_options(CLI::App& command, BatchOptions& options) {
   command.add_option("--sweep", options.sweeps, "values to run with in turn; several: all combinations")
       ->type_name("NAME.key=a,b,..")
       ->allow_extra_args(false);
+  command
+      .add_option("--with", options.with, "scenes of a folder that take hours and are left out without this")
+      ->type_name("NAME")
+      ->delimiter(',');
   command.add_flag("--resume", options.resumes, "what is done is not done again, what was cut short goes on");
   command.add_flag("--gallery", options.has_gallery, "a page of the films: index.html");
   command.footer(

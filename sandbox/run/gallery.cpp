@@ -154,12 +154,17 @@ p { margin: 0.3em 0; }
 
 }  // namespace
 
-std::string write_gallery(const fs::path& folder, const std::vector<Exhibit>& exhibits) {
+std::string write_gallery(const fs::path& folder, const std::vector<Exhibit>& exhibits,
+                          const std::vector<LeftOut>& left_out) {
   std::string page = kHead;
   for (const Exhibit& exhibit : exhibits) {
     const bool has_film = exhibit.report.is_object() && fs::exists(exhibit.folder / "film.mp4");
     page += entry_of(exhibit, has_film ? take_stills(exhibit) : "there is no film.mp4");
   }
+  for (const LeftOut& left : left_out)
+    page += fmt::format(
+        "<section>\n<h2>{0}</h2>\n<p>left out: it takes {1}. --with {0} takes it in.</p>\n</section>\n",
+        escaped(left.name), escaped(left.takes));
   return report::write_text((folder / "index.html").string(), page + "</html>\n");
 }
 

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sandbox/run/batch_plan.h"
 #include "sandbox/run/drawing_cost.h"
 
 namespace shatterbox::sandbox::run {
@@ -19,7 +20,8 @@ struct Exhibit {
 };
 
 /// Writes index.html into `folder`, and beside each film a picture of what broke and one of its end. What has
-/// no film is told without pictures. A sentence if it fails, else empty.
-std::string write_gallery(const std::filesystem::path& folder, const std::vector<Exhibit>& exhibits);
+/// no film is told without pictures, and what was left out by its name. A sentence if it fails, else empty.
+std::string write_gallery(const std::filesystem::path& folder, const std::vector<Exhibit>& exhibits,
+                          const std::vector<LeftOut>& left_out);
 
 }  // namespace shatterbox::sandbox::run

@@ -49,6 +49,7 @@ const TomlValue& table_of(TableReader& root, const std::string& key) {
 void read_settings(const TomlValue& table, SceneDescription& scene, Problems& problems) {
   TableReader reader(table, "[scene]", problems);
   scene.name = reader.text("name").value_or(std::filesystem::path(scene.file).stem().string());
+  scene.takes = reader.text("takes").value_or("");
   scene.seconds = reader.number("seconds", between(1e-3, 86400.0, "s")).value_or(scene.seconds);
   world::WorldSettings& world = scene.world;
   world.steps_per_second =

@@ -216,6 +216,7 @@ struct RenderEntry {
 struct SceneDescription {
   std::string file, name;
   std::string goal;  // the first line of the file without its #: what must be seen
+  std::string takes;  // how long a run of it takes, where that is hours; else empty
   double seconds = 4.0;
   world::WorldSettings world;
   std::vector<MaterialEntry> materials;

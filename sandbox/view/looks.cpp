@@ -49,7 +49,7 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   }
   if (name == "ceramic") return render::ceramic(paint(0x2f6f86));
   if (name == "porcelain") {
-    render::Look look = render::ceramic(paint(0xe4e3df));  // darker than white, so that gloss is seen on it
+    render::Look look = render::ceramic(paint(0xd6dbe0));  // darker than white, so that gloss is seen on it
     look.inside = look.outside;
     look.clear_coat_roughness = 0.04F;
     look.crack = hex(0xfbfaf5);
@@ -110,6 +110,11 @@ std::vector<render::Look> make_looks(const std::string& name, const std::optiona
     look.pattern_colour = hex(0xf0d9a0);
     look.pattern_metalness = 0.9F;
     look.pattern_size = static_cast<float>(0.42 * size);
+  } else if (name == "porcelain" && !colour) {  // painted with cobalt under the glaze
+    look.pattern = render::Pattern::rings;
+    look.pattern_colour = hex(0x1f3d8f);
+    look.pattern_size = static_cast<float>(0.2 * size);
+    look.pattern_centre = glm::vec3(0.0F);  // about the centre of mass, wherever the mesh's own origin is
   } else if (look.pattern == render::Pattern::none && name == "ceramic") {
     look.pattern = render::Pattern::speckle;
     look.pattern_colour = 0.55F * look.outside;

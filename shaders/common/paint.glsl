@@ -114,7 +114,7 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
   s.coat = finish.y;
   s.coat_roughness = finish.z;
   s.transmission = finish.w;
-#if PATTERNS  // bits by kind. llvmpipe runs both sides of a branch: a program has only the kinds that the frame shows
+#if PATTERNS & 1023  // bits by kind; 1024: mirrors. llvmpipe runs both sides of a branch: a program has only the kinds that the frame shows
   vec4 pattern = texelFetch(paint_table, row + ivec2(2, 0), 0);    // colour, kind + metalness / 2; 8: heat map, 9: groups
   if (pattern.a >= 1.0) {
     vec4 place = texelFetch(paint_table, row + ivec2(3, 0), 0);    // centre, size
@@ -122,7 +122,7 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
     vec3 v = normalize(eye_exposure.xyz - s.position);
     float width = s.view_depth * view_ray.y * 2.0 * viewport.w / place.w / max(dot(s.normal, v), 0.25);
     int kind = int(pattern.a);
-#if PATTERNS == 256
+#if (PATTERNS & 1023) == 256
     s.colour = heat_colour(z_scalar.y);
 #else
     float share = kind >= 8 ? 0.0 : pattern_share(kind, (vec3(xy, z_scalar.x) - place.xyz) / place.w, width);

@@ -4,6 +4,9 @@
 #include "common/occlusion.glsl"
 #include "common/paint.glsl"
 
+// A glaze mirrors a twentieth: of lamps as bright as lamps are, not as a mirror may show them, that is still a light.
+const float kCoatLamps = 2.2;
+
 // pixel: gl_FragCoord.xy.
 vec3 shade(Surface s, vec2 pixel) {
   vec3 n = s.normal;
@@ -28,11 +31,19 @@ vec3 shade(Surface s, vec2 pixel) {
   // Light that bounced in the surface's own hollow: occlusion takes the paint's tint instead of going grey.
   vec3 sky_tinted = sky / (1.0 - 0.6 * s.colour * (1.0 - sky));
   vec3 light = diffuse * (sunlight * n_dot_l + ambient(n) * sky_tinted * (1.0 - share.y));
+#if PATTERNS & 1024  // something in the picture is a mirror
+  vec3 below = mirrored_floor(s.position, r, s.roughness);
+  below = mix(below, ground_radiance.rgb, smoothstep(0.1, 0.3, max(s.roughness, 1.0 - s.metalness)));
+#else
+  vec3 below = ground_radiance.rgb;
+#endif
 #ifdef PREVIEW  // one look at the surroundings instead of two
-  vec3 around = surroundings(r, s.coat > 0.3 ? s.coat_roughness : s.roughness);
+  bool is_coated = s.coat > 0.3;
+  vec3 around = surroundings(r, is_coated ? s.coat_roughness : s.roughness, below, is_coated ? kCoatLamps : 1.0);
   vec3 around_base = around;
 #else
-  vec3 around = surroundings(r, s.coat_roughness), around_base = surroundings(r, s.roughness);
+  vec3 around = surroundings(r, s.coat_roughness, ground_radiance.rgb, kCoatLamps);
+  vec3 around_base = surroundings(r, s.roughness, below, 1.0);
 #endif
   light += mirrored * around_base * sky_mirrored;
   light += sunlight * glint(n_dot_l, n_dot_v, n_dot_h, s.roughness) * f0;

@@ -31,7 +31,7 @@ Frame still_life() {
   frame.draws.push_back(at(make_pane(4, 0.8F, 0.6F), {0.9F, 0.7F, 0.4F}, glass()));
   frame.draws.push_back(at(make_pane(5, 0.5F, 0.9F), {0.2F, 0.5F, 1.2F}, glass()));
   frame.draws.push_back(at(make_pane(6, 0.7F, 0.5F), {1.9F, 0.3F, -0.6F}, stone({0.5F, 0.5F, 0.45F})));
-  frame.draws.push_back(at(make_sphere(7, 0.15F), {2.6F, 0.15F, -3.0F}, metal({0.7F, 0.7F, 0.7F})));
+  frame.draws.push_back(at(make_sphere(7, 0.15F), {2.6F, 0.15F, -3.0F}, metal({0.7F, 0.7F, 0.7F}, 0.05F)));
   // About all that moves: the shadow map keeps its place, and what it shows is told apart by who casts it.
   const auto post = make_sphere(8, 0.05F);
   for (int i = 0; i < 8; ++i) {

@@ -33,13 +33,35 @@ TEST_CASE("a batch runs all scenes with all combinations, each in a folder of it
   const Sweep sweep = parse_sweep("scene.gravity=[0, -1, 0],[0, -2, 0]", problems);
   const Sweep seeds = parse_sweep("scene.seed=1,2", problems);
   const std::string where = (folder / "scenes").string();
-  const auto runs = plan_batch({where, where + "/a.toml"}, {sweep, seeds}, problems);
+  const auto runs = plan_batch({where, where + "/a.toml"}, {sweep, seeds}, {}, problems).runs;
   CHECK(problems.empty());
   REQUIRE(runs.size() == 12);
   CHECK(runs[0].name == "a_scene.gravity=0--1-0_scene.seed=1");
   CHECK(runs[1].values[1].second == "2");
   CHECK(runs[4].name.rfind("b_", 0) == 0);
   CHECK(runs[8].name == runs[0].name + "_2");  // the same scene once more
+}
+
+TEST_CASE("what says that it takes hours is left out of a folder, unless it is named") {
+  const Folder folder;
+  fs::create_directories(folder / "scenes");
+  folder.write("scenes/quick.toml", kSmallScene);
+  std::string slow = kSmallScene;
+  slow.insert(slow.find("[scene]\n") + 8, "takes = \"a night\"\n");
+  folder.write("scenes/slow.toml", slow);
+  const std::string where = (folder / "scenes").string();
+  scene::Problems problems;
+  const BatchPlan without = plan_batch({where}, {}, {}, problems);
+  REQUIRE(without.runs.size() == 1);
+  CHECK(without.runs[0].name == "quick");
+  REQUIRE(without.left_out.size() == 1);
+  CHECK(without.left_out[0].name == "slow");
+  CHECK(without.left_out[0].takes == "a night");
+  CHECK(plan_batch({where}, {}, {"slow"}, problems).runs.size() == 2);
+  CHECK(plan_batch({where + "/slow.toml"}, {}, {}, problems).runs.size() == 1);
+  CHECK(problems.empty());
+  (void)plan_batch({where}, {}, {"slwo"}, problems);
+  CHECK(problems.size() == 1);
 }
 
 TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
