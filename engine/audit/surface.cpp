@@ -1,6 +1,6 @@
 #include "engine/audit/surface.h"
+#include "engine/body/polyhedron.h"
 #include "engine/core/index.h"
-#include "engine/geometry/generators.h"
 
 #include <algorithm>
 #include <numeric>
@@ -11,25 +11,6 @@ namespace {
 using core::at;
 
 constexpr int kLeafSize = 4;
-
-void add_box(const Vec3& half, Surface& surface) {
-  for (int corner = 0; corner < 8; ++corner)
-    surface.vertices.push_back(half.cwiseProduct(
-        Vec3((corner & 1) ? 1.0 : -1.0, (corner & 2) ? 1.0 : -1.0, (corner & 4) ? 1.0 : -1.0)));
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = 1 << ((axis + 1) % 3), v = 1 << ((axis + 2) % 3);
-    for (const int base : {0, 1 << axis}) {  // the sides at the lower and the upper end of the axis
-      const int a = base, b = base + u, c = base + u + v, d = base + v;
-      if (base == 0) {
-        surface.triangles.push_back({a, c, b});
-        surface.triangles.push_back({a, d, c});
-      } else {
-        surface.triangles.push_back({a, b, c});
-        surface.triangles.push_back({a, c, d});
-      }
-    }
-  }
-}
 
 void add_owners(Surface& surface) {
   std::vector<bool> vertex_is_owned(surface.vertices.size(), false);
@@ -80,16 +61,9 @@ void add_tree(Surface& surface) {
 std::shared_ptr<const Surface> make_surface(const std::shared_ptr<const body::Shape>& shape) {
   auto surface = std::make_shared<Surface>();
   surface->shape = shape;
-  if (shape->kind == body::ShapeKind::box) {
-    add_box(shape->half_extent, *surface);
-  } else if (shape->kind == body::ShapeKind::capsule) {
-    geometry::TriangleMesh mesh = geometry::make_capsule_surface(shape->radius, shape->half_length);
-    surface->vertices = std::move(mesh.positions);
-    surface->triangles = std::move(mesh.triangles);
-  } else if (body::is_mesh(shape->kind)) {
-    surface->vertices = shape->surface.positions;
-    surface->triangles = shape->surface.triangles;
-  }
+  geometry::TriangleMesh mesh = body::find_polyhedron(*shape);
+  surface->vertices = std::move(mesh.positions);
+  surface->triangles = std::move(mesh.triangles);
   surface->topology = geometry::build_edge_topology(surface->triangles);
   add_owners(*surface);
   add_tree(*surface);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "engine/body/polyhedron.h"
 #include "engine/core/elementary.h"
-#include "engine/geometry/generators.h"
 
 namespace shatterbox::dynamics {
 
@@ -67,10 +67,7 @@ std::vector<Facet> ball_facets(double radius) {
 std::vector<Facet> facets_of(const body::Shape& shape) {
   if (shape.kind == ShapeKind::box) return box_facets(shape.half_extent);
   if (shape.kind == ShapeKind::sphere) return ball_facets(shape.radius);
-  const geometry::TriangleMesh capsule = shape.kind == ShapeKind::capsule
-                                             ? geometry::make_capsule_surface(shape.radius, shape.half_length)
-                                             : geometry::TriangleMesh{};
-  const geometry::TriangleMesh& surface = shape.kind == ShapeKind::capsule ? capsule : shape.surface;
+  const geometry::TriangleMesh surface = body::find_polyhedron(shape);
   std::vector<Facet> facets;
   for (const geometry::Triangle& t : surface.triangles) {
     const Vec3& a = surface.positions[static_cast<std::size_t>(t[0])];

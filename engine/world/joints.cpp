@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "engine/body/polyhedron.h"
 #include "engine/core/index.h"
-#include "engine/geometry/generators.h"
 #include "engine/world/acts.h"
 #include "engine/world/state.h"
 
@@ -19,21 +19,9 @@ constexpr double kFirst = 0.5;
 
 /// The surface as triangles in the world; of a plane as much as lies before `other`.
 geometry::TriangleMesh world_surface(const body::Body& body, const body::Body& other) {
-  geometry::TriangleMesh mesh;
-  if (body::is_mesh(body.shape->kind)) {
-    mesh = body.shape->surface;
-    for (Vec3& p : mesh.positions) p = body.pose.apply(p);
-  } else if (body.shape->kind == body::ShapeKind::box) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 sides(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-      mesh.positions.push_back(body.pose.apply(body.shape->half_extent.cwiseProduct(sides)));
-    }
-    mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-  } else if (body.shape->kind == body::ShapeKind::capsule) {
-    mesh = geometry::make_capsule_surface(body.shape->radius, body.shape->half_length);
-    for (Vec3& p : mesh.positions) p = body.pose.apply(p);
-  } else if (body.shape->kind == body::ShapeKind::plane) {
+  geometry::TriangleMesh mesh = body::find_polyhedron(*body.shape);
+  for (Vec3& p : mesh.positions) p = body.pose.apply(p);
+  if (body.shape->kind == body::ShapeKind::plane) {
     const double half = 2.0 * other.shape->bounding_radius;
     Vec3 middle = body.pose.apply_inverse(other.pose.translation);
     middle.y() = 0.0;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/body/polyhedron.h"
 #include "engine/geometry/generators.h"
 
 namespace shatterbox::sandbox::report {
@@ -17,39 +18,24 @@ std::string make_obj(std::span<const body::Body> bodies, double time) {
   fmt::format_to(out, "# shatterbox, {:.17g} s; metres, y up\n", time);
   std::size_t first = 1;
   for (const body::Body& body : bodies) {
-    geometry::TriangleMesh made;
-    const geometry::TriangleMesh* mesh = &made;
-    switch (body.shape->kind) {
-      case body::ShapeKind::plane:
-        continue;
-      case body::ShapeKind::box:
-        made = geometry::make_box_surface(body.shape->half_extent);
-        break;
-      case body::ShapeKind::sphere:
-        made = geometry::make_capsule_surface(body.shape->radius, 0.0);
-        break;
-      case body::ShapeKind::capsule:
-        made = geometry::make_capsule_surface(body.shape->radius, body.shape->half_length);
-        break;
-      case body::ShapeKind::shell:
-      case body::ShapeKind::solid:
-        mesh = &body.shape->surface;
-        break;
-    }
+    if (body.shape->kind == body::ShapeKind::plane) continue;
+    const geometry::TriangleMesh mesh = body.shape->kind == body::ShapeKind::sphere
+                                            ? geometry::make_capsule_surface(body.shape->radius, 0.0)
+                                            : body::find_polyhedron(*body.shape);
     std::string name = body.name;
     for (char& c : name) {
       if (c == ' ') c = '_';
     }
     fmt::format_to(out, "o {}#{}\n", name, body.id);
-    for (const Vec3& p : mesh->positions) {
+    for (const Vec3& p : mesh.positions) {
       const Vec3 world_point = body.pose.apply(p);
       fmt::format_to(out, "v {:.17g} {:.17g} {:.17g}\n", world_point.x(), world_point.y(), world_point.z());
     }
-    for (const geometry::Triangle& t : mesh->triangles) {
+    for (const geometry::Triangle& t : mesh.triangles) {
       fmt::format_to(out, "f {} {} {}\n", first + static_cast<std::size_t>(t[0]),
                      first + static_cast<std::size_t>(t[1]), first + static_cast<std::size_t>(t[2]));
     }
-    first += mesh->positions.size();
+    first += mesh.positions.size();
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/body/polyhedron.h"
 #include "engine/core/elementary.h"
 #include "engine/geometry/closest_points.h"
 #include "engine/geometry/crossings.h"
@@ -68,10 +69,7 @@ Placed placed(const body::Body& body) {
   form.pose = body.pose;
   form.half_extent = body.shape->half_extent;
   if (form.kind == ShapeKind::sphere) form.radius = body.shape->radius;
-  form.surface = form.kind == ShapeKind::box ? geometry::make_box_surface(form.half_extent)
-                 : form.kind == ShapeKind::capsule
-                     ? geometry::make_capsule_surface(body.shape->radius, body.shape->half_length)
-                     : body.shape->surface;
+  form.surface = body::find_polyhedron(*body.shape);
   place(form);
   return form;
 }
