@@ -1,8 +1,6 @@
 #include "engine/fracture/crushed_core.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
 
 #include "engine/core/elementary.h"
 #include "engine/core/hash.h"
@@ -12,15 +10,11 @@
 namespace shatterbox::fracture {
 namespace {
 
-using geometry::ShellCorner;
-using geometry::SideKind;
 using Size = std::size_t;
 using core::at;
 
 constexpr double kLeastDistance = 0.75;  // of seeds, share of the local cell size
 constexpr double kDartsPerCell = 8.0;    // for the smallest cells
-constexpr double kVertexMargin = 0.05;   // no facet crosses an edge nearer to a vertex, share of the edge
-constexpr double kLostArea = 1e-14;      // of an element: parts below are nothing but rounding
 constexpr double kMargin = 2.0;     // seeds beyond the core that bound its cells, in cell sizes at its rim
 constexpr double kSoftness = 0.25;  // of an element's overload about one, over which it counts in part
 
@@ -106,212 +100,18 @@ std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>&
   return seeds;
 }
 
-/// Squared distances at an element's corners, from the core's centre to keep numbers small.
-struct Energy {
-  int seed = 0;
-  std::array<double, 3> corners{};
-};
-
-double value_at(const std::array<double, 3>& corners, const Vec2& b) {
-  return corners[0] * (1.0 - b.x() - b.y()) + corners[1] * b.x() + corners[2] * b.y();
-}
-
-class Crusher {
- public:
-  Crusher(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup)
-      : cutter_(cutter),
-        planes_(planes),
-        setup_(setup),
-        elements_(elements_in_reach(cutter, setup)),
-        seeds_(throw_darts(cutter, elements_, setup)) {
-    for (const Seed& seed : seeds_)
-      is_crushed_.push_back((seed.position - setup.centre).norm() < setup.radius);
-  }
-
-  Core crush() {
-    Core core;
-    if (seeds_.size() < 2) return core;
-    std::vector<std::pair<int, std::vector<std::vector<ShellCorner>>>> cuts;
-    std::vector<char> is_used(seeds_.size(), 0);
-    for (const int element : elements_) {
-      core::stop_if_asked();
-      if (!(planes_[at(element)].scale > 0.0) || cutter_.cells_of(element).empty()) continue;
-      const std::vector<Energy> energies = energies_of(element);
-      const auto is_inside = [this](const Energy& e) { return is_crushed_[at(e.seed)] != 0; };
-      if (std::none_of(energies.begin(), energies.end(), is_inside)) continue;
-      for (const int cell : cutter_.cells_of(element)) {
-        auto parts = divide(cell, energies, core, is_used);
-        if (parts.size() > 1) cuts.emplace_back(cell, std::move(parts));
-      }
-    }
-    if (setup_.most_length >= 0.0 && core.length > setup_.most_length) {
-      core = {};
-      core.is_out_of_energy = true;
-      return core;
-    }
-    for (auto& [cell, parts] : cuts) cutter_.replace(cell, std::move(parts));
-    core.cells = static_cast<int>(std::count(is_used.begin(), is_used.end(), 1));
-    return core;
-  }
-
- private:
-  /// Energy of every seed at a vertex; the least is lowered so far that no facet comes too near. Kept: all
-  /// elements about the vertex must see the same numbers.
-  const std::vector<double>& vertex_energies(int vertex) {
-    std::vector<double>& energies = at_vertex_[vertex];
-    if (!energies.empty()) return energies;
-    const Vec3& x = cutter_.elements().mesh.positions[at(vertex)];
-    int best = 0;
-    for (Size i = 0; i < seeds_.size(); ++i) {
-      energies.push_back((x - seeds_[i].position).squaredNorm());
-      if (energies[i] < energies[at(best)]) best = static_cast<int>(i);
-    }
-    const double edge = planes_[at(elements_.front())].scale;
-    double lead = 0.0;
-    for (Size i = 0; i < seeds_.size(); ++i) {
-      if (static_cast<int>(i) == best) continue;
-      const double apart = (seeds_[i].position - seeds_[at(best)].position).norm();
-      const double wanted = kVertexMargin * 2.0 * apart * std::min(edge, apart);
-      lead = std::max(lead, wanted - (energies[i] - energies[at(best)]));
-    }
-    energies[at(best)] -= lead;
-    return energies;
-  }
-
-  /// Seeds that may own a part of an element, nearest to its middle first: those kill the others early.
-  std::vector<Energy> energies_of(int element) {
-    const geometry::Triangle& triangle = cutter_.elements().mesh.triangles[at(element)];
-    std::array<const std::vector<double>*, 3> corners{};
-    for (Size i = 0; i < 3; ++i) corners[i] = &vertex_energies(triangle[i]);
-    std::vector<Energy> energies;
-    for (Size s = 0; s < seeds_.size(); ++s)
-      energies.push_back({static_cast<int>(s), {(*corners[0])[s], (*corners[1])[s], (*corners[2])[s]}});
-    const auto middle = [](const Energy& e) { return e.corners[0] + e.corners[1] + e.corners[2]; };
-    std::sort(energies.begin(), energies.end(), [&](const Energy& a, const Energy& b) {
-      return middle(a) != middle(b) ? middle(a) < middle(b) : a.seed < b.seed;
-    });
-    // Who loses to another seed at all three corners loses everywhere between them.
-    std::vector<Energy> rivals;
-    for (const Energy& e : energies) {
-      const bool is_beaten = std::any_of(rivals.begin(), rivals.end(), [&e](const Energy& r) {
-        return r.corners[0] < e.corners[0] && r.corners[1] < e.corners[1] && r.corners[2] < e.corners[2];
-      });
-      if (!is_beaten) rivals.push_back(e);
-    }
-    return rivals;
-  }
-
-  /// The part of a polygon where `difference` is at most zero; the new side gets the number `id`.
-  std::vector<ShellCorner> clip(int element, const std::vector<ShellCorner>& polygon,
-                                const std::array<double, 3>& difference, SideKind kind, int id) const {
-    std::vector<ShellCorner> kept;
-    const Size n = polygon.size();
-    for (Size i = 0; i < n; ++i) {
-      const ShellCorner& from = polygon[i];
-      const ShellCorner& to = polygon[(i + 1) % n];
-      const double v = value_at(difference, from.barycentric);
-      const double w = value_at(difference, to.barycentric);
-      if (v <= 0.0) kept.push_back(from);
-      if ((v <= 0.0) == (w <= 0.0)) continue;
-      Vec2 place = from.barycentric + v / (v - w) * (to.barycentric - from.barycentric);
-      if (from.side == SideKind::element_edge) place = place_on_edge(element, from, to, difference);
-      if (v <= 0.0)
-        kept.push_back({place, kind, id});
-      else
-        kept.push_back({place, from.side, from.side_id});
-    }
-    // A facet that runs through a corner leaves the corner twice.
-    std::vector<ShellCorner> clean;
-    for (Size i = 0; i < kept.size(); ++i)
-      if (kept[i].barycentric != kept[(i + 1) % kept.size()].barycentric) clean.push_back(kept[i]);
-    return clean;
-  }
-
-  /// From the values at the edge's ends, so that both elements of the edge find the same point.
-  Vec2 place_on_edge(int element, const ShellCorner& from, const ShellCorner& to,
-                     const std::array<double, 3>& difference) const {
-    const geometry::ShellElements& elements = cutter_.elements();
-    const geometry::Triangle& triangle = elements.mesh.triangles[at(element)];
-    const Size a = at(from.side_id);
-    const Size b = (a + 1) % 3;
-    const bool is_upwards = triangle[a] < triangle[b];
-    const double q = crossing_parameter(difference[is_upwards ? a : b], difference[is_upwards ? b : a]);
-    const double p0 = edge_parameter(elements, element, from.side_id, from.barycentric);
-    const double p1 = edge_parameter(elements, element, from.side_id, to.barycentric);
-    return barycentric_on_edge(elements, element, from.side_id,
-                               std::min(std::max(q, std::min(p0, p1)), std::max(p0, p1)));
-  }
-
-  std::vector<std::vector<ShellCorner>> divide(int cell_number, const std::vector<Energy>& energies,
-                                               Core& core, std::vector<char>& is_used) {
-    const CutCell& cell = cutter_.cell(cell_number);
-    std::map<std::pair<int, int>, int> ids;
-    std::vector<std::vector<ShellCorner>> parts;
-    std::vector<int> owners;
-    for (const Energy& own : energies) {
-      core::stop_if_asked();
-      std::vector<ShellCorner> part = cell.polygon;
-      for (const Energy& other : energies) {
-        if (other.seed == own.seed) continue;
-        std::array<double, 3> difference{};
-        for (Size i = 0; i < 3; ++i) difference[i] = own.corners[i] - other.corners[i];
-        const auto is_beaten = [&](const ShellCorner& c) {
-          return value_at(difference, c.barycentric) > 0.0;
-        };
-        if (std::none_of(part.begin(), part.end(), is_beaten)) continue;
-        const auto pair = std::minmax(own.seed, other.seed);
-        auto id = ids.find(pair);
-        if (id == ids.end()) id = ids.emplace(pair, cutter_.new_side_id()).first;
-        // Between two cells that are not crushed the material stays whole.
-        const bool is_open = is_crushed_[at(own.seed)] || is_crushed_[at(other.seed)];
-        part = clip(cell.element, part, difference, is_open ? SideKind::crack : SideKind::grain, id->second);
-        if (part.size() < 3) break;
-      }
-      if (part.size() < 3 || polygon_fraction(part) <= kLostArea) continue;
-      parts.push_back(std::move(part));
-      owners.push_back(own.seed);
-    }
-    const auto is_crushed = [this](int owner) { return is_crushed_[at(owner)] != 0; };
-    if (std::none_of(owners.begin(), owners.end(), is_crushed)) return {};
-    for (const int owner : owners)
-      if (is_crushed(owner)) is_used[at(owner)] = 1;
-    if (parts.size() > 1) add_segments(cell.element, ids, parts, core);
-    return parts;
-  }
-
-  /// Each facet is written down once, from the first of its two cells.
-  void add_segments(int element, const std::map<std::pair<int, int>, int>& ids,
-                    const std::vector<std::vector<ShellCorner>>& parts, Core& core) const {
-    const ElementPlane& plane = planes_[at(element)];
-    std::map<int, char> is_written;
-    std::map<int, char> is_own;
-    for (const auto& [pair, id] : ids) is_own[id] = 1;
-    for (const auto& part : parts)
-      for (Size i = 0; i < part.size(); ++i) {
-        if (part[i].side != SideKind::crack || !is_own.count(part[i].side_id) || is_written[part[i].side_id])
-          continue;
-        is_written[part[i].side_id] = 1;
-        const Vec3 begin = plane.space(plane.flat(part[i].barycentric));
-        const Vec3 end = plane.space(plane.flat(part[(i + 1) % part.size()].barycentric));
-        core.length += (end - begin).norm();
-        core.segments.push_back({setup_.crack, part[i].side_id, setup_.generation, false, {begin, end}});
-      }
-  }
-
-  ShellCutter& cutter_;
-  const std::vector<ElementPlane>& planes_;
-  const CoreSetup& setup_;
-  const std::vector<int> elements_;  // ascending
-  const std::vector<Seed> seeds_;
-  std::vector<char> is_crushed_;  // per seed
-  std::map<int, std::vector<double>> at_vertex_;
-};
-
 }  // namespace
 
-Core crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup) {
+CellCracks crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup) {
   if (!(setup.radius > 0.0) || !(setup.cell_size > 0.0) || !(setup.patch_radius > 0.0)) return {};
-  return Crusher(cutter, planes, setup).crush();
+  CellSetup cells;
+  cells.elements = elements_in_reach(cutter, setup);
+  for (const Seed& seed : throw_darts(cutter, cells.elements, setup))
+    cells.seeds.push_back({seed.position, (seed.position - setup.centre).norm() < setup.radius});
+  cells.most_length = setup.most_length;
+  cells.crack = setup.crack;
+  cells.generation = setup.generation;
+  return cut_cells(cutter, planes, cells);
 }
 
 double crushed_radius(const geometry::ShellElements& elements, const std::vector<double>& overloads,

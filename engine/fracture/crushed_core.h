@@ -1,14 +1,11 @@
-// The crushed core about a hard hit: graded Voronoi cells cut into whatever is there. The squared distances
-// to two seeds differ by a linear function of space, so the cells are exact in every element and agree across
-// its edges. Seeds and the core's radius do not depend on the elements: a finer mesh has the same core.
+// The crushed core about a hard hit: graded Voronoi cells. Seeds and the core's radius do not depend on the
+// elements: a finer mesh has the same core.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "engine/fracture/decide_shell.h"
-#include "engine/fracture/element_plane.h"
-#include "engine/fracture/shell_cutter.h"
+#include "engine/fracture/voronoi_cells.h"
 
 namespace shatterbox::fracture {
 
@@ -23,15 +20,8 @@ struct CoreSetup {
   std::uint64_t seed = 1;
 };
 
-struct Core {
-  std::vector<CrackSegment> segments;
-  int cells = 0;                  // Voronoi cells that got material
-  double length = 0.0;            // m
-  bool is_out_of_energy = false;  // nothing was cut then
-};
-
 /// Cells are cut out of what is within reach of the centre along the surface.
-Core crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup);
+CellCracks crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup);
 
 /// How far the material is crushed about a point: the radius of the disc with as much area as the elements
 /// (|T|: their stress over what crushes) that are above one there, within `reach` m. 0 if nothing is.

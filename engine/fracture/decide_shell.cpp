@@ -8,9 +8,11 @@
 #include "engine/fracture/cell_flaws.h"
 #include "engine/fracture/crack_tracer.h"
 #include "engine/fracture/crushed_core.h"
+#include "engine/fracture/dice.h"
 #include "engine/fracture/impact_force.h"
 #include "engine/fracture/shell_subject.h"
 #include "engine/fracture/split_shell.h"
+#include "engine/material/tempering.h"
 #include "engine/stress/shell_stress.h"
 
 namespace shatterbox::fracture {
@@ -104,8 +106,9 @@ class Decider {
     std::vector<Candidate> candidates, sound;
     Verdict& verdict = decision_.verdict;
     const auto consider = [&](std::vector<Candidate>& found, Size cell, const Vec2& place, double tension,
-                              double strength, int number) {
+                              double flaw_strength, int number) {
       const int element = mesh.cells[cell].element;
+      const double strength = flaw_strength + subject_.material.surface_compression;
       const double overload = tension / strength;
       if (is_first && overload > verdict.ratio) {
         verdict.ratio = overload;
@@ -225,7 +228,7 @@ class Decider {
   /// Breaks the crushed cores out of a copy of the cracked mesh, if there are any.
   void crush() {
     std::vector<double> overloads = decision_.element_stress;
-    for (double& overload : overloads) overload /= kCoreOverload * subject_.material.strength;
+    for (double& overload : overloads) overload /= kCoreOverload * material::borne_tension(subject_.material);
     std::optional<ShellCutter> cutter;
     for (Size i = 0; i < force_.presses().size(); ++i) {
       const Press& press = force_.presses()[i];
@@ -244,18 +247,34 @@ class Decider {
         core.most_length = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy) /
                            (subject_.material.fracture_energy * subject_.thickness);
       if (!cutter) cutter.emplace(*mesh_);
-      take_over(crush_core(*cutter, planes_, core));
+      const CellCracks crushed = crush_core(*cutter, planes_, core);
+      take_over(crushed);
+      decision_.core_cells += crushed.cells;
     }
     if (cutter) mesh_ = std::make_shared<const geometry::ShellMesh>(cutter->mesh(&contacts_));
   }
 
-  void take_over(const Core& crushed) {
-    decision_.energy_guard_active = decision_.energy_guard_active || crushed.is_out_of_energy;
-    if (crushed.cells == 0) return;
+  void take_over(const CellCracks& cut) {
+    decision_.energy_guard_active = decision_.energy_guard_active || cut.is_out_of_energy;
+    if (cut.cells == 0) return;
     ++next_crack_;
-    decision_.core_cells += crushed.cells;
-    decision_.fracture_energy += crushed.length * subject_.material.fracture_energy * subject_.thickness;
-    decision_.segments.insert(decision_.segments.end(), crushed.segments.begin(), crushed.segments.end());
+    decision_.fracture_energy += cut.length * subject_.material.fracture_energy * subject_.thickness;
+    decision_.segments.insert(decision_.segments.end(), cut.segments.begin(), cut.segments.end());
+  }
+
+  /// What is stored in the sheet breaks all of it into dice, paid for by itself.
+  void dice(double die_area) {
+    ShellCutter cutter(*mesh_);
+    const CellCracks cut =
+        cut_dice(cutter, planes_,
+                 {die_area, next_crack_, decision_.generations, core::mix(subject_.seed + 0x64696365)});
+    if (cut.cells == 0) return;
+    double area = 0.0;
+    for (const geometry::ShellCell& cell : mesh_->cells) area += cell.area;
+    take_over(cut);
+    decision_.dice = cut.cells;
+    decision_.elastic_energy += area * material::stored_energy(subject_.material, subject_.thickness);
+    mesh_ = std::make_shared<const geometry::ShellMesh>(cutter.mesh(&contacts_));
   }
 
   void conclude(std::vector<CrackTip> tips) {
@@ -268,12 +287,15 @@ class Decider {
       return;
     }
     const auto start = Clock::now();
-    if (settings_.core_spacing > 0.0) crush();
+    if (const double die_area = material::die_area(subject_.material, subject_.thickness); die_area > 0.0)
+      dice(die_area);
+    else if (settings_.core_spacing > 0.0)
+      crush();
     if (subject_.grains && !subject_.grains->is_empty()) assign_grains();
     decision_.mesh = mesh_;
     decision_.contacts = std::move(contacts_);
     decision_.verdict.outcome = Outcome::broke;
-    decision_.tips = std::move(tips);
+    if (decision_.dice == 0) decision_.tips = std::move(tips);
     for (const CrackSegment& segment : decision_.segments) {
       const double area = (segment.ends[1] - segment.ends[0]).norm() * subject_.thickness;
       decision_.new_area += area;

@@ -66,6 +66,7 @@ struct Decision : DecisionFigures {
   std::vector<CrackTip> tips;                       // that stopped inside the material
   std::vector<CrackSegment> segments;
   int core_cells = 0;
+  int dice = 0;            // into which stored stress broke it; what is stored is spent then
   double factor_ms = 0.0;  // wall time; enters no state
 };
 

@@ -9,6 +9,7 @@
 #include "engine/fracture/cell_flaws.h"
 #include "engine/fracture/crack_course.h"
 #include "engine/fracture/shell_subject.h"
+#include "engine/material/tempering.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/loaded_parts.h"
 #include "engine/stress/shell_load.h"
@@ -85,8 +86,14 @@ double ImpactForce::spin_stress() const {
   return 0.75 * subject_.material.density * rim_speed * rim_speed * size / subject_.thickness;
 }
 
+/// The least tension by loads that breaks a cell, Pa.
+double ImpactForce::borne_by(Size cell) const {
+  return weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(cell)) +
+         subject_.material.surface_compression;
+}
+
 bool ImpactForce::is_spinning() const {
-  return spin_stress() > kSpinThatCounts * subject_.material.strength;
+  return spin_stress() > kSpinThatCounts * material::borne_tension(subject_.material);
 }
 
 /// Whether the spin by itself might start a crack, or drive on the tip of one that rests.
@@ -97,7 +104,7 @@ bool ImpactForce::does_spin_crack() const {
   const double rest = kRestLength * subject_.thickness;
   if (!(stress * core::sqrt(0.5 * core::kPi * rest) < toughness)) return true;
   for (Size c = 0; c < subject_.mesh->cells.size(); ++c)
-    if (!(stress < weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(c)))) return true;
+    if (!(stress < borne_by(c))) return true;
   return false;
 }
 
@@ -123,7 +130,7 @@ std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
   for (Size c = 0; c < subject_.mesh->cells.size(); ++c) {
     const double area = figures.stressed_areas[c];
     if (!(area > 0.0)) return std::nullopt;
-    const double strength = weakest_strength(*subject_.flaws, *subject_.mesh, static_cast<int>(c));
+    const double strength = borne_by(c);
     const double stress = per_root_area / core::sqrt(area) + constant;
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};

@@ -61,6 +61,7 @@ class ImpactForce {
  private:
   using System = stress::ShellSystemCache::System;
   double spin_stress() const;
+  double borne_by(std::size_t cell) const;
   bool is_spinning() const;
   bool does_spin_crack() const;
   geometry::ShellMesh pressed_parts(const geometry::ShellMesh& mesh) const;

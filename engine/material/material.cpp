@@ -157,6 +157,11 @@ std::vector<Preset> make_presets() {
   steel.restitution = 0.6;
   steel.thickness = 2e-3;
 
+  Material tempered_glass = glass;
+  tempered_glass.name = "tempered_glass";
+  tempered_glass.surface_compression = 100e6;
+  tempered_glass.thickness = 6e-3;
+
   Material terracotta;
   terracotta.name = "terracotta";
   terracotta.density = 1900.0;
@@ -225,6 +230,10 @@ std::vector<Preset> make_presets() {
        "[EN1993], "
        "elongation 26 % by [EN10025]; fracture energy of the order of what tearing of mild steel takes, 100 "
        "to 300 kJ/m2; shells of it break as if brittle"},
+      {tempered_glass,
+       "Thermally toughened float glass: as glass; 100 MPa of compression at the faces: [C1048] asks for at "
+       "least 69, the 120 MPa characteristic bending strength of [EN12150] over the 45 of annealed glass for "
+       "75"},
       {terracotta,
        "Unglazed earthenware: density, E and bending strength 10 to 15 MPa as commonly reported for "
        "terracotta, K_Ic "
@@ -251,6 +260,7 @@ constexpr Range kRanges[] = {
     {"yield", &Material::yield, 0.0, 1e15, true, " Pa"},
     {"elongation", &Material::elongation, 0.0, 10.0, false, ""},
     {"plasticity", &Material::plasticity, 0.0, 100.0, true, ""},
+    {"surface_compression", &Material::surface_compression, 0.0, 1e12, true, " Pa"},
     {"weibull_modulus", &Material::weibull_modulus, 1.0, 1000.0, true, ""},
     {"flaw_area", &Material::flaw_area, 0.0, 1e12, false, " m2"},
     {"crack_spacing", &Material::crack_spacing, 0.0, 10.0, true, ""},

@@ -10,16 +10,17 @@ namespace shatterbox::material {
 
 struct Material {
   std::string name = "glass";
-  double density = 2500.0;        // kg/m3
-  double young = 70e9;            // Young's modulus, Pa
-  double poisson = 0.22;          // Poisson's ratio, in [0, 0.5)
-  double strength = 50e6;         // tensile strength (mean flaw), Pa
-  double fracture_energy = 8.0;   // energy of new crack area, J/m2
-  double yield = 0.0;             // von Mises stress at which it flows, Pa; 0: it breaks and does not yield
-  double elongation = 0.2;        // of what yields: plastic strain at which it tears, dimensionless
-  double plasticity = 1.0;        // of what yields: dents are so many times as deep as energy says
-  double weibull_modulus = 5.0;   // scatter of the flaws' strengths, dimensionless: larger is more even
-  double flaw_area = 1e-2;        // area that holds one flaw below the strength on average, m2
+  double density = 2500.0;       // kg/m3
+  double young = 70e9;           // Young's modulus, Pa
+  double poisson = 0.22;         // Poisson's ratio, in [0, 0.5)
+  double strength = 50e6;        // tensile strength (mean flaw), Pa
+  double fracture_energy = 8.0;  // energy of new crack area, J/m2
+  double yield = 0.0;            // von Mises stress at which it flows, Pa; 0: it breaks and does not yield
+  double elongation = 0.2;       // of what yields: plastic strain at which it tears, dimensionless
+  double plasticity = 1.0;       // of what yields: dents are so many times as deep as energy says
+  double surface_compression = 0.0;  // of sheets: stored in their faces, Pa; 0: annealed
+  double weibull_modulus = 5.0;      // scatter of the flaws' strengths, dimensionless: larger is more even
+  double flaw_area = 1e-2;           // area that holds one flaw below the strength on average, m2
   double crack_spacing = 0.5;     // how far cracks keep apart, share of the shielded length; smaller is finer
   double grain_size = 0.0;        // mean distance of grain seeds, m; 0: no grains
   double grain_strength = 0.6;    // strength of grain boundaries, share of the material's

@@ -61,6 +61,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     if (!fault.empty()) return refuse(fault);
 
   const material::Material& material = s.materials[static_cast<std::size_t>(description.material)];
+  if (material.surface_compression > 0.0 && std::holds_alternative<SolidDescription>(description.form))
+    return refuse("surface_compression is of sheets, and this is a solid: make it a shell, or set it to 0");
   const double density = description.density.value_or(material.density);
   const auto substance_of = [&](bool is_breakable) {
     return Substance{material, description.material, density,

@@ -31,6 +31,7 @@ Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture
   subject.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
   subject.systems = make_systems(subject, subject.systems->shared_stiffness());
   subject.tips = tips_of_piece(decision.tips, *subject.mesh);
+  if (decision.dice > 0) subject.material.surface_compression = 0.0;
   piece.is_held = !subject.systems->support().empty();
   if (!piece.is_held) subject.clamped_vertices.clear();
   piece.shape = make_shell_shape(*subject.mesh, *fragile, thickness, whole);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/parallel.h"
+#include "engine/material/tempering.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/stress_bound.h"
 
@@ -186,7 +187,8 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   bool is_pressed = contact_force > memory.tested_growth * memory.tested_contact;
   // Contact is an average over a time that a newborn piece has not lived yet.
   if (!is_paper && time < memory.born + average) is_pressed = false;
-  if (is_pressed && bending_bound(body, contact_force) < candidate.fragile->material().strength) {
+  if (is_pressed &&
+      bending_bound(body, contact_force) < material::borne_tension(candidate.fragile->material())) {
     is_pressed = false;
     if (hits.empty()) ++figures.skipped;
   }

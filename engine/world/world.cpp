@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/material/tempering.h"
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
@@ -155,7 +156,7 @@ StressPicture World::stress_picture(body::BodyId id) const {
   const body::Body* body = body::find_body(state_->moving.bodies, id);
   const auto fragile = state_->moving.fragiles.find(id);
   if (!body || fragile == state_->moving.fragiles.end()) return picture;
-  picture.strength = fragile->second->material().strength;
+  picture.strength = material::borne_tension(fragile->second->material());
   const auto stress = state_->element_stress.find(id);
   if (stress == state_->element_stress.end() || !stress->second) return picture;
   for (const int element : body->shape->triangle_elements)

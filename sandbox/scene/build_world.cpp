@@ -8,6 +8,7 @@
 #include "engine/core/random.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_diagnosis.h"
+#include "engine/material/tempering.h"
 #include "sandbox/scene/build_joints.h"
 #include "sandbox/scene/build_mesh.h"
 #include "sandbox/scene/limits.h"
@@ -15,6 +16,8 @@
 namespace shatterbox::sandbox::scene {
 
 namespace {
+
+constexpr double kMostDice = 2000.0;  // that are played without a word
 
 /// About the frame's origin and about the centre of mass, which is known.
 void find_radii(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
@@ -35,6 +38,14 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
   shell.is_breakable = form.is_breakable;
   shell.clamped = find_clamped(built->mesh, body.rotation, body.support, body.place, problems);
   plan.centre = geometry::shell_mass_properties(built->mesh, shell.thickness, 1.0).centre;
+  if (const double die = material::die_area(material, shell.thickness); die > 0.0 && form.is_breakable) {
+    const double dice = geometry::surface_area(built->mesh) / die;
+    if (dice > kMostDice)
+      notes.push_back(fmt::format(
+          "\"{}\" would break into about {:.2g} dice of {:.2g} mm2: so many bodies at once take minutes a "
+          "second; it may be smaller, thicker, or of less surface_compression",
+          body.name, dice, 1e6 * die));
+  }
   find_radii(built->mesh, plan);
   shell.mesh = std::move(built->mesh);
   shell.parts = std::move(built->parts);

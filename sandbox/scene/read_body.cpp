@@ -13,9 +13,19 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere", "capsule"};
-const std::vector<std::string> kMaterialKeys{
-    "young",         "poisson",    "strength",       "fracture_energy", "weibull_modulus",  "flaw_area",
-    "crack_spacing", "grain_size", "grain_strength", "friction",        "rolling_friction", "restitution"};
+const std::vector<std::string> kMaterialKeys{"young",
+                                             "poisson",
+                                             "strength",
+                                             "fracture_energy",
+                                             "weibull_modulus",
+                                             "flaw_area",
+                                             "crack_spacing",
+                                             "grain_size",
+                                             "grain_strength",
+                                             "friction",
+                                             "rolling_friction",
+                                             "restitution",
+                                             "surface_compression"};
 const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up", "breakable", "support"};
 
 Support read_support(TableReader& reader) {

@@ -100,6 +100,7 @@ void read_material(const TomlValue& table, std::size_t index, SceneDescription& 
       {"yield", &m.yield, not_negative("Pa")},
       {"elongation", &m.elongation, positive()},
       {"plasticity", &m.plasticity, not_negative()},
+      {"surface_compression", &m.surface_compression, not_negative("Pa")},
       {"weibull_modulus", &m.weibull_modulus, positive()},
       {"flaw_area", &m.flaw_area, positive("m2")},
       {"crack_spacing", &m.crack_spacing, positive()},

@@ -85,9 +85,10 @@ std::string plot_commands(const std::vector<Table>& tables, const std::string& t
   if (number == 0) return {};
   std::string text = data +
                      "set logscale xy\nset format x \"10^{%L}\"\nset format y \"10^{%L}\"\n"
-                     "set xlabel \"processor time, s\"\nset ylabel \"error\"\nset grid lc rgb \"#dddddd\"\n"
+                     "set xlabel \"processor time, s (ringed: the default)\"\nset ylabel \"error\"\nset grid "
+                     "lc rgb \"#dddddd\"\n"
                      "set key below maxcols 3 noenhanced\nset title noenhanced " +
-                     quoted(title + " (ringed: the default)") + "\n";
+                     quoted(title) + "\n";
   return text + to_both(curves, name);
 }
 

@@ -220,6 +220,10 @@ TEST_CASE("bodies that cannot be are refused at their place") {
       "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [1, 1, 1]\nsupport = {box = [[5, 5, 5], [6, 6, "
       "6]]}\n",
       "the support's box is beside the mesh");
+  refused(
+      "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.2, 0.01]\nmaterial = "
+      "\"tempered_glass\"\n",
+      "surface_compression is of sheets");
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 1\nscale = 1e6\n", "scale = 0.001");
 }
 
@@ -314,4 +318,13 @@ TEST_CASE("a scene beyond what the engine bears says so at load") {
   CHECK(notes("[scene]\nsteps_per_second = 60\n" + balls)
             .find("3 bodies bounce with a restitution of 0.9 or more") != std::string::npos);
   CHECK(notes(balls) == "");
+  const auto pane = [](double size) {
+    return "[[body]]\nname = \"door\"\nkind = \"shell\"\nshape = \"pane\"\nmaterial = "
+           "\"tempered_glass\"\nwidth = " +
+           std::to_string(size) + "\nheight = " + std::to_string(size) + "\n";
+  };
+  CHECK(notes(pane(0.25)) == "");
+  const std::string door = notes(pane(1.0));
+  INFO(door);
+  CHECK(door.find("\"door\" would break into about 2.2e+04 dice of 45 mm2") != std::string::npos);
 }

@@ -209,6 +209,11 @@ TEST_CASE("study fragments: pieces of every size") {
   INFO(describe(result));
   for (const Row& row : table_of(result, "sizes").rows) CHECK(row.errors[3] > 5.0);
   for (const Row& row : table_of(result, "radial").rows) CHECK(row.errors[0] > 3.0);
+  // As many as the stored energy pays for: 55.8 of 6 mm of tempered glass.
+  for (const Row& row : table_of(result, "tempered").rows) {
+    CHECK(row.errors[0] == 0.0);
+    CHECK(row.errors[2] == Approx(55.8).epsilon(0.1));
+  }
 }
 
 TEST_CASE("the exponent of a power law is found with its interval") {
