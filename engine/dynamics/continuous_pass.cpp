@@ -30,6 +30,7 @@ constexpr double kDeep =
 // Share of the kept gap to which hits are opened: less would be used up in the next steps.
 constexpr double kOpening = 0.5, kLastOpening = 0.05;
 constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with the one before
+constexpr int kMostSolves = 8;        // of islands that got contacts on their ways
 constexpr int kPatience = 2;          // rounds without fewer hits
 constexpr int kMostPartialCuts = 5;   // before whole steps are taken back
 
@@ -58,7 +59,9 @@ class Guard {
         must_test_[p] = 0;
     }
     bool has_hits = test();
-    if (has_hits && settings_.continuous_rounds > 0 && solve_again()) has_hits = test();
+    // One who is hit may hit the next: that is followed where hits are taken one by one.
+    const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
+    for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) has_hits = test();
     has_hits = open_in_rounds(has_hits);
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
     content_with_less();
@@ -91,6 +94,7 @@ class Guard {
     known_.resize(work_.pairs.size());
     is_cut_.resize(work_.pairs.size(), 0);
     was_hit_.resize(work_.pairs.size(), 0);
+    is_known_.resize(work_.pairs.size(), 0);
     spare_.resize(work_.pairs.size(), 0.0);
   }
 
@@ -211,8 +215,9 @@ class Guard {
 
   // Hits become contacts of the solver, and the islands that got one are solved anew from the start of the
   // step. False if there is nothing that would gain by it.
-  bool solve_again() {
+  bool solve_again(bool is_first) {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
+    const std::vector<char> strikes_on = is_first ? std::vector<char>{} : find_striking();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
       if (!must_test_[p] || hits_[p].empty()) continue;
@@ -223,7 +228,8 @@ class Guard {
       const bool is_deep = std::any_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
         return gap_on_way(pair, work_, hit.contact, hit.knot) < deep;
       });
-      if (!can_act || !is_deep) continue;
+      if (!can_act || !is_deep || is_known_[p] || !(is_first || may_strike_on(pair, strikes_on))) continue;
+      is_known_[p] = 1;
       for (const PathHit& hit : hits_[p]) add_contact(static_cast<int>(p), hit.contact);
       is_dirty[at(pair.a)] = is_dirty[at(pair.b)] = 1;
     }
@@ -233,6 +239,24 @@ class Guard {
     solve_islands(bodies_, settings_, is_dirty, work_);
     mark_due_since(before);
     return true;
+  }
+
+  // The bodies, of those in islands, whose hits run on.
+  std::vector<char> find_striking() const {
+    std::vector<char> strikes_on(work_.bodies.size(), 0);
+    for (const Island& island : work_.islands) {
+      if (!strikes_one_by_one(island, work_)) continue;
+      for (const int i : island.bodies) strikes_on[at(i)] = 1;
+    }
+    return strikes_on;
+  }
+
+  bool may_strike_on(const WorkPair& pair, const std::vector<char>& strikes_on) const {
+    const auto is_right = [&](int i) {
+      const WorkBody& b = work_.bodies[at(i)];
+      return b.is_free || b.inverse_mass == 0.0 || strikes_on[at(i)] != 0;
+    };
+    return pair.is_analytic && is_right(pair.a) && is_right(pair.b);
   }
 
   void add_contact(int pair_number, const Contact& found) {
@@ -441,6 +465,7 @@ class Guard {
   ContactReport& report_;
   PathTest paths_;
   std::vector<char> must_test_, was_cut_, is_cut_, was_hit_;
+  std::vector<char> is_known_;              // per pair: the solver was given its hits
   std::vector<char> is_squeezed_;           // per body, by a scripted one that was held up; empty: nobody
   std::vector<double> spare_;               // per pair, m: ways this close to those that were tested are free
   std::vector<std::vector<PathHit>> hits_;  // per pair, earliest first

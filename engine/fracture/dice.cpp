@@ -17,8 +17,8 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kDartsPerDie = 24.0;
-constexpr double kLeastDistance = 0.80;  // of seeds, share of the root of a die's area: so many find room
-constexpr double kReach = 2.5;           // in least distances: no place on a sheet is further from a seed
+constexpr double kApart = 0.80;  // of seeds, share of the root of a die's area: so many find room
+constexpr double kReach = 2.5;   // in least distances: no place on a sheet is further from a seed
 
 /// Darts that keep `least` m apart, in the order of their keys.
 std::vector<CellSeed> thin_out(const geometry::ShellElements& elements, std::vector<SurfacePoint> darts,
@@ -56,7 +56,7 @@ std::vector<CellSeed> thin_out(const geometry::ShellElements& elements, std::vec
 CellCracks cut_dice(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const DiceSetup& setup) {
   if (!(setup.area > 0.0)) return {};
   const geometry::ShellElements& elements = cutter.elements();
-  const double least = kLeastDistance * core::sqrt(setup.area);
+  const double least = kApart * core::sqrt(setup.area);
   CellSetup cells;
   cells.seeds =
       thin_out(elements, scatter_on_surface(elements, kDartsPerDie / setup.area, setup.seed), least);

@@ -132,6 +132,7 @@ std::string usual_look(const std::string& preset) {
                            "porcelain", "steel", "terracotta"}) {
     if (preset == same) return same;
   }
+  if (preset == "tempered_glass") return "glass";
   return preset == "ornament_glass" ? "ornament" : "matt";
 }
 

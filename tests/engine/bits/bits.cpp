@@ -137,7 +137,8 @@ TEST_CASE("a scene that is turned, or told in another order, is the same scene")
     CHECK(other.pieces == plain.pieces);
     CHECK(other.area == Approx(plain.area).epsilon(1e-6));
   };
-  check_like(play_turned(0.7, {0, 1, 2, 3}, 20), 1e-3);
-  check_like(play_turned(-2.1, {0, 1, 2, 3}, 20), 1e-3);
+  // A hit that runs on through a stack makes more of how it stands: micrometres.
+  check_like(play_turned(0.7, {0, 1, 2, 3}, 20), 3e-3);
+  check_like(play_turned(-2.1, {0, 1, 2, 3}, 20), 3e-3);
   check_like(play_turned(0.0, {3, 1, 0, 2}, 20), 5e-3);  // sweeps go over pairs in another order
 }

@@ -114,8 +114,7 @@ TEST_CASE("study contact: weights are carried and momentum is kept, nothing cros
     }
   for (const char* name : {"gas-steps", "gas-substeps"})
     for (const Row& row : table_of(result, name).rows) {
-      CHECK(row.errors[0] <
-            (row.is_default ? 1e-3 : 0.1));  // coarser ones may lose one of eight balls' bounce
+      CHECK(row.errors[0] < 1e-3);
       CHECK(row.errors[1] < 1e-12);
       CHECK(row.errors[2] == 0.0);
       CHECK(row.errors[3] > 20.0);
