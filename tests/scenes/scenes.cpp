@@ -67,7 +67,7 @@ TEST_CASE("every scene that comes along passes its check and says what must be s
        {"ornament",    "window",   "bowl",      "boats_pile", "boats_edge", "ornaments", "card_house",
         "plate_stack", "bowls",    "rain",      "reel",       "tablet",     "wall",      "brick_wall",
         "mortar_wall", "dominoes", "blast",     "arch",       "vase",       "egg",       "bottle",
-        "slab",        "walls",    "armadillo", "step_size"}) {
+        "slab",        "walls",    "armadillo", "step_size",  "tempered"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);
@@ -102,6 +102,17 @@ TEST_CASE("ornament: shatters into at least 20 pieces, a low drop is held, with 
   CHECK(held["breaks"].empty());
   CHECK(worst_ratio(held) < 1.0);
   CHECK((held["impacts"].empty() || held["impacts"][0]["verdict"].get<std::string>().rfind("held", 0) == 0));
+}
+
+TEST_CASE("tempered: breaks into dice all over, and as common glass where less stress is stored") {
+  const Folder folder;
+  const auto dice = play(folder, "tempered --seconds 0.025");
+  check_breaks(dice);
+  CHECK(dice["pieces"].get<int>() > 300);
+  const auto shards =
+      play(folder, "tempered --seconds 0.025 --set toughened.surface_compression=4e7 --set throw.speed=25");
+  check_breaks(shards);
+  CHECK(shards["pieces"].get<int>() < 100);
 }
 
 TEST_CASE("window: breaks where the ball hits, and the ball goes on, a slow ball is held") {
