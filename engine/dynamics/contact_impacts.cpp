@@ -67,6 +67,9 @@ void IslandSolver::strike() {
       double speed = c.arrival_speed;
       if (round == 0) {
         if (!c.is_arriving || !is_touching(c)) continue;
+        // Arms turn on the way: what counts is how fast it closes now, and what it was stopped by.
+        if (ends_with_arrival_)
+          speed = std::max(0.0, c.impulse[0] * c.response(0, 0) - relative_velocity(c)[0]);
       } else {
         if (c.slack > kStruck * c.kept_gap) continue;
         speed = -relative_velocity(c)[0];

@@ -43,7 +43,9 @@ void IslandSolver::run() {
     double gone = 0.0;
     for (int cut = 0; gone < substep_; ++cut) {
       part_start_ = i * substep_ + gone;
-      set_step(cut < kMostCuts ? until_first_arrival(substep_ - gone) : substep_ - gone);
+      const double left = substep_ - gone;
+      set_step(cut < kMostCuts ? until_first_arrival(left) : left);
+      ends_with_arrival_ = step_ < left;
       take_part(i + 1);
       gone = step_ < substep_ - gone ? gone + step_ : substep_;
     }

@@ -210,6 +210,7 @@ class IslandSolver {
   double course_square_ = 0.0;               // N2 s2, of the last change
   double part_start_ = 0.0;                  // s since the step's start
   bool has_arrivals_ = false;
+  bool ends_with_arrival_ = false;  // the part that is taken
   bool may_strike_on_ = false;
   bool has_scripted_ = false;  // a scripted body is in it
   bool is_before_drift_ = false;

@@ -28,13 +28,14 @@ std::vector<std::string> find_limits(const world::WorldSettings& settings,
         rubber->name, rubber->poisson, stress::kMostPoissonRatio));
   if (!smallest) return sentences;
   const auto elastic = std::count_if(bodies.begin(), bodies.end(), [](const body::Body& body) {
-    return body.is_dynamic() && body.restitution >= kElastic;
+    return body.is_dynamic() && body::is_mesh(body.shape->kind) && body.restitution >= kElastic;
   });
   if (elastic > 2 && settings.steps_per_second < kElasticRate)
-    sentences.push_back(fmt::format(
-        "{} bodies bounce with a restitution of {:g} or more: where several meet in one step energy is lost; "
-        "a gas of 64 balls lost 4 % of it in 2000 collisions at 60 steps a second, 0.7 % at {}",
-        elastic, kElastic, kElasticRate));
+    sentences.push_back(
+        fmt::format("{} shells and solids bounce with a restitution of {:g} or more: where several meet in "
+                    "one step energy is "
+                    "lost; at {} steps a second and more it is little",
+                    elastic, kElastic, kElasticRate));
   const double size = 2.0 * smallest->shape->bounding_radius, rate = settings.steps_per_second;
   const double fall = 0.5 * settings.gravity.norm() / (rate * rate);
   if (fall > kMostFall * size)

@@ -14,7 +14,8 @@ namespace shatterbox::sandbox::scene {
 inline constexpr double kMostFall = 0.02;
 /// What rests on a body that it outweighs more often than this is not borne.
 inline constexpr double kMostMassRatio = 1e4;
-/// Bounces as elastic as this keep their energy only at so many steps a second (study contact: gas).
+/// Bounces of surfaces as elastic as this keep their energy only at so many steps a second: hits of one step
+/// are taken together where something may break.
 inline constexpr double kElastic = 0.9;
 inline constexpr int kElasticRate = 120;
 

@@ -311,13 +311,17 @@ TEST_CASE("a scene beyond what the engine bears says so at load") {
       "\"solid\"\nshape = \"slab\"\nsize = [0.1, 0.1, 0.1]\nmaterial = \"rubber\"\nposition = [0, 1, 0]\n";
   CHECK(notes(rubber).find("\"block\" has Poisson's ratio 0.49: its stress is solved with 0.4") !=
         std::string::npos);
-  const std::string balls =
-      "[[material]]\nname = \"billiard\"\nlike = \"glass\"\nrestitution = 1\n[[body]]\nkind = "
-      "\"sphere\"\nradius = "
-      "0.1\nmaterial = \"billiard\"\nrepeat = {count = 3, spacing = [1, 0, 0]}\n";
-  CHECK(notes("[scene]\nsteps_per_second = 60\n" + balls)
-            .find("3 bodies bounce with a restitution of 0.9 or more") != std::string::npos);
-  CHECK(notes(balls) == "");
+  const auto balls = [](const char* kind) {
+    return "[[material]]\nname = \"billiard\"\nlike = \"glass\"\nrestitution = 1\n[[body]]\nradius = "
+           "0.1\nmaterial = "
+           "\"billiard\"\nrepeat = {count = 3, spacing = [1, 0, 0]}\n" +
+           std::string(kind);
+  };
+  const std::string slow = "[scene]\nsteps_per_second = 60\n";
+  CHECK(notes(slow + balls("kind = \"shell\"\nshape = \"sphere\"\n"))
+            .find("3 shells and solids bounce with a restitution of 0.9 or more") != std::string::npos);
+  CHECK(notes(slow + balls("kind = \"sphere\"\n")) == "");
+  CHECK(notes(balls("kind = \"shell\"\nshape = \"sphere\"\n")) == "");
   const auto pane = [](double size) {
     return "[[body]]\nname = \"door\"\nkind = \"shell\"\nshape = \"pane\"\nmaterial = "
            "\"tempered_glass\"\nwidth = " +
