@@ -75,10 +75,10 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   if (name == "brick") return render::stone(paint(0xa2543b));
   if (name == "plaster") return render::matt(paint(0xebe6da));
   if (name == "ice") {  // clear, with clouds of bubbles and snow on what is broken
-    render::Look look = render::glass(paint(0xcfe6f2));
-    look.transmission = 0.8F;
+    render::Look look = render::glass(paint(0xa9d8f0));
+    look.transmission = 0.62F;
     look.pattern = render::Pattern::clouds;
-    look.pattern_colour = hex(0xf4fafd);
+    look.pattern_colour = hex(0xe6f5fc);
     look.crack = hex(0xeaf4f9);
     return look;
   }
@@ -121,8 +121,8 @@ std::vector<render::Look> make_looks(const std::string& name, const std::optiona
     look.pattern_size = static_cast<float>(0.05 * size);
   } else if (look.pattern == render::Pattern::clouds) {
     // Stone and clay have grains of their own size; those of ice are as large as the block that froze.
-    const double grain = name == "concrete" ? 0.07 : name == "ice" ? 0.3 * size : 0.04;
-    look.pattern_size = static_cast<float>(std::min(grain, 0.4 * size));
+    const double grain = name == "concrete" ? 0.07 : 0.04;
+    look.pattern_size = static_cast<float>(name == "ice" ? 3.0 * size : std::min(grain, 0.4 * size));
   }
   return {look, neck, metal, metal};
 }

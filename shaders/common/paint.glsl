@@ -77,7 +77,10 @@ float pattern_share(int kind, vec3 p, float width) {
 #if PATTERNS & 16
   if (kind == 4) {  // clouds; grains finer than a pixel become their mean
     vec3 shown = clamp(vec3(1.5, 1.5, 1.5) - 1.5 * width * vec3(1.0, 4.3, 17.0), 0.0, 1.0);
-    vec3 n = vec3(grains(p), grains(p.zxy * 4.3 + 7.0), grains(p.yzx * 17.0 + 3.0)) - 0.5;
+    // Grains lie askew: cells along the faces of a block would be seen as squares.
+    const mat3 askew = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
+    const mat3 athwart = mat3(0.49, -0.73, 0.48, 0.48, 0.68, 0.56, -0.73, -0.05, 0.68);
+    vec3 n = vec3(grains(askew * p), grains(p * askew * 4.3 + 7.0), grains(athwart * p * 17.0 + 3.0)) - 0.5;
     return smoothstep(-0.24, 0.24, dot(n, shown * vec3(0.42, 0.34, 0.4)));
   }
 #endif
