@@ -8,6 +8,7 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
+#include "engine/material/tempering.h"
 #include "sandbox/study/scene_play.h"
 #include "sandbox/study/shell_models.h"
 #include "sandbox/study/solid_models.h"
@@ -111,6 +112,46 @@ Measured use_threads(int threads, int count) {
   return {{1e3 * found.wall, 1e3 * found.cpu}, found.wall, ""};
 }
 
+// Toughened glass goes to dice as a whole: as many pieces at once as there is pane.
+const char* const kDicedPane = R"([[body]]
+name = "whole"
+kind = "shell"
+shape = "pane"
+edge_length = 0.01
+thickness = 0.008
+material = "tempered_glass"
+[[body]]
+name = "ball"
+kind = "sphere"
+radius = 0.01
+material = "steel"
+position = [0, 0, 0.012]
+velocity = [0, 0, -50]
+)";
+constexpr int kStepsAfter = 4;
+
+/// Of a pane `side` cm wide.
+double count_dice(int side) {
+  const material::Material glass = *material::find_preset("tempered_glass");
+  return std::round(1e-4 * side * side / material::die_area(glass, 0.008));
+}
+
+Measured dice_pane(int side) {
+  const double width = 0.01 * side;
+  ScenePlay play(
+      scene_of(kDicedPane, {fmt::format("whole.width={}", width), fmt::format("whole.height={}", width)}));
+  double before = 0.0;
+  while (play.world().time() < 0.1 && play.world().report().breaks.empty()) {
+    before = play.seconds();
+    play.step();
+  }
+  const double broken = play.seconds() - before;
+  for (int i = 0; i < kStepsAfter; ++i) play.step();
+  const double after = (play.seconds() - before - broken) / kStepsAfter;
+  const auto pieces = static_cast<double>(play.world().bodies().size() - 1);
+  return {{1e3 * after, 1e3 * broken, pieces}, play.seconds(), ""};
+}
+
 Table cost_table(const char* name, const char* what, const char* setting, std::vector<std::string> columns,
                  std::vector<double> theory) {
   Table table;
@@ -138,7 +179,7 @@ void add_sizes(Plan& plan, Table table, const std::vector<int>& sizes,
 std::vector<Figure> draw_costs(const std::vector<Table>& tables) {
   Figure figure{"cost",
                 "cost against size",
-                "bodies, triangles, tetrahedra",
+                "bodies, triangles, tetrahedra, dice",
                 "ms a step, ms a factor or solve",
                 true,
                 true,
@@ -178,6 +219,14 @@ Plan make_scaling_plan(bool is_quick) {
                  {"solve, ms", "system, ms", "iterations"}, {kNoNumber, 1.0}),
       is_quick ? std::vector<int>{4, 6, 8, 10} : std::vector<int>{6, 8, 12, 16, 20},
       [](int n) { return 1.0 * n * n * n; }, solve_cube);
+  add_sizes(plan,
+            cost_table(
+                "pieces",
+                "a pane of tempered glass breaks into dice at once: mean of the four steps after it, and the "
+                "step in which it does, most of which is about the hit",
+                "dice", {"a step after it, ms", "the break's step, ms", "pieces"}, {1.0}),
+            is_quick ? std::vector<int>{6, 9, 14} : std::vector<int>{6, 9, 14, 20, 30}, count_dice,
+            dice_pane);
   const std::string boats = fmt::format("{} boats, on a machine of {} processors that others may use too",
                                         is_quick ? 10 : 300, std::thread::hardware_concurrency());
   Table threads =
@@ -195,7 +244,8 @@ Plan make_scaling_plan(bool is_quick) {
 }  // namespace scaling
 
 Study scaling_study() {
-  return {"scaling", "cost against bodies, triangles, cells and threads, with fitted exponents",
+  return {"scaling",
+          "cost against bodies, contacts, triangles, cells, pieces and threads, with fitted exponents",
           scaling::make_scaling_plan};
 }
 
