@@ -81,7 +81,7 @@ float pattern_share(int kind, vec3 p, float width) {
     const mat3 askew = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
     const mat3 athwart = mat3(0.49, -0.73, 0.48, 0.48, 0.68, 0.56, -0.73, -0.05, 0.68);
     vec3 n = vec3(grains(askew * p), grains(p * askew * 4.3 + 7.0), grains(athwart * p * 17.0 + 3.0)) - 0.5;
-    return smoothstep(-0.24, 0.24, dot(n, shown * vec3(0.42, 0.34, 0.4)));
+    return smoothstep(-0.24, 0.24, dot(n, shown * vec3(0.46, 0.38, 0.2)));
   }
 #endif
   vec3 s = (abs(fract(p * 0.5) - 0.5) - 0.25) * 2.0;  // checker
