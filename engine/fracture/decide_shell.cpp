@@ -25,6 +25,7 @@ constexpr double kCoreOverload = 5.0;       // stress over strength above which 
 constexpr double kCoreReach = 6.0;          // patch radii
 constexpr double kMostCoreCells = 40.0;     // across a core's radius
 constexpr double kCurvatureReach = 2.0;     // patch radii, about which the curvature is taken
+constexpr double kMostDice = 20000.0;       // of one sheet: of more nothing could be made
 constexpr double kFlat = 1e6;               // body sizes: a greater radius of curvature is none
 constexpr double kWaveLength = 0.14;        // of the paths' noise, share of the body's size
 constexpr double kGrowthThatCounts = 0.04;  // of the cracks' length: a generation that adds less is the last
@@ -264,13 +265,13 @@ class Decider {
 
   /// What is stored in the sheet breaks all of it into dice, paid for by itself.
   void dice(double die_area) {
-    ShellCutter cutter(*mesh_);
-    const CellCracks cut =
-        cut_dice(cutter, planes_,
-                 {die_area, next_crack_, decision_.generations, core::mix(subject_.seed + 0x64696365)});
-    if (cut.cells == 0) return;
     double area = 0.0;
     for (const geometry::ShellCell& cell : mesh_->cells) area += cell.area;
+    ShellCutter cutter(*mesh_);
+    const CellCracks cut = cut_dice(cutter, planes_,
+                                    {std::max(die_area, area / kMostDice), next_crack_, decision_.generations,
+                                     core::mix(subject_.seed + 0x64696365)});
+    if (cut.cells == 0) return;
     take_over(cut);
     decision_.dice = cut.cells;
     decision_.elastic_energy += area * material::stored_energy(subject_.material, subject_.thickness);

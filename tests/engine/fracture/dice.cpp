@@ -85,6 +85,13 @@ TEST_CASE("compression at the faces is borne before the glass's own strength is"
   CHECK(without.dice == 0);
 }
 
+TEST_CASE("a sheet with more stress than any glass holds has no more dice than can be borne") {
+  const fracture::Decision decision = strike(2e9, 1000.0, 0.02);
+  REQUIRE(decision.verdict.outcome == fracture::Outcome::broke);
+  CHECK(decision.dice > 15000);
+  CHECK(decision.dice < 25000);
+}
+
 TEST_CASE("dice of one sheet do not depend on its elements") {
   const fracture::Decision coarse = strike(100e6, 30.0, 0.012), fine = strike(100e6, 30.0, 0.006);
   CHECK(coarse.dice == fine.dice);
