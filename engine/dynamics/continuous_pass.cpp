@@ -220,7 +220,8 @@ class Guard {
     const std::vector<char> strikes_on = is_first ? std::vector<char>{} : find_striking();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
-      if (!must_test_[p] || hits_[p].empty()) continue;
+      if (!must_test_[p] || hits_[p].empty() || is_known_[p]) continue;
+      if (!is_first && !may_strike_on(pair, strikes_on)) continue;
       const bool can_act =
           work_.bodies[at(pair.a)].inverse_mass > 0.0 || work_.bodies[at(pair.b)].inverse_mass > 0.0;
       // Solids roll and slip on from where they met; surfaces that lie on each other only need room.
@@ -228,7 +229,7 @@ class Guard {
       const bool is_deep = std::any_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
         return gap_on_way(pair, work_, hit.contact, hit.knot) < deep;
       });
-      if (!can_act || !is_deep || is_known_[p] || !(is_first || may_strike_on(pair, strikes_on))) continue;
+      if (!can_act || !is_deep) continue;
       is_known_[p] = 1;
       for (const PathHit& hit : hits_[p]) add_contact(static_cast<int>(p), hit.contact);
       is_dirty[at(pair.a)] = is_dirty[at(pair.b)] = 1;

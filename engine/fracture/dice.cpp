@@ -1,14 +1,12 @@
 #include "engine/fracture/dice.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/stop.h"
 #include "engine/fracture/flaws.h"
+#include "engine/fracture/point_cubes.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -26,26 +24,20 @@ std::vector<CellSeed> thin_out(const geometry::ShellElements& elements, std::vec
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });
-  using Cube = std::array<int, 3>;
-  std::map<Cube, std::vector<int>> cubes;
+  PointCubes cubes(least);
   std::vector<CellSeed> seeds;
   for (const SurfacePoint& dart : darts) {
     core::stop_if_asked();
     const Vec3 x = position_in_element(elements, dart.element, dart.barycentric);
-    Cube cube{};
-    for (int a = 0; a < 3; ++a) cube[at(a)] = static_cast<int>(std::floor(x[a] / least));
-    const auto is_free = [&](const Cube& other) {
-      const auto found = cubes.find(other);
-      return found == cubes.end() || std::none_of(found->second.begin(), found->second.end(), [&](int seed) {
-               return (seeds[at(seed)].position - x).squaredNorm() < least * least;
-             });
-    };
     bool has_room = true;
-    for (int i = -1; i <= 1 && has_room; ++i)
-      for (int j = -1; j <= 1 && has_room; ++j)
-        for (int k = -1; k <= 1 && has_room; ++k) has_room = is_free({cube[0] + i, cube[1] + j, cube[2] + k});
+    cubes.visit_about(cubes.cube_of(x), [&](const std::vector<int>& numbers) {
+      has_room = std::none_of(numbers.begin(), numbers.end(), [&](int seed) {
+        return (seeds[at(seed)].position - x).squaredNorm() < least * least;
+      });
+      return has_room;
+    });
     if (!has_room) continue;
-    cubes[cube].push_back(static_cast<int>(seeds.size()));
+    cubes.add(x, static_cast<int>(seeds.size()));
     seeds.push_back({x, true});
   }
   return seeds;

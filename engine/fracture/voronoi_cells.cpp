@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
+#include <set>
 
 #include "engine/core/index.h"
 #include "engine/core/stop.h"
 #include "engine/fracture/grains.h"
+#include "engine/fracture/point_cubes.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -30,43 +31,12 @@ double value_at(const std::array<double, 3>& corners, const Vec2& b) {
   return corners[0] * (1.0 - b.x() - b.y()) + corners[1] * b.x() + corners[2] * b.y();
 }
 
-/// Where seeds are, by cubes of `reach`.
-class SeedGrid {
- public:
-  SeedGrid(const std::vector<CellSeed>& seeds, double reach) : reach_(reach) {
-    for (Size i = 0; i < seeds.size(); ++i) cubes_[cube_of(seeds[i].position)].push_back(static_cast<int>(i));
-  }
-
-  /// All within reach of a point, and some more; ascending.
-  std::vector<int> near(const Vec3& x) const {
-    const Cube middle = cube_of(x);
-    std::vector<int> found;
-    for (int i = -1; i <= 1; ++i)
-      for (int j = -1; j <= 1; ++j)
-        for (int k = -1; k <= 1; ++k) {
-          const auto cube = cubes_.find({middle[0] + i, middle[1] + j, middle[2] + k});
-          if (cube != cubes_.end()) found.insert(found.end(), cube->second.begin(), cube->second.end());
-        }
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
- private:
-  using Cube = std::array<int, 3>;
-  Cube cube_of(const Vec3& x) const {
-    Cube cube{};
-    for (int a = 0; a < 3; ++a) cube[at(a)] = static_cast<int>(std::floor(x[a] / reach_));
-    return cube;
-  }
-
-  double reach_;
-  std::map<Cube, std::vector<int>> cubes_;
-};
-
 class CellMaker {
  public:
   CellMaker(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CellSetup& setup)
-      : cutter_(cutter), planes_(planes), setup_(setup), seeds_(setup.seeds), grid_(seeds_, setup.reach) {}
+      : cutter_(cutter), planes_(planes), setup_(setup), seeds_(setup.seeds), cubes_(setup.reach) {
+    for (Size i = 0; i < seeds_.size(); ++i) cubes_.add(seeds_[i].position, static_cast<int>(i));
+  }
 
   CellCracks cut() {
     CellCracks cracks;
@@ -105,11 +75,28 @@ class CellMaker {
     return (cutter_.elements().mesh.positions[at(vertex)] - seeds_[at(seed)].position).squaredNorm();
   }
 
+  /// All seeds within reach of any of the points, and some more, each once.
+  template <class Points>
+  std::vector<int> seeds_near(const Points& points) const {
+    std::set<PointCubes::Cube> middles;
+    for (const Vec3& x : points) middles.insert(cubes_.cube_of(x));
+    std::vector<int> found;
+    for (const PointCubes::Cube& middle : middles)
+      cubes_.visit_about(middle, [&](const std::vector<int>& numbers) {
+        found.insert(found.end(), numbers.begin(), numbers.end());
+        return true;
+      });
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
   const Lead& lead_at(int vertex) {
     const auto known = leads_.find(vertex);
     if (known != leads_.end()) return known->second;
     Lead& lead = leads_[vertex];
-    const std::vector<int> near = grid_.near(cutter_.elements().mesh.positions[at(vertex)]);
+    const std::vector<int> near =
+        seeds_near(std::array<Vec3, 1>{cutter_.elements().mesh.positions[at(vertex)]});
     for (const int seed : near)
       if (lead.seed < 0 || squared_distance(vertex, seed) < squared_distance(vertex, lead.seed))
         lead.seed = seed;
@@ -125,40 +112,37 @@ class CellMaker {
     return lead;
   }
 
-  double energy_at(int vertex, int seed) {
-    const Lead& lead = lead_at(vertex);
-    const double energy = squared_distance(vertex, seed);
-    return seed == lead.seed ? energy - lead.value : energy;
-  }
-
-  /// Those within reach of some point of an element, ascending.
+  /// Those within reach of some point of an element: of points on it nowhere further apart than half the
+  /// reach.
   std::vector<int> seeds_about(const geometry::Triangle& triangle) const {
     const auto& x = cutter_.elements().mesh.positions;
-    std::vector<int> found;
-    // Points between the corners, nowhere further apart than half the reach.
     double longest = 0.0;
     for (Size i = 0; i < 3; ++i)
       longest = std::max(longest, (x[at(triangle[i])] - x[at(triangle[(i + 1) % 3])]).norm());
     const int parts = 1 + static_cast<int>(2.0 * longest / setup_.reach);
+    std::vector<Vec3> points;
     for (int i = 0; i <= parts; ++i)
       for (int j = 0; i + j <= parts; ++j) {
         const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-        const auto near =
-            grid_.near((1.0 - u - v) * x[at(triangle[0])] + u * x[at(triangle[1])] + v * x[at(triangle[2])]);
-        found.insert(found.end(), near.begin(), near.end());
+        points.push_back((1.0 - u - v) * x[at(triangle[0])] + u * x[at(triangle[1])] +
+                         v * x[at(triangle[2])]);
       }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
+    return seeds_near(points);
   }
 
   /// Seeds that may own a part of an element, nearest to its middle first: those kill the others early.
   std::vector<Energy> energies_of(int element) {
     const geometry::Triangle& triangle = cutter_.elements().mesh.triangles[at(element)];
+    std::array<const Lead*, 3> leads{};  // what a map holds stays where it is
+    for (Size i = 0; i < 3; ++i) leads[i] = &lead_at(triangle[i]);
     std::vector<Energy> energies;
-    for (const int seed : seeds_about(triangle))
-      energies.push_back(
-          {seed, {energy_at(triangle[0], seed), energy_at(triangle[1], seed), energy_at(triangle[2], seed)}});
+    for (const int seed : seeds_about(triangle)) {
+      Energy energy{seed, {}};
+      for (Size i = 0; i < 3; ++i)
+        energy.corners[i] =
+            squared_distance(triangle[i], seed) - (seed == leads[i]->seed ? leads[i]->value : 0.0);
+      energies.push_back(energy);
+    }
     const auto middle = [](const Energy& e) { return e.corners[0] + e.corners[1] + e.corners[2]; };
     std::sort(energies.begin(), energies.end(), [&](const Energy& a, const Energy& b) {
       return middle(a) != middle(b) ? middle(a) < middle(b) : a.seed < b.seed;
@@ -275,7 +259,7 @@ class CellMaker {
   const std::vector<ElementPlane>& planes_;
   const CellSetup& setup_;
   const std::vector<CellSeed>& seeds_;
-  SeedGrid grid_;
+  PointCubes cubes_;
   std::map<int, Lead> leads_;  // by vertex
 };
 

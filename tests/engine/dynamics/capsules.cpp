@@ -59,6 +59,15 @@ Vec3 random_direction(core::Random& random) {
   }
 }
 
+/// One of two without weight, to the left or right, that lies somehow and spins, at `least` to `most` rad/s.
+body::Body& add_flying(test::Scene& scene, double side, double least, double most, core::Random& random) {
+  scene.settings.gravity.setZero();
+  auto& capsule = scene.add(make_capsule(Vec3(0.2 * side, 0, 0)));
+  capsule.pose.rotation = lying(random_direction(random));
+  capsule.angular_velocity = random.uniform(least, most) * random_direction(random);
+  return capsule;
+}
+
 }  // namespace
 
 TEST_CASE("a capsule rolls down a slope across it and slides down along it as theory says") {
@@ -90,11 +99,8 @@ TEST_CASE("capsules that meet keep momentum and angular momentum and gain no ene
   core::Random random(3, 0);
   for (int round = 0; round < 30; ++round) {
     test::Scene scene;
-    scene.settings.gravity.setZero();
     for (const double side : {-1.0, 1.0}) {
-      auto& capsule = scene.add(make_capsule(Vec3(0.2 * side, 0, 0)));
-      capsule.pose.rotation = lying(random_direction(random));
-      capsule.angular_velocity = random.uniform(0.0, 10.0) * random_direction(random);
+      auto& capsule = add_flying(scene, side, 0.0, 10.0, random);
       capsule.velocity = Vec3(-2.0 * side, 0, 0);
       capsule.restitution = round % 3 == 0 ? 1.0 : 0.5;
       capsule.friction = round % 2 == 0 ? 0.0 : 0.6;
@@ -122,11 +128,8 @@ TEST_CASE("capsules that turn fast do not come into each other") {
   double deepest = 0.0;
   for (long round = 0; round < test::how_many(150, 20); ++round) {
     test::Scene scene;
-    scene.settings.gravity.setZero();
     for (const double side : {-1.0, 1.0}) {
-      auto& capsule = scene.add(make_capsule(Vec3(0.2 * side, 0, 0)));
-      capsule.pose.rotation = lying(random_direction(random));
-      capsule.angular_velocity = random.uniform(20.0, 115.0) * random_direction(random);
+      auto& capsule = add_flying(scene, side, 20.0, 115.0, random);
       capsule.velocity = Vec3(-side * random.uniform(1.0, 12.0), 0, 0) + random_direction(random);
     }
     for (int i = 0; i < 20; ++i) {
