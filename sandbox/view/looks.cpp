@@ -71,7 +71,11 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
     look.clear_coat_roughness = 0.35F;
     return look;
   }
-  if (name == "concrete") return render::stone(paint(0x9d9a94));
+  if (name == "concrete") {  // cast: nearly even
+    render::Look look = render::stone(paint(0x9d9a94));
+    look.pattern_colour = 0.86F * look.outside;
+    return look;
+  }
   if (name == "brick") return render::stone(paint(0xa2543b));
   if (name == "plaster") return render::matt(paint(0xebe6da));
   if (name == "ice") {  // clear, with clouds of bubbles and snow on what is broken
