@@ -46,7 +46,9 @@ class SolidDecider {
     solve_stresses(model().mesh, model().contacts);
     std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
     find_dent();
-    if (!(verdict.ratio > 1.0)) {
+    if (find_hole()) return std::move(decision_);
+    leave_to_dent(candidates);
+    if (!(verdict.ratio > 1.0) || candidates.empty()) {
       verdict.outcome = Outcome::held;
       return std::move(decision_);
     }
@@ -134,6 +136,44 @@ class SolidDecider {
     decision_.verdict.von_mises = finding.stress;
     decision_.verdict.yield = material.yield;
     decision_.dent = std::move(finding.dent);
+  }
+
+  /// Whether the one who strikes hardest goes through: then his hole is all that breaks.
+  bool find_hole() {
+    const Striker* hardest = nullptr;
+    for (const SolidPress& press : force_.presses()) {
+      const Striker* striker = press.load->striker.get();
+      if (striker && (!hardest || striker->mass * striker->speed * striker->speed >
+                                      hardest->mass * hardest->speed * hardest->speed))
+        hardest = striker;
+    }
+    if (!hardest || !(subject_.material.yield > 0.0)) return false;
+    std::optional<Perforation> found = find_perforation(*subject_.complex, subject_.material, *hardest,
+                                                        settings_.least_width, subject_.first_cut_id);
+    if (!found) return false;
+    const bool is_through = found->is_through();
+    decision_.perforation = std::make_shared<const Perforation>(std::move(*found));
+    if (!is_through) return false;
+    const Perforation& hole = *decision_.perforation;
+    decision_.verdict.outcome = Outcome::broke;
+    decision_.complex = hole.complex;
+    decision_.part_count = hole.part_count;
+    decision_.cracks = 1;
+    decision_.new_area = hole.wall_area;
+    decision_.fracture_energy = hole.needed;
+    decision_.elastic_energy = hole.there;
+    decision_.dent = nullptr;
+    return true;
+  }
+
+  /// Under a striker who does not go through, the material flows: what it bears there has been asked by his
+  /// energy, and the linear stress starts no cracks.
+  void leave_to_dent(std::vector<SolidCandidate>& candidates) {
+    if (!decision_.perforation || candidates.empty()) return;
+    std::erase_if(candidates, [&](const SolidCandidate& candidate) {
+      return decision_.perforation->is_about(candidate.place);
+    });
+    if (candidates.empty()) decision_.verdict.reason = "it is dented, and not gone through";
   }
 
   SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) const {

@@ -10,6 +10,7 @@
 
 #include "engine/fracture/decision_figures.h"
 #include "engine/fracture/fracture_settings.h"
+#include "engine/fracture/perforation.h"
 #include "engine/fracture/solid_dent.h"
 #include "engine/fracture/solid_flaws.h"
 #include "engine/fracture/solid_model.h"
@@ -36,8 +37,10 @@ struct SolidSubject {
 struct SolidDecision : DecisionFigures {
   std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null unless it broke
   int part_count = 1;                                     // that the cut complex falls into
-  int iterations = 0;                     // of conjugate gradients, of all solves
-  std::shared_ptr<const SolidDent> dent;  // of the uncut elements; null: none
+  int iterations = 0;                                     // of conjugate gradients, of all solves
+  std::shared_ptr<const SolidDent> dent;                  // of the uncut elements; null: none
+  /// Of what yields; if the striker goes through, its hole is the break. Null: nobody comes near that.
+  std::shared_ptr<const Perforation> perforation;
 };
 
 /// Fills in what is kept between impacts where it is null.

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/core/elementary.h"
 #include "engine/core/vec.h"
+#include "engine/fracture/striker.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/stress/contact_duration.h"
 
@@ -29,6 +31,7 @@ struct ImpactLoad {
   double restitution = 0.0;         // Newton's, of the pair: what it gives back nothing plastic has taken
   bool is_resting = false;          // contact that goes on: it dents nothing
   stress::Snapshots snapshots;      // of a collision's force; none: its peak counts
+  std::shared_ptr<const Striker> striker;  // null: nobody who could go through
 };
 
 struct Impact {

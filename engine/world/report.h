@@ -19,16 +19,18 @@ struct ImpactRow {
   double time = 0.0;  // s
   std::string body;
   body::BodyId id = 0;
-  bool is_struck = false;     // by a collision; otherwise contact alone pressed
-  double impulse = 0.0;       // N s
-  double duration = 0.0;      // s
-  double stress = 0.0;        // Pa, greatest principal, the pulse's peak
-  double strength = 0.0;      // Pa, there
-  double ratio = 0.0;         // stress / strength
-  double von_mises = 0.0;     // Pa, greatest; of what can yield
-  double yield = 0.0;         // Pa; 0: it does not yield, or was not asked
-  std::string verdict;        // "broke", "held: 0.62 of its strength", "not evaluated: ..."
-  Vec3 place = Vec3::Zero();  // m, world, at that time
+  bool is_struck = false;           // by a collision; otherwise contact alone pressed
+  double impulse = 0.0;             // N s
+  double duration = 0.0;            // s
+  double stress = 0.0;              // Pa, greatest principal, the pulse's peak
+  double strength = 0.0;            // Pa, there
+  double ratio = 0.0;               // stress / strength
+  double von_mises = 0.0;           // Pa, greatest; of what can yield
+  double yield = 0.0;               // Pa; 0: it does not yield, or was not asked
+  double perforation_energy = 0.0;  // J, that the striker needs to go through; 0: it is far from that
+  double perforation_ratio = 0.0;   // of that, what it has
+  std::string verdict;              // "broke", "held: 0.62 of its strength", "not evaluated: ..."
+  Vec3 place = Vec3::Zero();        // m, world, at that time
 };
 
 /// One body that came apart.

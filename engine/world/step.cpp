@@ -8,6 +8,7 @@
 #include "engine/core/stop.h"
 #include "engine/dynamics/scripted_motion.h"
 #include "engine/world/bits.h"
+#include "engine/world/perforation.h"
 #include "engine/world/pieces.h"
 #include "engine/world/replace.h"
 #include "engine/world/state.h"
@@ -51,7 +52,8 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
   row.place = body.pose.apply(verdict.place - body.shape->material_from_body);
   switch (verdict.outcome) {
     case fracture::Outcome::broke:
-      row.verdict = format_ratio("broke: ", verdict.ratio);
+      row.verdict = find_hole(impact) ? describe_perforation(*find_hole(impact))
+                                      : format_ratio("broke: ", verdict.ratio);
       break;
     case fracture::Outcome::held:
       row.verdict =
@@ -62,6 +64,11 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
       break;
   }
   if (verdict.von_mises > 0.0) row.verdict += ", " + format_yield(verdict);
+  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
+  if (!solid || !solid->perforation) return row;
+  row.perforation_energy = solid->perforation->needed;
+  row.perforation_ratio = solid->perforation->ratio();
+  if (!find_hole(impact)) row.verdict += ", " + describe_perforation(*solid->perforation);
   return row;
 }
 
@@ -228,7 +235,13 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
           continue;
         }
       }
-      const auto impacts = judge_impacts(given);
+      const double step = s.contact_settings.time_step;
+      const auto impacts = judge_impacts(given, {before, time() + step * part.number / part.count});
+      if (const auto finer = divide_before_holes(impacts, part, time(), step)) {
+        s.moving = std::move(snapshot);
+        part = *finer;
+        continue;
+      }
       for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
       const std::size_t known_breaks = s.report.breaks.size();
       const bool goes_back = timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); });
@@ -260,12 +273,14 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   tell_watcher("sleep", {part.count - 1, part.count}, 0);
 }
 
-std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log) {
+std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log, const PartBegin& begin) {
   State& s = *state_;
   EvaluationFigures figures;
+  // Who goes through is slowed down, and his plug gone, from the part's begin: that is the law of going back.
+  const bool goes_back = s.settings.after_break == AfterBreak::go_back;
   auto impacts = s.report.stages.time("stress", [&] {
     return evaluate_stress(s.moving.bodies, log, s.moving.fragiles, s.settings, s.contact_settings, time(),
-                           s.moving.memories, s.borne, figures);
+                           s.moving.memories, s.borne, figures, goes_back ? &begin : nullptr);
   });
   s.report.solver.solves += figures.solves;
   s.report.solver.skipped += figures.skipped;
@@ -299,6 +314,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
       s.report.impacts.push_back(row);
       continue;
     }
+    if (waits_for_striker(impact, impacts)) continue;
     // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
     if (impact.first_time > memory.charged_until) memory.generation = 0;
     ImpactRow row = describe_impact(impact, body, end_time);
@@ -320,9 +336,14 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     s.moving = std::move(snapshot);
   }
   for (const EvaluatedImpact* impact : broken) {
-    if (goes_back) pay_for_cracks(s.moving, *impact, impact->figures().fracture_energy, s.log);
+    const bool has_hole = find_hole(*impact) != nullptr;
+    if (has_hole)
+      pay_for_hole(s.moving, *impact, s.log);
+    else if (goes_back)
+      pay_for_cracks(s.moving, *impact, impact->figures().fracture_energy, s.log);
     const body::Body parent = *body::find_body(s.moving.bodies, impact->id);
     BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
+    if (has_hole) take_plug_along(s.moving, *impact, row, s.log);
     regrip(s.hands, parent, row.born, s.moving.bodies);
     rehang(s.moving.contact.joints, parent, row.born, s.moving.bodies);
     row.time = end_time;

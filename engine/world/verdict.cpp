@@ -42,6 +42,7 @@ struct Judge {
   const std::map<body::BodyId, ImpactMemory>& memories;
   const WorldSettings& settings;
   const dynamics::ContactSettings& contact;
+  const PartBegin* begin = nullptr;
 
   double restitution(const body::Body& struck, body::BodyId other) const {
     const body::Body* partner = body::find_body(bodies, other);
@@ -194,8 +195,11 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   }
   if (hits.empty() && !is_pressed) return false;
 
-  for (const Load& load : memory.event)
+  for (const Load& load : memory.event) {
     candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
+    if (judge.begin && !is_paper && candidate.fragile->material().yield > 0.0)
+      candidate.impact.loads.back().striker = find_striker(*judge.begin, body.id, load);
+  }
   const std::optional<double> blast = blast_duration_of(memory.event);
   // What presses at rest is nothing beside a blast, whose duration is that of all loads.
   if (!blast)
@@ -264,7 +268,8 @@ void await_dent(const EvaluatedImpact& impact, const body::Body& body, ImpactMem
   if (memory.has_open_dent) memory.dents.pop_back();
   const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
   // What tears does not keep the shape in which it tore.
-  memory.has_open_dent = solid && solid->dent && memory.generation == 0 &&
+  const bool is_whole = memory.generation == 0 || impact.first_time > memory.charged_until;
+  memory.has_open_dent = solid && solid->dent && is_whole &&
                          (solid->verdict.outcome == fracture::Outcome::held || impact.is_cracked_only());
   if (memory.has_open_dent)
     memory.dents.push_back({solid->dent, solid->verdict.von_mises, solid->verdict.yield,
@@ -278,8 +283,9 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
                                              const WorldSettings& settings,
                                              const dynamics::ContactSettings& contact, double time,
                                              std::map<body::BodyId, ImpactMemory>& memories,
-                                             BorneImpacts& borne, EvaluationFigures& figures) {
-  const Judge judge{bodies, memories, settings, contact};
+                                             BorneImpacts& borne, EvaluationFigures& figures,
+                                             const PartBegin* begin) {
+  const Judge judge{bodies, memories, settings, contact, begin};
   std::vector<body::BodyId> touched;
   for (const body::LoggedImpulse& entry : log)
     for (const body::BodyId id : {entry.body_a, entry.body_b})

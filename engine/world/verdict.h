@@ -10,6 +10,7 @@
 #include "engine/world/fragile.h"
 #include "engine/world/impact.h"
 #include "engine/world/settings.h"
+#include "engine/world/striker.h"
 
 namespace shatterbox::world {
 
@@ -47,12 +48,13 @@ using BorneImpacts = std::map<body::BodyId, BorneImpact>;
 /// Reads the log of a part of the step that begins at `time` (s); writes event sums to `memories`; returns
 /// the impacts that were evaluated, ascending by body. An impact like one that the body has `borne` in an
 /// earlier pass of the step is not solved again. Bodies are evaluated in parallel; the answer does not depend
-/// on it.
+/// on it. With `begin`, the begin of that part, strikers may go through what yields.
 std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
                                              const body::ImpulseLog& log, const Fragiles& fragiles,
                                              const WorldSettings& settings,
                                              const dynamics::ContactSettings& contact, double time,
                                              std::map<body::BodyId, ImpactMemory>& memories,
-                                             BorneImpacts& borne, EvaluationFigures& figures);
+                                             BorneImpacts& borne, EvaluationFigures& figures,
+                                             const PartBegin* begin = nullptr);
 
 }  // namespace shatterbox::world

@@ -30,6 +30,7 @@ namespace shatterbox::world {
 struct EvaluatedImpact;
 struct JointVerdict;
 struct MovingState;
+struct PartBegin;
 struct StepBegin;
 
 /// The last evaluated stress of a shell, for pictures: greatest principal stress over both faces and the
@@ -148,7 +149,7 @@ class World {
   /// Stage "motion", of one part of the step.
   dynamics::ContactReport move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log);
   /// Stage "stress", of the impulses of one part.
-  std::vector<EvaluatedImpact> judge_impacts(const body::ImpulseLog& log);
+  std::vector<EvaluatedImpact> judge_impacts(const body::ImpulseLog& log, const PartBegin& begin);
   /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the part must be taken
   /// again.
   bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, int pass);

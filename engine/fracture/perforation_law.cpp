@@ -1,0 +1,44 @@
+#include "engine/fracture/perforation_law.h"
+
+#include <algorithm>
+
+#include "engine/core/elementary.h"
+
+namespace shatterbox::fracture {
+namespace {
+
+/// Resisting stress over flow stress, by thickness over diameter [RD10].
+double resistance(double slenderness) {
+  if (slenderness < 1.0 / 3.0) return 2.0 / 3.0 + 4.0 * slenderness;
+  if (slenderness <= 1.0) return 2.0;
+  return 2.0 + 0.8 * core::log(slenderness);
+}
+
+}  // namespace
+
+double flow_stress(const material::Material& material) {
+  return material.yield > 0.0 ? std::max(material.yield, material.strength) : 0.0;
+}
+
+double perforation_work(const PlateHit& hit, double flow_stress) {
+  if (!(hit.area > 0.0) || !(hit.thickness > 0.0)) return 0.0;
+  const double diameter = 2.0 * core::sqrt(hit.area / core::kPi);
+  const double spread = resistance(hit.thickness / diameter) * flow_stress * hit.area * hit.thickness;
+  const double sheared = flow_stress / core::sqrt(3.0) * hit.perimeter * hit.thickness * hit.thickness;
+  return spread + hit.flatness * (std::min(spread, sheared) - spread);
+}
+
+double perforation_energy(double work, double mass, double plug_mass) {
+  return work * (1.0 + plug_mass / mass);
+}
+
+double ballistic_limit(double work, double mass, double plug_mass) {
+  return core::sqrt(2.0 * perforation_energy(work, mass, plug_mass) / mass);
+}
+
+double residual_speed(double work, double mass, double plug_mass, double speed) {
+  const double left = speed * speed - 2.0 * perforation_energy(work, mass, plug_mass) / mass;
+  return left > 0.0 ? mass / (mass + plug_mass) * core::sqrt(left) : 0.0;
+}
+
+}  // namespace shatterbox::fracture

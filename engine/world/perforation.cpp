@@ -1,0 +1,149 @@
+#include "engine/world/perforation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace shatterbox::world {
+namespace {
+
+constexpr double kBeforeHit = 0.06;      // of the striker's diameter: how far from it a part begins, at most
+constexpr double kSurelyBefore = 0.002;  // and at least, so that rounding does not put the hit a part earlier
+constexpr int kMostHoleParts = 4096;     // of one step
+constexpr double kPlugTolerance = 1e-6;  // of the section's diameter
+
+/// A plug is inside of all the hole's sides.
+bool is_plug(const body::Shape& shape, const fracture::Perforation& hole) {
+  const double slack = kPlugTolerance * section_of(hole.striker).diameter;
+  return std::all_of(shape.surface.positions.begin(), shape.surface.positions.end(), [&](const Vec3& p) {
+    const Vec3 place = p + shape.material_from_body;
+    return std::all_of(hole.sides.begin(), hole.sides.end(), [&](const geometry::PunchSide& side) {
+      return side.normal.dot(place) <= side.offset + slack;
+    });
+  });
+}
+
+void push_body(body::Body& body, const Vec3& point, const Vec3& impulse) {
+  if (!body.is_dynamic()) return;
+  body.velocity += body.inverse_mass * impulse;
+  body.angular_velocity += body.inverse_inertia_world() * (point - body.pose.translation).cross(impulse);
+}
+
+void log_push(const body::Body& pushed, const body::Body& striker, const Vec3& point, const Vec3& impulse,
+              double closing, double mass, body::ImpulseLog& log) {
+  body::LoggedImpulse entry =
+      body::log_impulse(body::ImpulseKind::fracture, pushed.id, pushed.pose, striker.id, striker.pose, point,
+                        impulse.normalized(), impulse);
+  entry.closing_speed = closing;
+  entry.effective_mass = mass;
+  log.push_back(entry);
+}
+
+}  // namespace
+
+const fracture::Perforation* find_hole(const EvaluatedImpact& impact) {
+  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
+  const bool is_through = solid && solid->perforation && solid->perforation->is_through();
+  return is_through ? solid->perforation.get() : nullptr;
+}
+
+bool waits_for_striker(const EvaluatedImpact& impact, std::span<const EvaluatedImpact> impacts) {
+  const fracture::Perforation* hole = find_hole(impact);
+  if (!hole) return false;
+  return std::any_of(impacts.begin(), impacts.end(), [&](const EvaluatedImpact& other) {
+    if (other.id == impact.id) return false;
+    if (other.id == hole->striker.number)
+      return other.figures().verdict.outcome == fracture::Outcome::broke && !other.is_cracked_only();
+    const fracture::Perforation* earlier = find_hole(other);
+    return earlier && earlier->striker.number == hole->striker.number &&
+           (earlier->striker.time < hole->striker.time ||
+            (earlier->striker.time == hole->striker.time && other.id < impact.id));
+  });
+}
+
+std::optional<dynamics::StepPart> divide_before_holes(std::span<const EvaluatedImpact> impacts,
+                                                      const dynamics::StepPart& part, double begin,
+                                                      double step) {
+  const fracture::Perforation* first = nullptr;
+  for (const EvaluatedImpact& impact : impacts) {
+    const fracture::Perforation* hole = find_hole(impact);
+    if (hole && (!first || hole->striker.time < first->striker.time)) first = hole;
+  }
+  if (!first) return std::nullopt;
+  const double part_time = step / part.count;
+  const double way = first->striker.speed * part_time;  // m, in the part
+  const double share = (first->striker.time - begin - part_time * part.number) / part_time;
+  const double diameter = section_of(first->striker).diameter;
+  if (share * way <= kBeforeHit * diameter) return std::nullopt;
+  // The fewest parts of which one begins in time; or, of those that there may be, the one that comes nearest.
+  std::optional<dynamics::StepPart> best;
+  double nearest = share * way;
+  for (int parts = 2; part.count * parts <= kMostHoleParts; ++parts) {
+    const double place = share * parts;
+    const double left = (place - std::floor(place)) * way / parts;
+    if (left < kSurelyBefore * diameter || left >= nearest) continue;
+    nearest = left;
+    best = dynamics::StepPart{part.number * parts, part.count * parts};
+    if (left <= kBeforeHit * diameter) break;
+  }
+  return best;
+}
+
+void pay_for_hole(MovingState& moving, const EvaluatedImpact& impact, body::ImpulseLog& log) {
+  const fracture::Perforation& hole = *find_hole(impact);
+  body::Body* struck = body::find_body(moving.bodies, impact.id);
+  body::Body* striker = body::find_body(moving.bodies, hole.striker.number);
+  if (!struck || !striker) return;
+  const Vec3 direction = struck->pose.rotation * hole.striker.direction;
+  const Vec3 point = striker->pose.translation;
+  const double mass = effective_mass(*struck, striker, point, direction);
+  const double closing = (striker->velocity - struck->velocity_at(point)).dot(direction);
+  if (!(mass > 0.0) || !(closing > 0.0)) return;
+  const double left = std::sqrt(std::max(0.0, closing * closing - 2.0 * hole.needed / mass));
+  const Vec3 impulse = mass * (closing - left) * direction;
+  push_body(*struck, point, impulse);
+  push_body(*striker, point, -impulse);
+  log_push(*struck, *striker, point, impulse, closing, mass, log);
+}
+
+void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row,
+                     body::ImpulseLog& log) {
+  const fracture::Perforation& hole = *find_hole(impact);
+  body::Body* striker = body::find_body(moving.bodies, hole.striker.number);
+  if (!striker) return;
+  std::vector<body::Body*> plugs;
+  double mass = 0.0;
+  Vec3 momentum = Vec3::Zero();
+  for (const body::BodyId id : row.born) {
+    body::Body* born = body::find_body(moving.bodies, id);
+    if (!born->is_dynamic() || !is_plug(*born->shape, hole)) continue;
+    plugs.push_back(born);
+    mass += born->shape->mass;
+    momentum += born->shape->mass * born->velocity;
+  }
+  if (plugs.empty()) return;
+  const Vec3 direction = plugs.front()->pose.rotation * hole.striker.direction;
+  const double striker_mass = 1.0 / striker->inverse_mass;
+  const double common = (striker_mass * striker->velocity + momentum).dot(direction) / (striker_mass + mass);
+  for (body::Body* plug : plugs) {
+    const double gain = common - plug->velocity.dot(direction);
+    if (!(gain > 0.0)) continue;
+    const Vec3 impulse = plug->shape->mass * gain * direction;
+    const double closing = (striker->velocity - plug->velocity).dot(direction);
+    const Vec3 point = plug->pose.translation;
+    plug->velocity += plug->inverse_mass * impulse;
+    striker->velocity -= striker->inverse_mass * impulse;
+    log_push(*plug, *striker, point, impulse, closing, 1.0 / (plug->inverse_mass + striker->inverse_mass),
+             log);
+  }
+}
+
+std::string describe_perforation(const fracture::Perforation& perforation) {
+  char text[96];
+  const char* form = perforation.is_through() ? "perforated: %.3g times the energy it takes"
+                                              : "%.3g of the energy that perforates";
+  std::snprintf(text, sizeof text, form, perforation.ratio());
+  return text;
+}
+
+}  // namespace shatterbox::world

@@ -1,0 +1,112 @@
+#include "engine/world/striker.h"
+
+#include <algorithm>
+
+#include "engine/body/polyhedron.h"
+
+namespace shatterbox::world {
+namespace {
+
+/// The normal speed of the collision may differ by so much from what the motion at the begin of the part
+/// says; else it was another one that came first, and only the normal is known.
+constexpr double kKnownMotion = 0.2;
+constexpr double kFrontDepth = 0.05;  // of the section's diameter: how deep its front is looked at
+constexpr double kRoundFront = 0.25;  // of the section: a ball's front is about that large, and not flat
+
+/// The striker's corners: across its motion, and how far ahead.
+struct Corners {
+  std::vector<Vec2> across;   // m
+  std::vector<double> ahead;  // m
+  std::vector<geometry::Triangle> triangles;
+};
+
+Corners find_corners(const geometry::TriangleMesh& mesh, const Mat3& struck_from_striker,
+                     const fracture::Striker& striker) {
+  Corners corners;
+  corners.triangles = mesh.triangles;
+  for (const Vec3& vertex : mesh.positions) {
+    const Vec3 place = struck_from_striker * vertex;
+    corners.across.emplace_back(striker.first.dot(place), striker.second.dot(place));
+    corners.ahead.push_back(striker.direction.dot(place));
+  }
+  return corners;
+}
+
+double area_of(const std::vector<Vec2>& polygon) {
+  fracture::Striker stamp;
+  stamp.core = polygon;
+  return fracture::section_of(stamp).area;
+}
+
+/// The share of its section that is in front at once: the hull of what is less than `depth` behind its
+/// foremost point.
+double front_share(const Corners& corners, double depth, double area) {
+  const double level = *std::max_element(corners.ahead.begin(), corners.ahead.end()) - depth;
+  std::vector<Vec2> front;
+  for (const geometry::Triangle& t : corners.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto a = static_cast<std::size_t>(t[i]), b = static_cast<std::size_t>(t[(i + 1) % 3]);
+      const double over_a = corners.ahead[a] - level, over_b = corners.ahead[b] - level;
+      if (over_a >= 0.0) front.push_back(corners.across[a]);
+      if ((over_a > 0.0) == (over_b > 0.0) || !(over_a != over_b)) continue;
+      front.push_back(corners.across[a] +
+                      over_a / (over_a - over_b) * (corners.across[b] - corners.across[a]));
+    }
+  return area_of(fracture::convex_hull(std::move(front))) / area;
+}
+
+void set_section(const body::Shape& shape, const Mat3& struck_from_striker, fracture::Striker& striker) {
+  if (body::is_round(shape.kind)) {
+    striker.radius = shape.radius;
+    const Vec3 end = struck_from_striker * Vec3(0.0, shape.half_length, 0.0);
+    const Vec2 across(striker.first.dot(end), striker.second.dot(end));
+    const bool is_long = across.norm() > 1e-9 * shape.radius;
+    striker.core = is_long ? fracture::convex_hull({across, -across}) : std::vector<Vec2>{Vec2::Zero()};
+    return;
+  }
+  const Corners corners = find_corners(body::find_polyhedron(shape), struck_from_striker, striker);
+  if (corners.across.empty()) return;
+  striker.core = fracture::convex_hull(corners.across);
+  const fracture::StrikerSection section = section_of(striker);
+  if (!(section.area > 0.0)) return;
+  const double share = front_share(corners, kFrontDepth * section.diameter, section.area);
+  striker.flatness = std::clamp((share - kRoundFront) / (1.0 - kRoundFront), 0.0, 1.0);
+}
+
+}  // namespace
+
+std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, body::BodyId struck_id,
+                                                      const Load& load) {
+  const body::Body* struck = body::find_body(begin.bodies, struck_id);
+  const body::Body* other = body::find_body(begin.bodies, load.other);
+  if (!struck || !other || !other->is_dynamic() || other->shape->kind == body::ShapeKind::plane)
+    return nullptr;
+  if (load.time < begin.time || !(load.closing_speed > 0.0)) return nullptr;
+  const Quat to_struck = struck->pose.rotation.conjugate();
+  const Mat3 struck_from_striker = (to_struck * other->pose.rotation).toRotationMatrix();
+  const Vec3 normal = load.impulse_body.normalized();
+  Vec3 velocity = to_struck * (other->velocity - struck->velocity_at(struck->pose.apply(load.point_body)));
+  if (std::abs(velocity.dot(normal) - load.closing_speed) > kKnownMotion * load.closing_speed)
+    velocity = load.closing_speed * normal;
+
+  fracture::Striker striker;
+  striker.number = load.other;
+  striker.speed = velocity.norm();
+  striker.direction = velocity / striker.speed;
+  striker.squareness = striker.direction.dot(normal);
+  int least = 0;
+  striker.direction.cwiseAbs().minCoeff(&least);
+  striker.first = striker.direction.cross(Vec3::Unit(least)).normalized();
+  striker.second = striker.direction.cross(striker.first);
+  striker.mass = 1.0 / other->inverse_mass;
+  // Where it was when they met: they met in one point of both.
+  const Vec3 centre_body = load.point_body - struck_from_striker * load.other_point;
+  striker.centre = centre_body + struck->shape->material_from_body;
+  striker.place = load.point_body + struck->shape->material_from_body;
+  striker.struck_inverse_mass = mobility(*struck, centre_body, striker.direction);
+  striker.time = load.time;
+  set_section(*other->shape, struck_from_striker, striker);
+  return std::make_shared<const fracture::Striker>(std::move(striker));
+}
+
+}  // namespace shatterbox::world
