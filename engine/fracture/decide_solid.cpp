@@ -45,8 +45,9 @@ class SolidDecider {
     verdict.force = force_.hardest().first_force;
     solve_stresses(model().mesh, model().contacts);
     std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
-    find_dent();
-    if (find_hole()) return std::move(decision_);
+    const bool is_holed = find_hole();
+    find_dent(is_holed);
+    if (is_holed) return std::move(decision_);
     leave_to_dent(candidates);
     if (!(verdict.ratio > 1.0) || candidates.empty()) {
       verdict.outcome = Outcome::held;
@@ -128,11 +129,12 @@ class SolidDecider {
     return centroid;
   }
 
-  void find_dent() {
+  /// Of what has a hole only the stress: what flows about it is part of the hole's own work.
+  void find_dent(bool is_holed) {
     const material::Material& material = subject_.material;
     if (!(material.yield > 0.0)) return;
     YieldFinding finding = find_yield(model(), material, force_.struck_displacement(),
-                                      {force_.struck_energy(), force_.lost_energy()});
+                                      {force_.struck_energy(), is_holed ? 0.0 : force_.lost_energy()});
     decision_.verdict.von_mises = finding.stress;
     decision_.verdict.yield = material.yield;
     decision_.dent = std::move(finding.dent);
@@ -162,7 +164,6 @@ class SolidDecider {
     decision_.new_area = hole.wall_area;
     decision_.fracture_energy = hole.needed;
     decision_.elastic_energy = hole.there;
-    decision_.dent = nullptr;
     return true;
   }
 

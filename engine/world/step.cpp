@@ -2,12 +2,12 @@
 // are only called, timed and, when something broke, called again from the snapshot at the part's beginning
 // with the pieces in place of the whole.
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 #include "engine/core/stop.h"
 #include "engine/dynamics/scripted_motion.h"
 #include "engine/world/bits.h"
+#include "engine/world/impact_row.h"
 #include "engine/world/perforation.h"
 #include "engine/world/pieces.h"
 #include "engine/world/replace.h"
@@ -19,58 +19,6 @@ namespace {
 
 /// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
 constexpr int kMostPasses = 12;
-
-/// "60 MPa of 235": of the yield strength.
-std::string format_yield(const fracture::Verdict& verdict) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%s: %.3g MPa of %.3g",
-                verdict.von_mises > verdict.yield ? "yielded" : "did not yield", verdict.von_mises * 1e-6,
-                verdict.yield * 1e-6);
-  return text;
-}
-
-std::string format_ratio(const char* word, double ratio) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%s%.3g of its strength", word, ratio);
-  return text;
-}
-
-ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body, double time) {
-  const fracture::Verdict& verdict = impact.figures().verdict;
-  ImpactRow row;
-  row.time = time;
-  row.body = body.name;
-  row.id = body.id;
-  row.is_struck = impact.is_struck;
-  row.impulse = verdict.impulse;
-  row.duration = verdict.duration;
-  row.stress = verdict.stress;
-  row.strength = verdict.strength;
-  row.ratio = verdict.ratio;
-  row.von_mises = verdict.von_mises;
-  row.yield = verdict.yield;
-  row.place = body.pose.apply(verdict.place - body.shape->material_from_body);
-  switch (verdict.outcome) {
-    case fracture::Outcome::broke:
-      row.verdict = find_hole(impact) ? describe_perforation(*find_hole(impact))
-                                      : format_ratio("broke: ", verdict.ratio);
-      break;
-    case fracture::Outcome::held:
-      row.verdict =
-          verdict.reason.empty() ? format_ratio("held: ", verdict.ratio) : "held: " + verdict.reason;
-      break;
-    case fracture::Outcome::not_evaluated:
-      row.verdict = "not evaluated: " + verdict.reason;
-      break;
-  }
-  if (verdict.von_mises > 0.0) row.verdict += ", " + format_yield(verdict);
-  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
-  if (!solid || !solid->perforation) return row;
-  row.perforation_energy = solid->perforation->needed;
-  row.perforation_ratio = solid->perforation->ratio();
-  if (!find_hole(impact)) row.verdict += ", " + describe_perforation(*solid->perforation);
-  return row;
-}
 
 double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
                     ConservationFigures& figures) {

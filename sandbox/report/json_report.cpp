@@ -38,6 +38,9 @@ Json impacts(const world::WorldReport& report) {
     if (!(row.von_mises > 0.0)) continue;
     list.back()["von_mises_pa"] = number(row.von_mises);
     list.back()["yield_pa"] = number(row.yield);
+    if (!(row.perforation_energy > 0.0)) continue;
+    list.back()["perforation_j"] = number(row.perforation_energy);
+    list.back()["perforation_ratio"] = number(row.perforation_ratio);
   }
   return list;
 }

@@ -83,6 +83,29 @@ TEST_CASE("arch: twenty-five stones stand by friction alone, and come down witho
         0.7 * standing["conservation"]["potential_energy_j"].get<double>());
 }
 
+TEST_CASE("slab: one ball dents it one goes through and what stands is one piece with a dent and a hole") {
+  const Folder folder;
+  const auto report = play(folder, "slab --seconds 0.31 --audit");
+  check_breaks(report);
+  REQUIRE(report["dents"].size() == 1);
+  CHECK(report["dents"][0]["depth_m"].get<double>() > 0.03);
+  REQUIRE(report["breaks"].size() == 1);
+  CHECK(report["breaks"][0]["pieces"] == 2);
+  CHECK(report["audit"]["crossings"] == 0);
+  CHECK(report["audit"]["passages"] == 0);
+  std::vector<std::string> verdicts;
+  for (const auto& row : report["impacts"])
+    if (row.contains("perforation_ratio")) verdicts.push_back(row["verdict"].get<std::string>());
+  REQUIRE(verdicts.size() == 2);
+  CHECK(verdicts[0].starts_with("held: "));
+  CHECK(verdicts[0].find("of the energy that perforates") != std::string::npos);
+  CHECK(verdicts[1].starts_with("perforated: "));
+  // Slower, the second one dents it too.
+  const auto held = play(folder, "slab --seconds 0.31 --set shoot.speed=250");
+  CHECK(held["breaks"].empty());
+  CHECK(held["dents"].size() == 2);
+}
+
 TEST_CASE("egg: shatters on a worktop, and from a finger's breadth it only cracks into few") {
   const Folder folder;
   const auto high = play(folder, "egg --seconds 0.3");

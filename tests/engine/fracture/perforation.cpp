@@ -110,7 +110,7 @@ TEST_CASE("perforation law: the work is [RD10]'s for round strikers and a plug's
 }
 
 TEST_CASE(
-    "perforation law: more for thicker plates and blunter is never more, without a jump, and no unit of "
+    "perforation law: more for thicker plates and blunter is never more without a jump and no unit of "
     "length") {
   for (const double flatness : {0.0, 0.4, 1.0}) {
     double last = 0.0;
@@ -143,7 +143,7 @@ TEST_CASE("perforation law: residual speeds are Recht and Ipson's and close the 
   CHECK(flow_stress(*material::find_preset("concrete")) == 0.0);
 }
 
-TEST_CASE("perforation: a ball's plug leaves room everywhere, whatever the elements") {
+TEST_CASE("perforation: a ball's plug leaves room everywhere whatever the elements") {
   const material::Material steel = *material::find_preset("steel");
   for (const double size : {0.01, 0.02, 0.05, 0.3}) {
     const geometry::SolidComplex plate = size > 0.2 ? make_coarse_plate(0.02) : make_plate(0.02, size);
@@ -164,7 +164,7 @@ TEST_CASE("perforation: a ball's plug leaves room everywhere, whatever the eleme
   }
 }
 
-TEST_CASE("perforation: at a slant the way is longer, and beyond sixty degrees there is none") {
+TEST_CASE("perforation: at a slant the way is longer and beyond sixty degrees there is none") {
   const material::Material steel = *material::find_preset("steel");
   const geometry::SolidComplex plate = make_plate(0.02, 0.02);
   const double degree = kPi / 180.0;
@@ -183,7 +183,7 @@ TEST_CASE("perforation: at a slant the way is longer, and beyond sixty degrees t
   CHECK_FALSE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0));
 }
 
-TEST_CASE("perforation: around the limit the energy decides, and nobody asks where it is far") {
+TEST_CASE("perforation: around the limit the energy decides and nobody asks where it is far") {
   const material::Material steel = *material::find_preset("steel");
   const geometry::SolidComplex plate = make_plate(0.02, 0.02);
   const auto at = [&](double speed) {
@@ -205,7 +205,7 @@ TEST_CASE("perforation: around the limit the energy decides, and nobody asks whe
   CHECK(find_perforation(plate, steel, striker, 1e-4, 0)->there == Approx(0.5 * at(400.0)->there));
 }
 
-TEST_CASE("perforation: square and long stamps cut what they are, and what covers all parts nothing") {
+TEST_CASE("perforation: square and long stamps cut what they are and what covers all parts nothing") {
   const material::Material steel = *material::find_preset("steel");
   const geometry::SolidComplex plate = make_plate(0.02, 0.02);
   const std::vector<Vec2> square = {{-0.03, -0.02}, {0.03, -0.02}, {0.03, 0.02}, {-0.03, 0.02}};
@@ -227,7 +227,7 @@ TEST_CASE("perforation: square and long stamps cut what they are, and what cover
   CHECK_FALSE(find_perforation(plate, steel, make_striker(Vec3::UnitZ(), 5000.0, all, 0.0), 1e-4, 0));
 }
 
-TEST_CASE("convex hulls go round once, counter-clockwise") {
+TEST_CASE("convex hulls go round once counter-clockwise") {
   const std::vector<Vec2> hull =
       convex_hull({{0, 0}, {1, 0}, {0.5, 0.5}, {1, 1}, {0, 1}, {0.5, 0.0}, {1, 0.3}, {0, 0}});
   CHECK(hull == std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0, 1}});

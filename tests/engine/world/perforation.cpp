@@ -9,6 +9,7 @@
 #include "engine/core/parallel.h"
 #include "engine/fracture/perforation_law.h"
 #include "engine/geometry/generators.h"
+#include "engine/world/striker.h"
 #include "engine/world/world.h"
 #include "tests/support/sanitized.h"
 
@@ -124,7 +125,7 @@ constexpr double kBallMass = 7850.0 * 4.0 / 3.0 * std::numbers::pi * 0.03 * 0.03
 }  // namespace
 
 TEST_CASE(
-    "below the ballistic limit a plate dents, above it has a hole, and residual speeds are Recht and "
+    "below the ballistic limit a plate dents above it has a hole and residual speeds are Recht and "
     "Ipson's") {
   // A hit far above the limit tells the plug's mass and the energy, and with them the limit.
   const Range known = fire({});
@@ -166,7 +167,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a free plate goes along, with the momentum that the ball and the plug have lost") {
+TEST_CASE("a free plate goes along with the momentum that the ball and the plug have lost") {
   Shot shot;
   shot.is_held = false;
   shot.speed = 600.0;
@@ -182,7 +183,7 @@ TEST_CASE("a free plate goes along, with the momentum that the ball and the plug
 }
 
 TEST_CASE(
-    "a perforation has the same bits for any number of threads, and its twin in miniature the same speeds") {
+    "a perforation has the same bits for any number of threads and its twin in miniature the same speeds") {
   const auto hash = [](int threads) {
     core::set_thread_count(threads);
     const std::uint64_t bits = fire({}).world.state_hash();
@@ -202,7 +203,7 @@ TEST_CASE(
         Approx(range.world.report().impacts[0].perforation_ratio).epsilon(1e-6));
 }
 
-TEST_CASE("who comes at a slant goes through along his way, and who hits near the edge takes it away") {
+TEST_CASE("who comes at a slant goes through along his way and who hits near the edge takes it away") {
   if (test::kIsSanitized) return;
   Shot shot;
   shot.speed = 600.0;
@@ -224,7 +225,7 @@ TEST_CASE("who comes at a slant goes through along his way, and who hits near th
 }
 
 TEST_CASE(
-    "a flat cube shears out a square where a ball of its section is held, and a thick block holds both") {
+    "a flat cube shears out a square where a ball of its section is held and a thick block holds both") {
   if (test::kIsSanitized) return;
   Shot shot;
   shot.bullet = Bullet::cube;
@@ -242,6 +243,84 @@ TEST_CASE(
   CHECK(fire(shot).world.report().breaks.empty());
   shot.bullet = Bullet::ball;
   CHECK(fire(shot).world.report().breaks.empty());
+}
+
+namespace {
+
+/// What a plate at the origin, which faces up, sees of a body that comes down on it.
+fracture::Striker seen(
+    const std::variant<world::PlaneDescription, world::BoxDescription, world::SphereDescription,
+                       world::CapsuleDescription, world::ShellDescription, world::SolidDescription>& form,
+    const Quat& turn, const Vec3& velocity = Vec3(0, -100, 0)) {
+  world::World w(world::WorldSettings{});
+  REQUIRE(w.add_material(*material::find_preset("steel")).ok());
+  world::BodyDescription plate, other;
+  plate.form = world::BoxDescription{Vec3(1.0, 0.01, 1.0)};
+  plate.motion = body::Motion::fixed;
+  plate.pose.translation = Vec3(0, -0.01, 0);
+  const body::BodyId struck = w.add_body(plate).value();
+  other.form = form;
+  other.pose = {turn, Vec3(0, 1, 0)};
+  other.velocity = velocity;
+  world::Load load;
+  load.other = w.add_body(other).value();
+  load.point_body = Vec3(0.1, 0.01, 0.0);
+  load.impulse_body = Vec3(0, -1, 0);
+  load.other_point = turn.conjugate() * Vec3(0.0, -0.05, 0.0);
+  load.closing_speed = -velocity.y();
+  load.time = 0.5;
+  const std::vector<body::Body> bodies(w.bodies().begin(), w.bodies().end());
+  const auto striker = world::find_striker({bodies, 0.4}, struck, load);
+  REQUIRE(striker);
+  CHECK((striker->centre - Vec3(0.1, 0.06, 0.0)).norm() < 1e-12);
+  CHECK(world::find_striker({bodies, 0.6}, struck, load) == nullptr);  // came before
+  return *striker;
+}
+
+Quat turned(double degrees, const Vec3& axis) {
+  return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, axis));
+}
+
+}  // namespace
+
+TEST_CASE("a striker is seen by its section across its motion and how flat it is in front") {
+  const double pi = std::numbers::pi;
+  const fracture::Striker ball = seen(world::SphereDescription{0.05}, turned(30, Vec3::UnitX()));
+  CHECK(section_of(ball).area == Approx(pi * 0.0025));
+  CHECK(ball.flatness == 0.0);
+  CHECK(ball.speed == Approx(100.0));
+  CHECK((ball.direction + Vec3::UnitY()).norm() < 1e-12);
+  CHECK(ball.mass == Approx(7850.0 * 4.0 / 3.0 * pi * 0.05 * 0.05 * 0.05));
+  CHECK(ball.squareness == Approx(1.0));
+  const fracture::Striker slanting =
+      seen(world::SphereDescription{0.05}, Quat::Identity(), Vec3(100, -100, 0));
+  CHECK(slanting.squareness == Approx(std::sqrt(0.5)));
+  CHECK(slanting.speed == Approx(100.0 * std::sqrt(2.0)));
+
+  const world::BoxDescription box{Vec3(0.03, 0.05, 0.02)};
+  const fracture::Striker flat = seen(box, Quat::Identity());
+  CHECK(section_of(flat).area == Approx(0.06 * 0.04));
+  CHECK(section_of(flat).perimeter == Approx(0.2));
+  CHECK(flat.flatness == Approx(1.0));
+  double last = 1.0;
+  for (const double angle : {1.0, 2.0, 4.0, 8.0, 45.0}) {
+    const fracture::Striker tilted = seen(box, turned(angle, Vec3::UnitX()));
+    CHECK(tilted.flatness <= last);
+    last = tilted.flatness;
+    if (angle == 1.0) CHECK(last > 0.9);
+  }
+  CHECK(last < 0.2);
+
+  const world::CapsuleDescription capsule{0.01, 0.1};
+  CHECK(section_of(seen(capsule, Quat::Identity())).area == Approx(pi * 1e-4));
+  CHECK(section_of(seen(capsule, turned(90, Vec3::UnitZ()))).area == Approx(pi * 1e-4 + 0.08 * 0.02));
+
+  world::SolidDescription stone;
+  stone.mesh = geometry::make_sphere(0.05, {0.01, 0.0, 1}).value();
+  stone.is_breakable = false;
+  const fracture::Striker round = seen(stone, Quat::Identity());
+  CHECK(section_of(round).area == Approx(pi * 0.0025).epsilon(0.03));
+  CHECK(round.flatness < 0.1);
 }
 
 TEST_CASE("a plate with a hole dents under the next ball") {
