@@ -129,13 +129,15 @@ class SolidDecider {
     return centroid;
   }
 
-  /// Of what has a hole only the stress: what flows about it is part of the hole's own work.
+  /// A plate that is gone through is dished as by a hit that it holds and that gives it as much momentum.
   void find_dent(bool is_holed) {
     const material::Material& material = subject_.material;
     if (!(material.yield > 0.0)) return;
-    YieldFinding finding = find_yield(model(), material, force_.struck_displacement(),
-                                      {force_.struck_energy(), is_holed ? 0.0 : force_.lost_energy()});
-    decision_.verdict.von_mises = finding.stress;
+    const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
+    const double energy = share * share;
+    YieldFinding finding = find_yield(model(), material, share * force_.struck_displacement(),
+                                      {energy * force_.struck_energy(), energy * force_.lost_energy()});
+    decision_.verdict.von_mises = finding.stress / share;
     decision_.verdict.yield = material.yield;
     decision_.dent = std::move(finding.dent);
   }

@@ -145,6 +145,10 @@ std::vector<PunchSide> sides_of_way(const Striker& striker, double front, double
 
 }  // namespace
 
+double Perforation::momentum_share() const {
+  return 1.0 - core::sqrt(std::max(0.0, 1.0 - 1.0 / ratio()));
+}
+
 bool Perforation::is_about(const Vec3& place) const {
   const Vec3 arm = place - striker.centre;
   const double off = (arm - striker.direction.dot(arm) * striker.direction).norm();

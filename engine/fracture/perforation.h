@@ -28,6 +28,9 @@ struct Perforation {
 
   double ratio() const { return there / needed; }
   bool is_through() const { return there >= needed; }
+  /// The momentum that the body takes from a striker who goes through, as a share of the striker's: all of it
+  /// just above the limit, ever less the faster he is. [RI63]
+  double momentum_share() const;
   /// Whether a place is nearer to the striker's line than its section's diameter and the thickness: the zone
   /// that the law of its energy is about.
   bool is_about(const Vec3& place) const;

@@ -269,6 +269,9 @@ void World::dent_bodies(const MovingState& snapshot) {
   std::vector<body::BodyId> due;
   for (const auto& [id, memory] : s.moving.memories) {
     if (memory.dents.empty()) continue;
+    if (std::any_of(memory.dents.begin(), memory.dents.end(),
+                    [&](const ComingDent& coming) { return coming.not_before > time(); }))
+      continue;
     double last = -1e9;
     for (const Load& load : memory.event) last = std::max(last, load.time);
     if (!memory.has_open_dent || end_time - last > 2.0 * memory.event_duration) due.push_back(id);

@@ -33,6 +33,7 @@ struct ComingDent {
   std::shared_ptr<const fracture::SolidDent> dent;
   double von_mises = 0.0, yield = 0.0;  // Pa
   Vec3 place = Vec3::Zero();            // m, material space: of the hit
+  double not_before = -1e9;             // s: until then who went through is in the hole; a step later
 };
 
 /// What a fragile body remembers of its impacts between steps. Part of the state.

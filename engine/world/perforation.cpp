@@ -10,6 +10,8 @@ namespace {
 constexpr double kBeforeHit = 0.06;      // of the striker's diameter: how far from it a part begins, at most
 constexpr double kSurelyBefore = 0.002;  // and at least, so that rounding does not put the hit a part earlier
 constexpr int kMostHoleParts = 4096;     // of one step
+constexpr double kHoleLengths = 3.0;     // of its own, and of the hole, that a striker goes until he is out
+constexpr double kLongestWay = 30.0;     // times as long as at his first speed, that this takes at most
 constexpr double kPlugTolerance = 1e-6;  // of the section's diameter
 
 /// A plug is inside of all the hole's sides.
@@ -135,6 +137,22 @@ void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const B
     striker->velocity -= striker->inverse_mass * impulse;
     log_push(*plug, *striker, point, impulse, closing, 1.0 / (plug->inverse_mass + striker->inverse_mass),
              log);
+  }
+}
+
+void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row) {
+  const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
+  const fracture::Perforation& hole = *decision.perforation;
+  if (!decision.dent) return;
+  const double way = kHoleLengths * (section_of(hole.striker).diameter + hole.thickness);
+  const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
+                      (hole.striker.mass + hole.plug_mass);
+  const double speed = std::max(left, hole.striker.speed / kLongestWay);
+  ComingDent coming{decision.dent, decision.verdict.von_mises, decision.verdict.yield, hole.striker.place,
+                    hole.striker.time + way / speed};
+  for (const body::BodyId id : row.born) {
+    if (is_plug(*body::find_body(moving.bodies, id)->shape, hole)) continue;
+    moving.memories[id].dents.push_back(coming);
   }
 }
 

@@ -1,4 +1,5 @@
-// A solid that is gone through: what its hole takes from the striker, and how a plug comes along [RI63].
+// A solid that is gone through: what its hole takes from the striker, how a plug comes along, and what is
+// left [RI63].
 #pragma once
 
 #include <optional>
@@ -32,6 +33,9 @@ void pay_for_hole(MovingState& moving, const EvaluatedImpact& impact, body::Impu
 /// momentum kept, logged.
 void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row,
                      body::ImpulseLog& log);
+
+/// Leaves what stays of the body, once striker and plug are out of the hole, the dent about it.
+void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row);
 
 /// "perforated: 1.4 times the energy it takes", or what of that energy there was.
 std::string describe_perforation(const fracture::Perforation& perforation);

@@ -291,7 +291,10 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
       pay_for_cracks(s.moving, *impact, impact->figures().fracture_energy, s.log);
     const body::Body parent = *body::find_body(s.moving.bodies, impact->id);
     BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
-    if (has_hole) take_plug_along(s.moving, *impact, row, s.log);
+    if (has_hole) {
+      take_plug_along(s.moving, *impact, row, s.log);
+      leave_dent(s.moving, *impact, row);
+    }
     regrip(s.hands, parent, row.born, s.moving.bodies);
     rehang(s.moving.contact.joints, parent, row.born, s.moving.bodies);
     row.time = end_time;

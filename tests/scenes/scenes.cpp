@@ -87,8 +87,8 @@ TEST_CASE("slab: one ball dents it one goes through and what stands is one piece
   const Folder folder;
   const auto report = play(folder, "slab --seconds 0.31 --audit");
   check_breaks(report);
-  REQUIRE(report["dents"].size() == 1);
-  CHECK(report["dents"][0]["depth_m"].get<double>() > 0.03);
+  REQUIRE(report["dents"].size() == 2);  // one about the hole
+  for (const auto& dent : report["dents"]) CHECK(dent["depth_m"].get<double>() > 0.03);
   REQUIRE(report["breaks"].size() == 1);
   CHECK(report["breaks"][0]["pieces"] == 2);
   CHECK(report["audit"]["crossings"] == 0);
