@@ -169,14 +169,12 @@ class SolidDecider {
     return true;
   }
 
-  /// Under a striker who does not go through, the material flows: what it bears there has been asked by his
-  /// energy, and the linear stress starts no cracks.
+  /// Under a striker who does not go through metal flows: he has been asked for his energy, and the linear
+  /// stress, which nothing bounds there, starts no cracks.
   void leave_to_dent(std::vector<SolidCandidate>& candidates) {
     if (!decision_.perforation || candidates.empty()) return;
-    std::erase_if(candidates, [&](const SolidCandidate& candidate) {
-      return decision_.perforation->is_about(candidate.place);
-    });
-    if (candidates.empty()) decision_.verdict.reason = "it is dented, and not gone through";
+    candidates.clear();
+    decision_.verdict.reason = "it is dented, and not gone through";
   }
 
   SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) const {

@@ -18,6 +18,7 @@ constexpr double kPlugClearance = 0.02;   // of the section's diameter: by which
 constexpr double kPlugTaper = 0.1;        // by which it widens along the way: plugs are cones of some degrees
 constexpr int kPunchSides = 24;           // of a round hole; at most so many of any
 constexpr double kLeastSquareness = 0.5;  // cosine: beyond 60 degrees strikers ricochet
+constexpr double kMostPlug = 0.5;         // of the body: a hole is in what is more than the hole
 constexpr double kShareThatCounts = 0.1;  // of the energy that a hole takes, from which it is looked for
 
 Vec2 normal_at(double angle) {
@@ -149,12 +150,6 @@ double Perforation::momentum_share() const {
   return 1.0 - core::sqrt(std::max(0.0, 1.0 - 1.0 / ratio()));
 }
 
-bool Perforation::is_about(const Vec3& place) const {
-  const Vec3 arm = place - striker.centre;
-  const double off = (arm - striker.direction.dot(arm) * striker.direction).norm();
-  return off < section_of(striker).diameter + thickness;
-}
-
 std::optional<Perforation> find_perforation(const geometry::SolidComplex& complex,
                                             const material::Material& material, const Striker& striker,
                                             double least_width, int tag) {
@@ -169,10 +164,10 @@ std::optional<Perforation> find_perforation(const geometry::SolidComplex& comple
   const std::vector<PunchSide> way = sides_of_way(striker, 0.0, 0.0);
   std::vector<int> cells = find_punch_cells(complex, way, striker.place);
   const double guess = guess_volume(complex, cells, way) / section.area;
-  if (cells.empty() ||
-      out.there < kShareThatCounts *
-                      perforation_work({guess, section.area, section.perimeter, striker.flatness}, flow))
-    return std::nullopt;
+  if (cells.empty()) return std::nullopt;
+  out.thickness = guess;
+  out.work = out.needed = perforation_work({guess, section.area, section.perimeter, striker.flatness}, flow);
+  if (out.there < kShareThatCounts * out.needed) return out;
   // What is straight in his way tells how thick it is and where it begins; the plug is a cone from there.
   geometry::SolidComplex straight = complex;
   const geometry::Punched core = punch_out(straight, way, std::move(cells), tag);
@@ -185,6 +180,7 @@ std::optional<Perforation> find_perforation(const geometry::SolidComplex& comple
   out.part_count = count_parts_of(*cut);
   if (out.part_count <= count_parts_of(complex)) return std::nullopt;
   if (!(punched.volume > least_width * punched.wall_area)) return std::nullopt;
+  if (punched.volume > kMostPlug * total_volume(complex)) return std::nullopt;
   out.complex = std::move(cut);
   out.plug_volume = punched.volume;
   out.wall_area = punched.wall_area;

@@ -15,7 +15,7 @@ namespace shatterbox::fracture {
 
 struct Perforation {
   Striker striker;
-  std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled
+  std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null: he is far from it
   std::vector<geometry::PunchSide> sides;                 // of the plug
   double thickness = 0.0;    // m, of the material in the striker's way, along it: the mean over his section
   double plug_volume = 0.0;  // m3
@@ -27,18 +27,17 @@ struct Perforation {
   int part_count = 1;        // that the cut complex falls into
 
   double ratio() const { return there / needed; }
-  bool is_through() const { return there >= needed; }
+  bool is_near() const { return complex != nullptr; }
+  bool is_through() const { return is_near() && there >= needed; }
   /// The momentum that the body takes from a striker who goes through, as a share of the striker's: all of it
   /// just above the limit, ever less the faster he is. [RI63]
   double momentum_share() const;
-  /// Whether a place is nearer to the striker's line than its section's diameter and the thickness: the zone
-  /// that the law of its energy is about.
-  bool is_about(const Vec3& place) const;
 };
 
-/// Nothing if this striker is far from it (a tenth of the energy), meets at a slant of more than 60 degrees
-/// (then it slides off), leaves a plug narrower than `least_width` m, or its line parts nothing. `density` in
-/// kg/m3; `tag` is that of the new crack facets.
+/// Of a striker that has less than about a tenth of the energy only that is said: no cut, a guess of what he
+/// needs. Nothing where the law does not tell: he meets at a slant of more than 60 degrees (then he slides
+/// off), his plug would be narrower than `least_width` m or more than what is left, or his line parts
+/// nothing. `density` in kg/m3; `tag` is that of the new crack facets.
 std::optional<Perforation> find_perforation(const geometry::SolidComplex& complex,
                                             const material::Material& material, const Striker& striker,
                                             double least_width, int tag);

@@ -45,6 +45,7 @@ struct ImpactMemory {
   bool has_open_dent = false;     // that is so
   double tested_contact = 0.0;    // N: total contact force at which the body was last found to hold
   double tested_growth = 1.1;     // times that force, at which it is tested again
+  bool keeps_dents = true;        // false of a piece of what cracked, which tears
   int generation = 0;             // breaks since the event began from which this piece comes
 
   /// s, when a break made this piece: what presses on it is known on average only contact_average later.

@@ -54,7 +54,7 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
   }
   if (verdict.von_mises > 0.0) row.verdict += ", " + format_yield(verdict);
   const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
-  if (!solid || !solid->perforation) return row;
+  if (!solid || !solid->perforation || !solid->perforation->is_near()) return row;
   row.perforation_energy = solid->perforation->needed;
   row.perforation_ratio = solid->perforation->ratio();
   if (!find_hole(impact)) row.verdict += ", " + describe_perforation(*solid->perforation);

@@ -140,10 +140,9 @@ void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const B
   }
 }
 
-void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row) {
+void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row, bool keeps_dents) {
   const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
   const fracture::Perforation& hole = *decision.perforation;
-  if (!decision.dent) return;
   const double way = kHoleLengths * (section_of(hole.striker).diameter + hole.thickness);
   const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
                       (hole.striker.mass + hole.plug_mass);
@@ -152,7 +151,8 @@ void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakR
                     hole.striker.time + way / speed};
   for (const body::BodyId id : row.born) {
     if (is_plug(*body::find_body(moving.bodies, id)->shape, hole)) continue;
-    moving.memories[id].dents.push_back(coming);
+    moving.memories[id].keeps_dents = keeps_dents;
+    if (keeps_dents && decision.dent) moving.memories[id].dents.push_back(coming);
   }
 }
 

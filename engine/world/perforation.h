@@ -34,8 +34,9 @@ void pay_for_hole(MovingState& moving, const EvaluatedImpact& impact, body::Impu
 void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row,
                      body::ImpulseLog& log);
 
-/// Leaves what stays of the body, once striker and plug are out of the hole, the dent about it.
-void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row);
+/// Leaves what stays of the body, once striker and plug are out of the hole, the dent about it; if the body
+/// `keeps_dents`, which goes on to what stays.
+void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row, bool keeps_dents);
 
 /// "perforated: 1.4 times the energy it takes", or what of that energy there was.
 std::string describe_perforation(const fracture::Perforation& perforation);

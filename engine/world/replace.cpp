@@ -88,6 +88,7 @@ void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMe
     born[i].id = moving.next_id++;
     ImpactMemory own;
     own.generation = memory.generation + 1;
+    own.keeps_dents = false;
     own.born = time;
     own.charged_until = charged_until;
     own.charged_other = charged_other;

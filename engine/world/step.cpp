@@ -290,10 +290,11 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     else if (goes_back)
       pay_for_cracks(s.moving, *impact, impact->figures().fracture_energy, s.log);
     const body::Body parent = *body::find_body(s.moving.bodies, impact->id);
+    const bool keeps_dents = s.moving.memories[parent.id].keeps_dents;
     BreakRow row = replace_body(s.moving, *impact, end_time, s.ancestry);
     if (has_hole) {
       take_plug_along(s.moving, *impact, row, s.log);
-      leave_dent(s.moving, *impact, row);
+      leave_dent(s.moving, *impact, row, keeps_dents);
     }
     regrip(s.hands, parent, row.born, s.moving.bodies);
     rehang(s.moving.contact.joints, parent, row.born, s.moving.bodies);

@@ -81,6 +81,8 @@ std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, bo
   const body::Body* other = body::find_body(begin.bodies, load.other);
   if (!struck || !other || !other->is_dynamic() || other->shape->kind == body::ShapeKind::plane)
     return nullptr;
+  // Of one metal, neither is rigid to the other.
+  if (struck->family != 0 && struck->family == other->family) return nullptr;
   if (load.time < begin.time || !(load.closing_speed > 0.0)) return nullptr;
   const Quat to_struck = struck->pose.rotation.conjugate();
   const Mat3 struck_from_striker = (to_struck * other->pose.rotation).toRotationMatrix();

@@ -16,7 +16,7 @@ struct PartBegin {
 };
 
 /// The striker behind a collision of this part. Null if it came before, or from what is held or has no end (a
-/// plane): that has no motion of its own to spend.
+/// plane): that has no motion of its own to spend; or from another piece of the same body.
 std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, body::BodyId struck,
                                                       const Load& load);
 

@@ -268,8 +268,8 @@ void await_dent(const EvaluatedImpact& impact, const body::Body& body, ImpactMem
   if (memory.has_open_dent) memory.dents.pop_back();
   const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
   // What tears does not keep the shape in which it tore.
-  const bool is_whole = memory.generation == 0 || impact.first_time > memory.charged_until;
-  memory.has_open_dent = solid && solid->dent && is_whole &&
+  const bool is_over = memory.generation == 0 || impact.first_time > memory.charged_until;
+  memory.has_open_dent = solid && solid->dent && memory.keeps_dents && is_over &&
                          (solid->verdict.outcome == fracture::Outcome::held || impact.is_cracked_only());
   if (memory.has_open_dent)
     memory.dents.push_back({solid->dent, solid->verdict.von_mises, solid->verdict.yield,
