@@ -156,11 +156,12 @@ std::optional<Perforation> find_perforation(const geometry::SolidComplex& comple
   const double flow = flow_stress(material);
   const StrikerSection section = section_of(striker);
   if (!(flow > 0.0) || !(section.area > 0.0) || !(striker.mass > 0.0) || !(striker.speed > 0.0) ||
-      striker.squareness < kLeastSquareness || striker.core.empty())
+      striker.core.empty())
     return std::nullopt;
   Perforation out;
   out.striker = striker;
   out.there = kinetic_energy_of(striker);
+  if (striker.squareness < kLeastSquareness) return out;
   const std::vector<PunchSide> way = sides_of_way(striker, 0.0, 0.0);
   std::vector<int> cells = find_punch_cells(complex, way, striker.place);
   const double guess = guess_volume(complex, cells, way) / section.area;

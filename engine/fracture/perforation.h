@@ -15,7 +15,7 @@ namespace shatterbox::fracture {
 
 struct Perforation {
   Striker striker;
-  std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null: he is far from it
+  std::shared_ptr<const geometry::SolidComplex> complex;  // cut, settled; null: he is far
   std::vector<geometry::PunchSide> sides;                 // of the plug
   double thickness = 0.0;    // m, of the material in the striker's way, along it: the mean over his section
   double plug_volume = 0.0;  // m3
@@ -34,10 +34,10 @@ struct Perforation {
   double momentum_share() const;
 };
 
-/// Of a striker that has less than about a tenth of the energy only that is said: no cut, a guess of what he
-/// needs. Nothing where the law does not tell: he meets at a slant of more than 60 degrees (then he slides
-/// off), his plug would be narrower than `least_width` m or more than what is left, or his line parts
-/// nothing. `density` in kg/m3; `tag` is that of the new crack facets.
+/// Of a striker that has less than about a tenth of the energy, or meets at a slant of more than 60 degrees
+/// and slides off, only that he is far is said. Nothing where the law does not tell: his plug would be
+/// narrower than `least_width` m or more than what is left, or his line parts nothing. `tag` is that of the
+/// new crack facets.
 std::optional<Perforation> find_perforation(const geometry::SolidComplex& complex,
                                             const material::Material& material, const Striker& striker,
                                             double least_width, int tag);

@@ -180,7 +180,8 @@ TEST_CASE("perforation: at a slant the way is longer and beyond sixty degrees th
     last = hole->needed;
   }
   const Vec3 grazing(std::sin(65 * degree), 0.0, std::cos(65 * degree));
-  CHECK_FALSE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0));
+  REQUIRE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0));
+  CHECK_FALSE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0)->is_near());
 }
 
 TEST_CASE("perforation: around the limit the energy decides and nobody asks where it is far") {
