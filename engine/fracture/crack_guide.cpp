@@ -47,6 +47,20 @@ Mat3 guide_conduction(const Vec3& across, double sureness) {
   return Mat3::Identity() - sureness * (1.0 - kLeastConduction) * across * across.transpose();
 }
 
+void settle_near_nodes(const geometry::TetMesh& mesh, const std::vector<double>& known,
+                       std::vector<double>& field) {
+  std::vector<double> change(field.size(), 0.0);
+  for (const geometry::Tetrahedron& t : mesh.tetrahedra) {
+    if (std::any_of(t.begin(), t.end(), [&](int v) { return known[at(v)] == 0.0; })) continue;
+    const auto [low, high] =
+        std::minmax({field[at(t[0])], field[at(t[1])], field[at(t[2])], field[at(t[3])]});
+    for (const int v : t) change[at(v)] = std::max(change[at(v)], high - low);
+  }
+  for (Size v = 0; v < field.size(); ++v)
+    if (known[v] != 0.0 && std::abs(field[v]) <= kToNode * change[v])
+      field[v] = std::max(kOnNode * change[v], 1e-300);
+}
+
 CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements)
     : mesh_(mesh), elements_(std::move(elements)), number_(mesh.positions.size(), -1) {
   for (const GuideElement& e : elements_)

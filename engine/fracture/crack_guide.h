@@ -46,6 +46,11 @@ class CrackGuide {
   std::unique_ptr<Factor> factor_;
 };
 
+/// Puts nodes near the zero of a field (by node) on it, as potential() does: they get a positive value that
+/// is next to nothing. Where `known` is 0, so is the field, and is not looked at.
+void settle_near_nodes(const geometry::TetMesh& mesh, const std::vector<double>& known,
+                       std::vector<double>& field);
+
 /// The potential's conduction: across the planes normal to `across` (unit) by as much less as `sureness`
 /// (0 to 1) says.
 Mat3 guide_conduction(const Vec3& across, double sureness);

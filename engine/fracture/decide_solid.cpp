@@ -114,19 +114,10 @@ class SolidDecider {
         consider(candidates, c, flaw.place, flaw.strength, static_cast<int>(&flaw - flaws.flaws.data()));
       }
       if (!has_flaw && part.volume > 0.0)
-        consider(sound, c, centroid_of(complex, part), flaws.greatest_strength,
+        consider(sound, c, cell_centre(complex, part), flaws.greatest_strength,
                  static_cast<int>(flaws.flaws.size() + c));
     }
     return candidates.empty() ? sound : candidates;
-  }
-
-  static Vec3 centroid_of(const geometry::SolidComplex& complex, const geometry::SolidPart& part) {
-    const geometry::TetMesh& mesh = complex.elements->mesh;
-    const geometry::Tetrahedron& t = mesh.tetrahedra[at(part.element)];
-    const Vec3& a = mesh.positions[at(t[0])];
-    Vec3 centroid = a;
-    for (int i = 0; i < 3; ++i) centroid += part.centroid(i) * (mesh.positions[at(t[at(i + 1)])] - a);
-    return centroid;
   }
 
   /// A plate that is gone through is dished as by a hit that it holds and that gives it as much momentum.
@@ -183,6 +174,7 @@ class SolidDecider {
     setup.stresses = &stresses_;
     setup.pieces = &pieces_;
     setup.material = &subject_.material;
+    setup.grains = subject_.grains.get();
     setup.noise_a = &*noise_a_;
     setup.noise_b = &*noise_b_;
     for (const SolidPress& press : force_.presses())
@@ -218,6 +210,7 @@ class SolidDecider {
       settle(*complex);
       decision_.cracks += tracer.crack_count();
       decision_.new_area += tracer.area();
+      decision_.grain_area += tracer.grain_area();
       decision_.fracture_energy += tracer.energy();
       decision_.trace_ms += core::milliseconds_since(start);
       if (tracer.is_out_of_energy() || tracer.area() < kSolidGrowthThatCounts * decision_.new_area) break;

@@ -14,6 +14,7 @@
 #include "engine/fracture/solid_dent.h"
 #include "engine/fracture/solid_flaws.h"
 #include "engine/fracture/solid_model.h"
+#include "engine/fracture/space_grains.h"
 #include "engine/geometry/solid_complex.h"
 #include "engine/material/material.h"
 
@@ -28,6 +29,7 @@ struct SolidSubject {
   std::shared_ptr<const SolidModel> model;
   std::shared_ptr<KeptSolidModel> kept_model;  // where the model is kept that `model` is not yet; may be null
   std::shared_ptr<const SolidFlawField> flaws;
+  std::shared_ptr<const SpaceGrains> grains;  // null: none
   material::Material material;
   std::vector<int> clamped_vertices;  // held, of the element mesh, ascending; empty: a free body
   std::uint64_t seed = 1;

@@ -9,6 +9,7 @@
 #include "engine/core/index.h"
 #include "engine/core/random.h"
 #include "engine/fracture/flaws.h"
+#include "engine/fracture/seed_spacing.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -16,37 +17,7 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kCandidatesPerSeed = 8.0;  // darts thrown for every seed that is wanted
-constexpr double kLeastSpacing = 0.7;       // of seeds, share of the spacing
-constexpr double kWeightScatter = 0.15;
 constexpr double kVertexLead = 0.1;  // energy lead of a vertex's grain, share of its shortest edge
-
-/// Points in cubes of a given side, for neighbours within one side. Cubes in a total order, never hashed.
-class CubeGrid {
- public:
-  explicit CubeGrid(double side) : side_(side) {}
-  void add(const Vec3& p, int number) { cubes_[cube(p)].push_back(number); }
-  template <class Visit>
-  void visit_near(const Vec3& p, int reach, const Visit& visit) const {
-    const std::array<int, 3> c = cube(p);
-    for (int i = -reach; i <= reach; ++i)
-      for (int j = -reach; j <= reach; ++j)
-        for (int k = -reach; k <= reach; ++k) {
-          const auto found = cubes_.find({c[0] + i, c[1] + j, c[2] + k});
-          if (found == cubes_.end()) continue;
-          for (const int number : found->second) visit(number);
-        }
-  }
-
- private:
-  std::array<int, 3> cube(const Vec3& p) const {
-    std::array<int, 3> c{};
-    for (int i = 0; i < 3; ++i) c[at(i)] = static_cast<int>(std::floor(p[i] / side_));
-    return c;
-  }
-  double side_;
-  std::map<std::array<int, 3>, std::vector<int>> cubes_;
-};
 
 /// Shortest and longest edge at each vertex, m.
 struct VertexScale {
@@ -72,38 +43,40 @@ struct VertexGrain {
   double energy = 0.0;
 };
 
-double seed_energy(const GrainSeed& seed, const Vec3& x) {
-  return seed.weight * (x - seed.position).norm();
-}
-
 }  // namespace
 
+Mat3 grain_squeeze(const material::Material& material) {
+  const double length = material.grain_direction.norm();
+  if (!(length > 0.0)) return Mat3::Identity();
+  const Vec3 along = material.grain_direction / length;
+  return Mat3::Identity() - (1.0 - 1.0 / length) * along * along.transpose();
+}
+
+double seed_energy(const GrainSeed& seed, const Mat3& squeeze, const Vec3& x) {
+  return seed.weight * (squeeze * (x - seed.position)).norm();
+}
+
 std::vector<GrainSeed> scatter_grain_seeds(const geometry::ShellElements& elements, double spacing,
-                                           std::uint64_t seed) {
+                                           std::uint64_t seed, const Mat3& squeeze) {
   std::vector<GrainSeed> seeds;
   if (!(spacing > 0.0)) return seeds;
   std::vector<SurfacePoint> darts =
-      scatter_on_surface(elements, kCandidatesPerSeed / (spacing * spacing), core::mix(seed + 0x6772a1));
+      scatter_on_surface(elements, kDartsPerSeed / (spacing * spacing), core::mix(seed + 0x6772a1));
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });
-  const double least = kLeastSpacing * spacing;
-  CubeGrid grid(least);
+  SeedSpacing chosen(kLeastSeedSpacing * spacing, squeeze);
   for (const SurfacePoint& dart : darts) {
     const Vec3 x = position_in_element(elements, dart.element, dart.barycentric);
-    bool is_free = true;
-    grid.visit_near(x, 1, [&](int other) {
-      is_free = is_free && (seeds[at(other)].position - x).squaredNorm() >= least * least;
-    });
-    if (!is_free) continue;
-    grid.add(x, static_cast<int>(seeds.size()));
+    if (!chosen.take(x)) continue;
     core::Random random(dart.key, 3);
-    seeds.push_back({x, 1.0 + kWeightScatter * random.uniform(-1.0, 1.0)});
+    seeds.push_back({x, 1.0 + kSeedWeightScatter * random.uniform(-1.0, 1.0)});
   }
   return seeds;
 }
 
-GrainField make_grain_field(const geometry::ShellElements& elements, std::vector<GrainSeed> seeds) {
+GrainField make_grain_field(const geometry::ShellElements& elements, std::vector<GrainSeed> seeds,
+                            const Mat3& squeeze) {
   GrainField field;
   field.seeds = std::move(seeds);
   if (field.seeds.empty()) return field;
@@ -121,7 +94,7 @@ GrainField make_grain_field(const geometry::ShellElements& elements, std::vector
     int best = 0;
     std::vector<double> energies(field.seeds.size());
     for (Size i = 0; i < field.seeds.size(); ++i) {
-      energies[i] = seed_energy(field.seeds[i], x);
+      energies[i] = seed_energy(field.seeds[i], squeeze, x);
       if (energies[i] < energies[at(best)]) best = static_cast<int>(i);
     }
     const double least = energies[at(best)];
@@ -148,7 +121,7 @@ GrainField make_grain_field(const geometry::ShellElements& elements, std::vector
         const Size v = at(triangle[i]);
         energy.corners[i] = winners[v].grain == grain
                                 ? winners[v].energy
-                                : seed_energy(field.seeds[at(grain)], elements.mesh.positions[v]);
+                                : seed_energy(field.seeds[at(grain)], squeeze, elements.mesh.positions[v]);
       }
       energies.push_back(energy);
     }

@@ -8,6 +8,7 @@
 
 #include "engine/core/vec.h"
 #include "engine/geometry/shell_mesh.h"
+#include "engine/material/material.h"
 
 namespace shatterbox::fracture {
 
@@ -15,6 +16,13 @@ struct GrainSeed {
   Vec3 position = Vec3::Zero();  // material space, m
   double weight = 1.0;           // k: a larger one makes a smaller grain
 };
+
+/// What makes grains long: distances are measured after it has shortened them along the material's
+/// grain_direction.
+Mat3 grain_squeeze(const material::Material& material);
+
+/// Energy of a seed's grain at a place, m.
+double seed_energy(const GrainSeed& seed, const Mat3& squeeze, const Vec3& x);
 
 /// Energy of one grain at one element's three corners, m.
 struct GrainEnergy {
@@ -38,14 +46,15 @@ struct GrainCrossing {
   int grain_a = 0, grain_b = 0;
 };
 
-/// Seeds about `spacing` metres apart on the surface, never nearer than 0.7 spacing, with weights within 15 %
-/// of one. They do not depend on the triangles.
+/// Seeds about `spacing` metres apart on the surface, never nearer than 0.7 spacing (squeezed), with weights
+/// within 15 % of one. They do not depend on the triangles.
 std::vector<GrainSeed> scatter_grain_seeds(const geometry::ShellElements& elements, double spacing,
-                                           std::uint64_t seed);
+                                           std::uint64_t seed, const Mat3& squeeze = Mat3::Identity());
 
 /// The field of `seeds`. At every vertex the least energy is lowered a little where a second one is near it,
 /// so that no boundary passes within about a twentieth of an edge of a vertex.
-GrainField make_grain_field(const geometry::ShellElements& elements, std::vector<GrainSeed> seeds);
+GrainField make_grain_field(const geometry::ShellElements& elements, std::vector<GrainSeed> seeds,
+                            const Mat3& squeeze = Mat3::Identity());
 
 /// The grain at a point of an element; -1 without grains.
 int grain_at(const GrainField& field, int element, const Vec2& barycentric);

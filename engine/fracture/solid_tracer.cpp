@@ -5,6 +5,7 @@
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/stop.h"
+#include "engine/fracture/grain_surface.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -53,13 +54,28 @@ SolidTracer::SolidTracer(geometry::SolidComplex& complex, SolidTracerSetup setup
   toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
 }
 
-bool SolidTracer::pay(double area) {
-  const double cost = setup_.material->fracture_energy * area;
+/// Fracture energy of a boundary between grains, share of their own: K_Ic falls as the strength does.
+double SolidTracer::boundary_weakness() const {
+  return setup_.material->grain_strength * setup_.material->grain_strength;
+}
+
+/// The same of what the present crack goes through in an element.
+double SolidTracer::weakness_at(int element) const {
+  const bool is_weak =
+      setup_.grains != nullptr &&
+      is_on_boundary(*setup_.grains, complex_.elements->mesh.tetrahedra[at(element)], *field_.values());
+  return is_weak ? boundary_weakness() : 1.0;
+}
+
+bool SolidTracer::pay(double area, double weakness) {
+  const double cost = weakness * setup_.material->fracture_energy * area;
   if (setup_.energy_budget >= 0.0 && energy_ + cost > setup_.energy_budget) {
     is_out_of_energy_ = true;
     return false;
   }
   energy_ += cost;
+  new_energy_ += cost;
+  if (weakness < 1.0) new_grain_area_ += area;
   return true;
 }
 
@@ -154,7 +170,8 @@ void SolidTracer::grow() {
     const double intensity =
         std::max(std::max({0.0, mean, tension}) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
                  solved * falling(solved_area_ / area));
-    if (intensity < toughness_ || !pay(cap.area)) {
+    const double weakness = weakness_at(element);
+    if (intensity < core::sqrt(weakness) * toughness_ || !pay(cap.area, weakness)) {
       rests_.push_back(element);
       if (is_out_of_energy_) return;
       continue;
@@ -169,7 +186,7 @@ bool SolidTracer::take() {
   if (active_.empty()) return false;
   if (crack_area_ < kLeastArea * setup_.least_size * setup_.least_size) {
     for (const int cell : active_) entered_[at(cell)] = 0;
-    energy_ -= setup_.material->fracture_energy * new_area_;
+    energy_ -= new_energy_;
     return false;
   }
   for (Size i = 0; i < active_.size(); ++i) {
@@ -191,7 +208,7 @@ void SolidTracer::begin(int id, double area) {
   next_order_ = 0;
   present_id_ = id;
   crack_area_ = solved_area_ = area;
-  new_area_ = crack_force_ = 0.0;
+  new_area_ = new_grain_area_ = new_energy_ = crack_force_ = 0.0;
   if (lengths_.size() <= at(id)) lengths_.resize(at(id) + 1, 0.0);
 }
 
@@ -296,10 +313,12 @@ bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>&
   const stress::PrincipalAxes axes = stress::principal_axes((*setup_.stresses)[at(origin_[at(cell)])]);
   begin(setup_.first_id + crack_count_, 0.0);
   const int piece = (*setup_.pieces)[at(origin_[at(cell)])];
-  field_.take(std::make_shared<const std::vector<double>>(
-      guide_of(piece).potential(element, candidate.place, axes.directions.col(0))));
+  std::vector<double> values = guide_of(piece).potential(element, candidate.place, axes.directions.col(0));
+  if (setup_.grains != nullptr)
+    values = follow_grains(*setup_.grains, complex_.elements->mesh, values, element, boundary_weakness());
+  field_.take(std::make_shared<const std::vector<double>>(std::move(values)));
   const CrackCap cap = field_.cap(cell);
-  if (!(cap.area > 0.0) || !pay(cap.area)) return false;
+  if (!(cap.area > 0.0) || !pay(cap.area, weakness_at(element))) return false;
   enter(cell, cap, 0.0);
   grow();
   if (!take()) return false;
@@ -355,6 +374,7 @@ void SolidTracer::cut() {
   for (Size c = before; c < complex_.cells.size(); ++c)
     if (origin_[c] < 0) origin_[c] = origin_[at(cutter_.cells_of(complex_.cells[c].element).front())];
   area_ += new_area_;
+  grain_area_ += new_grain_area_;
   lengths_[at(present_id_)] = core::sqrt(crack_area_);
 }
 

@@ -10,6 +10,7 @@
 #include "engine/fracture/crack_set.h"
 #include "engine/fracture/path_noise.h"
 #include "engine/fracture/solid_crack.h"
+#include "engine/fracture/space_grains.h"
 #include "engine/geometry/solid_complex.h"
 #include "engine/geometry/solid_cutter.h"
 #include "engine/material/material.h"
@@ -50,6 +51,7 @@ struct SolidTracerSetup {
   const std::vector<int>* pieces = nullptr;                    // that each of these cells is in
   SolvedOpening solved;
   const material::Material* material = nullptr;
+  const SpaceGrains* grains = nullptr;  // null: none
   const PathNoise* noise_a = nullptr;
   const PathNoise* noise_b = nullptr;
   std::vector<SolidLoadCentre> centres;
@@ -69,9 +71,10 @@ class SolidTracer {
   /// They join `cracks`.
   void nucleate(std::vector<SolidCandidate> candidates, std::vector<OpenCrack>& cracks);
 
-  int crack_count() const { return crack_count_; }  // new ones
-  double area() const { return area_; }             // m2, of the new cracks
-  double energy() const { return energy_; }         // J, used
+  int crack_count() const { return crack_count_; }   // new ones
+  double area() const { return area_; }              // m2, of the new cracks
+  double grain_area() const { return grain_area_; }  // m2 of it, along grain boundaries
+  double energy() const { return energy_; }          // J, used
   bool is_out_of_energy() const { return is_out_of_energy_; }
 
  private:
@@ -94,7 +97,9 @@ class SolidTracer {
   Mat3 conduction(int element, const stress::SolidStress& stress) const;
   double tension_across(int cell, const Vec3& gradient) const;
   std::optional<double> intensity_beside(int cell);
-  bool pay(double area);
+  double boundary_weakness() const;
+  double weakness_at(int element) const;
+  bool pay(double area, double weakness);
   bool take();
   void add_cells_beyond(std::vector<int>& cells);
   void cut();
@@ -114,11 +119,13 @@ class SolidTracer {
   std::vector<Front> fronts_;         // heap
   std::vector<int> rests_;            // elements that the present crack did not enter
   int next_order_ = 0, crack_count_ = 0, present_id_ = 0;
-  double crack_area_ = 0.0;   // m2, of the present crack
-  double solved_area_ = 0.0;  // m2, of it when it was solved
-  double crack_force_ = 0.0;  // N, across what of it is new
-  double new_area_ = 0.0;     // m2, of that
-  double area_ = 0.0, energy_ = 0.0, toughness_ = 0.0;
+  double crack_area_ = 0.0;      // m2, of the present crack
+  double solved_area_ = 0.0;     // m2, of it when it was solved
+  double crack_force_ = 0.0;     // N, across what of it is new
+  double new_area_ = 0.0;        // m2, of that
+  double new_grain_area_ = 0.0;  // m2 of that, along grain boundaries
+  double new_energy_ = 0.0;      // J, for it
+  double area_ = 0.0, grain_area_ = 0.0, energy_ = 0.0, toughness_ = 0.0;
   bool is_out_of_energy_ = false;
 };
 

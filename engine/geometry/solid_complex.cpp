@@ -283,6 +283,15 @@ void settle(SolidComplex& complex) {
   });
 }
 
+Vec3 cell_centre(const SolidComplex& complex, const SolidPart& cell) {
+  const TetMesh& mesh = complex.elements->mesh;
+  const Tetrahedron& t = mesh.tetrahedra[at(cell.element)];
+  const Vec3& origin = mesh.positions[at(t[0])];
+  Vec3 centre = origin;
+  for (int i = 0; i < 3; ++i) centre += cell.centroid(i) * (mesh.positions[at(t[at(i + 1)])] - origin);
+  return centre;
+}
+
 double total_volume(const SolidComplex& complex) {
   double sum = 0.0;
   for (const SolidPart& cell : complex.cells) sum += cell.volume;

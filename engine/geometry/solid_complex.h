@@ -118,6 +118,9 @@ Vec3 facet_area_vector(const SolidComplex& complex, const SolidFacet& facet);
 /// Volume of a settled cell, m3, by the divergence theorem.
 double cell_volume(const SolidComplex& complex, int cell);
 
+/// Centroid of a measured cell, m.
+Vec3 cell_centre(const SolidComplex& complex, const SolidPart& cell);
+
 /// Settles all facets and cells and makes all volumes and centroids known.
 void settle(SolidComplex& complex);
 

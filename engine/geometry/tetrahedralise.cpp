@@ -105,6 +105,11 @@ void drop_empty_elements(SolidElements& elements, SolidMaterial& material) {
 
 }  // namespace
 
+double element_size_for(const TriangleMesh& surface, const TetrahedraOptions& options) {
+  return options.element_size == 0.0 && options.count > 0 ? size_for_count(surface, options)
+                                                          : options.element_size;
+}
+
 core::Result<EmbeddedSolid> tetrahedralise(const TriangleMesh& surface, const TetrahedraOptions& options) {
   const EdgeTopology edges = build_edge_topology(surface.triangles);
   for (Size e = 0; e < edges.edges.size(); ++e)
@@ -113,8 +118,7 @@ core::Result<EmbeddedSolid> tetrahedralise(const TriangleMesh& surface, const Te
                          at_place(surface.positions[at(edges.edges[e][0])])};
   const double volume = enclosed_volume(surface);
   if (!(volume > 0.0)) return core::Error{"the surface is inside out, or encloses nothing"};
-  double size = options.element_size;
-  if (size == 0.0 && options.count > 0) size = size_for_count(surface, options);
+  const double size = element_size_for(surface, options);
   if (const auto fault = find_size_fault("the element size", size)) return core::Error{*fault};
 
   core::Result<TetMesh> lattice = make_covering_lattice(surface, size, kMostTetrahedra);

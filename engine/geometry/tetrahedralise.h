@@ -17,6 +17,9 @@ struct TetrahedraOptions {
   bool warps = true;  // vertices near the surface are moved to it; false: the lattice as it is
 };
 
+/// The element size that tetrahedralise() takes for a surface, m.
+double element_size_for(const TriangleMesh& surface, const TetrahedraOptions& options);
+
 struct EmbeddedSolid {
   std::shared_ptr<const SolidElements> elements;
   EmbeddedMaterial embedded;

@@ -242,6 +242,8 @@ std::vector<Preset> make_presets() {
   };
 }
 
+constexpr double kLongestGrain = 100.0;  // times its width
+
 struct Range {
   const char* name;
   double Material::*value;
@@ -309,7 +311,14 @@ std::optional<std::string> find_fault(const Material& material) {
          << value << ")";
     return text.str();
   }
-  return std::nullopt;
+  const double length = material.grain_direction.norm();
+  if (std::isfinite(length) && (length == 0.0 || (length >= 1.0 - 1e-12 && length <= kLongestGrain)))
+    return std::nullopt;
+  std::ostringstream text;
+  text << "grain_direction of material \"" << material.name << "\" must be zero or from 1 to "
+       << kLongestGrain << " long, as many times as grains are longer along it than across (it is " << length
+       << " long)";
+  return text.str();
 }
 
 }  // namespace shatterbox::material

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/vec.h"
+
 namespace shatterbox::material {
 
 struct Material {
@@ -21,9 +23,12 @@ struct Material {
   double surface_compression = 0.0;  // of sheets: stored in their faces, Pa; 0: annealed
   double weibull_modulus = 5.0;      // scatter of the flaws' strengths, dimensionless: larger is more even
   double flaw_area = 1e-2;           // area that holds one flaw below the strength on average, m2
-  double crack_spacing = 0.5;     // how far cracks keep apart, share of the shielded length; smaller is finer
-  double grain_size = 0.0;        // mean distance of grain seeds, m; 0: no grains
-  double grain_strength = 0.6;    // strength of grain boundaries, share of the material's
+  double crack_spacing = 0.5;   // how far cracks keep apart, share of the shielded length; smaller is finer
+  double grain_size = 0.0;      // mean distance of grain seeds, m; 0: no grains
+  double grain_strength = 0.6;  // strength of grain boundaries, share of the material's
+  // In the body's own axes; its length, at least 1, tells how many times longer than across grains are along
+  // it. Zero: they are alike in all directions.
+  Vec3 grain_direction = Vec3::Zero();
   double friction = 0.5;          // Coulomb, dimensionless
   double rolling_friction = 0.0;  // m: radius of the patch that it rolls, and spins, on
   double restitution = 0.3;       // Newton, in [0, 1]

@@ -1,8 +1,11 @@
 #include "engine/world/forms.h"
 
 #include <algorithm>
+#include <cstdio>
 
+#include "engine/core/elementary.h"
 #include "engine/fracture/shell_subject.h"
+#include "engine/fracture/space_grains.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/shell_surface.h"
 #include "engine/geometry/solid_kerf.h"
@@ -38,10 +41,13 @@ fracture::ShellSubject make_subject(const ShellDescription& shell, const materia
   subject.thickness = shell.thickness;
   subject.clamped_vertices = shell.clamped;
   std::sort(subject.clamped_vertices.begin(), subject.clamped_vertices.end());
-  if (material.grain_size > 0.0)
+  if (material.grain_size > 0.0) {
+    const Mat3 squeeze = fracture::grain_squeeze(material);
     subject.grains = std::make_shared<const fracture::GrainField>(fracture::make_grain_field(
         *subject.mesh->elements,
-        fracture::scatter_grain_seeds(*subject.mesh->elements, material.grain_size, subject.seed)));
+        fracture::scatter_grain_seeds(*subject.mesh->elements, material.grain_size, subject.seed, squeeze),
+        squeeze));
+  }
   return subject;
 }
 
@@ -77,6 +83,13 @@ double centre_mesh(geometry::TriangleMesh& mesh, const Vec3& centre) {
   return radius;
 }
 
+geometry::TetrahedraOptions options_of(const SolidDescription& solid) {
+  geometry::TetrahedraOptions options;
+  options.element_size = solid.element_size;
+  options.count = kUsualTetrahedra;
+  return options;
+}
+
 /// m: a volume over the two greatest sides of the box about some points.
 double width_of(const std::vector<Vec3>& points, double volume) {
   Vec3 low = Vec3::Constant(1e300), high = -low;
@@ -89,19 +102,45 @@ double width_of(const std::vector<Vec3>& points, double volume) {
   return volume / (box(1) * box(2));
 }
 
+/// The grains of a solid with its centre of mass in the origin; null: it has none.
+core::Result<std::shared_ptr<const fracture::SpaceGrains>> make_grains(const material::Material& material,
+                                                                       const geometry::TriangleMesh& surface,
+                                                                       const geometry::TetMesh& mesh) {
+  if (!(material.grain_size > 0.0)) return std::shared_ptr<const fracture::SpaceGrains>();
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (const Vec3& p : surface.positions) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double count = fracture::expected_grains(high - low, material);
+  if (count <= fracture::kMostSpaceGrains)
+    return std::make_shared<const fracture::SpaceGrains>(
+        fracture::make_space_grains(mesh, material, fracture::SolidSubject{}.seed));
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "a grain_size of %.3g m makes some %.0f grains of it, and a solid has %.0f at most: give its "
+                "material %.2g m or more, or 0 for none",
+                material.grain_size, count, fracture::kMostSpaceGrains,
+                1.05 * material.grain_size * core::pow(count / fracture::kMostSpaceGrains, 1.0 / 3.0));
+  return core::Error{text};
+}
+
 /// What a solid's verdict needs; `surface` has its centre of mass in the origin.
 core::Result<fracture::SolidSubject> make_subject(const SolidDescription& solid,
                                                   const material::Material& material,
                                                   const geometry::TriangleMesh& surface, const Vec3& centre) {
-  geometry::TetrahedraOptions options;
-  options.element_size = solid.element_size;
-  options.count = kUsualTetrahedra;
-  auto embedded = geometry::tetrahedralise(surface, options);
+  auto embedded = geometry::tetrahedralise(surface, options_of(solid));
   if (!embedded) return core::Error{"it cannot be divided into tetrahedra: " + embedded.error()};
   const auto& elements = embedded.value().elements;
   auto complex = geometry::build_solid_complex(elements, embedded.value().embedded.material);
   geometry::settle(complex);
   fracture::SolidSubject subject;
+  auto grains = make_grains(material, surface, elements->mesh);
+  if (!grains) return core::Error{grains.error()};
+  subject.grains = std::move(grains.value());
+  if (subject.grains)
+    for (geometry::SolidPart& cell : complex.cells)
+      cell.grain = grain_at(*subject.grains, elements->mesh, cell.element, cell_centre(complex, cell));
   subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(complex));
   subject.material = material;
   // Vertices of the elements lie a little beyond the surface.
@@ -122,6 +161,10 @@ core::Result<fracture::SolidSubject> make_subject(const SolidDescription& solid,
 }
 
 }  // namespace
+
+double element_size_of(const SolidDescription& solid) {
+  return geometry::element_size_for(solid.mesh, options_of(solid));
+}
 
 std::string find_form_fault(const BodyDescription& description) {
   if (const auto* box = std::get_if<BoxDescription>(&description.form))

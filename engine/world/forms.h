@@ -29,6 +29,9 @@ struct Substance {
 /// Why a form cannot be made; empty if it can.
 std::string find_form_fault(const BodyDescription& description);
 
+/// m: of the elements into which a solid is divided if it may break.
+double element_size_of(const SolidDescription& solid);
+
 /// What a form is found again by.
 std::uint64_t form_key(const ShellDescription& shell, const Substance& substance);
 std::uint64_t form_key(const SolidDescription& solid, const Substance& substance);

@@ -68,10 +68,12 @@ std::vector<PartCount> World::inventory() const {
     if (body::is_mesh(body.shape->kind)) surfaces.insert(body.shape.get());
   std::set<const geometry::SolidComplex*> complexes;
   std::set<const fracture::SolidFlawField*> solid_flaws;
+  std::set<const fracture::SpaceGrains*> solid_grains;
   for (const auto& [id, fragile] : s.moving.fragiles) {
     if (const auto* solid = std::get_if<fracture::SolidSubject>(&fragile->subject)) {
       complexes.insert(solid->complex.get());
       solid_flaws.insert(solid->flaws.get());
+      solid_grains.insert(solid->grains.get());
       continue;
     }
     const auto& subject = std::get<fracture::ShellSubject>(fragile->subject);
@@ -97,6 +99,14 @@ std::vector<PartCount> World::inventory() const {
   });
   all_flaws.count += flaws_in_volume.count;
   all_flaws.bytes += flaws_in_volume.bytes;
+  PartCount all_grains = count_shared("grains", grains, [](const fracture::GrainField& g) {
+    return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);
+  });
+  const PartCount grains_in_volume = count_shared("grains", solid_grains, [](const fracture::SpaceGrains& g) {
+    return bytes_in(g.seeds) + bytes_in(g.near) + bytes_in(g.first_of_node) + bytes_in(g.reach);
+  });
+  all_grains.count += grains_in_volume.count;
+  all_grains.bytes += grains_in_volume.bytes;
   PartCount pairs{"near_pairs", 0, 0.0}, friction{"friction", 0, 0.0};
   for (const dynamics::PairState& pair : s.moving.contact.pairs) {
     ++pairs.count;
@@ -124,10 +134,7 @@ std::vector<PartCount> World::inventory() const {
                             bytes_in(c.facets) + bytes_in(c.cell_facets) + bytes_in(c.cells);
                    }),
       all_flaws,
-      count_shared("grains", grains,
-                   [](const fracture::GrainField& g) {
-                     return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);
-                   }),
+      all_grains,
       count_virtual_nodes(s.moving.fragiles),
       {"impact_memory", memory, static_cast<double>(memory) * sizeof(ImpactMemory)},
       pairs,

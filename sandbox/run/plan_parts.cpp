@@ -74,7 +74,7 @@ std::vector<PartPlan> plan_parts(const SceneDescription& scene, const Options& o
   const bool may_free = !breakable.empty();  // pieces move, even of what is held
   const std::string mover = moving.empty() && may_free ? breakable : moving;
   const std::string grained = find_body_that(scene, [&](const BodyEntry& b) {
-    return can_break_as<scene::ShellForm>(b) &&
+    return scene::can_break(b) &&
            scene.materials[static_cast<std::size_t>(b.material)].material.grain_size > 0.0;
   });
   const std::string late = find_body_that(scene, [](const BodyEntry& b) { return b.repeat.every > 0.0; });

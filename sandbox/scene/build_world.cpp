@@ -9,6 +9,7 @@
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_diagnosis.h"
 #include "engine/material/tempering.h"
+#include "engine/world/forms.h"
 #include "sandbox/scene/build_joints.h"
 #include "sandbox/scene/build_mesh.h"
 #include "sandbox/scene/limits.h"
@@ -18,6 +19,7 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 constexpr double kMostDice = 2000.0;  // that are played without a word
+constexpr double kFinestGrain = 1.8;  // elements that it takes to tell a grain
 
 /// About the frame's origin and about the centre of mass, which is known.
 void find_radii(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
@@ -52,10 +54,23 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
   return shell;
 }
 
+/// A crack goes round grains by way of the elements' nodes.
+void note_fine_grains(const BodyEntry& body, const world::SolidDescription& solid,
+                      const SceneDescription& scene, std::vector<std::string>& notes) {
+  const double grain = scene.materials[static_cast<std::size_t>(body.material)].material.grain_size;
+  if (!solid.is_breakable || !(grain > 0.0)) return;
+  const double size = world::element_size_of(solid);
+  if (grain < kFinestGrain * size)
+    notes.push_back(
+        fmt::format("the grains of \"{}\" are {:.3g} m wide and its elements {:.3g} m: cracks cannot tell "
+                    "them; element_size = {:.2g} can",
+                    body.name, grain, size, grain / kFinestGrain));
+}
+
 /// A solid's mesh has an inside: closed, of one or several parts that each enclose some.
 std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, const SolidForm& form,
-                                                      BodyPlan& plan, std::vector<std::string>& notes,
-                                                      Problems& problems) {
+                                                      const SceneDescription& scene, BodyPlan& plan,
+                                                      std::vector<std::string>& notes, Problems& problems) {
   auto built = build_mesh(form, body.place, problems, notes);
   if (!built) return std::nullopt;
   if (!geometry::diagnose(built->mesh, {.allow_loose_parts = true}).is_closed) {
@@ -72,6 +87,7 @@ std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, con
   solid.held = find_held(built->mesh, body.rotation, body.support, body.place, problems);
   solid.mesh = std::move(built->mesh);
   solid.parts = std::move(built->parts);
+  note_fine_grains(body, solid, scene, notes);
   return solid;
 }
 
@@ -121,7 +137,7 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
     if (!shell) return std::nullopt;
     description.form = std::move(*shell);
   } else if (const auto* solid_form = std::get_if<SolidForm>(&body.form)) {
-    auto solid = describe_solid(body, *solid_form, plan, notes, problems);
+    auto solid = describe_solid(body, *solid_form, scene, plan, notes, problems);
     if (!solid) return std::nullopt;
     description.form = std::move(*solid);
   } else {

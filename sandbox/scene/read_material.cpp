@@ -112,7 +112,7 @@ void read_material(const TomlValue& table, std::size_t index, SceneDescription& 
       {"grain_strength", &m.grain_strength, between(0.0, 1.0)},
   };
   for (const auto& [key, target, range] : numbers) *target = reader.number(key, range).value_or(*target);
-  reader.later({"grain_direction"}, "grains are even in all directions here: grain_size, grain_strength");
+  m.grain_direction = reader.vector("grain_direction", any_number()).value_or(m.grain_direction);
   reader.finish();
   if (const auto fault = material::find_fault(m)) reader.add_problem(table.place, *fault);
   if (find_entry(scene, name) == nullptr) scene.materials.push_back(entry);

@@ -12,13 +12,13 @@ namespace {
 
 constexpr const char* kGlmarkFolder = "/usr/share/glmark2/";  // of a package, for the scene of the bunny
 
-/// What shapes there are for a kind of body, and which there will be.
+/// What shapes there are for a kind of body.
 struct Shapes {
   const char* kind;
-  std::vector<std::string> known, later;
+  std::vector<std::string> known;
 };
-const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "bottle", "egg"}, {}};
-const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg", "figure"}, {"bricks"}};
+const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "bottle", "egg"}};
+const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg", "figure"}};
 const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
                                           "foot_radius", "foot_height",  "height",        "width",
                                           "edge_length", "length",       "beam",          "depth",
@@ -53,10 +53,11 @@ std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDes
     shape.files.push_back(find_mesh_file(name->text, scene.file));
     std::error_code code;
     if (!std::filesystem::is_regular_file(shape.files.back(), code)) {
-      reader.add_problem(name->place, fmt::format("there is no mesh file {}", shape.files.back()),
-                         shape.files.back().starts_with(kGlmarkFolder)
-                             ? "it comes with Debian's package: sudo apt install glmark2-data"
-                             : "files are looked for beside the scene; .obj, .ply, .stl, .glb, .gltf and .3ds are read");
+      reader.add_problem(
+          name->place, fmt::format("there is no mesh file {}", shape.files.back()),
+          shape.files.back().starts_with(kGlmarkFolder)
+              ? "it comes with Debian's package: sudo apt install glmark2-data"
+              : "files are looked for beside the scene; .obj, .ply, .stl, .glb, .gltf and .3ds are read");
     }
   }
   if (names.empty()) reader.add_problem_at("mesh", "mesh names no file");
@@ -174,8 +175,16 @@ std::optional<std::string> read_shape_name(TableReader& reader, const Shapes& sh
   };
   const Shapes& others = &shapes == &kShellShapes ? kSolidShapes : kShellShapes;
   const TomlValue* value = reader.table().find("shape");
+  if (value != nullptr && value->is_text() && value->text == "bricks") {
+    reader.value("shape");
+    reader.add_problem(
+        value->place, "bricks are bodies of their own, each of which can break",
+        "write kind = \"solid\", shape = \"slab\" with the size of one brick, and repeat = { count "
+        "= [12, 10, 1], spacing = ..., bond = 0.5 }, as the scene brick_wall does");
+    return std::nullopt;
+  }
   if (value == nullptr || !value->is_text() || has(shapes, value->text) || !has(others, value->text))
-    return reader.choice("shape", shapes.known, shapes.later);
+    return reader.choice("shape", shapes.known);
   reader.value("shape");
   reader.add_problem(value->place, fmt::format("\"{}\" is the shape of a {}", value->text, others.kind),
                      fmt::format("write kind = \"{}\"", others.kind));

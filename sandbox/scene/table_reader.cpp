@@ -150,17 +150,11 @@ std::optional<Vec3> TableReader::vector(const std::string& key, const Range& ran
 }
 
 std::optional<std::string> TableReader::choice(const std::string& key,
-                                               const std::vector<std::string>& choices,
-                                               const std::vector<std::string>& later) {
+                                               const std::vector<std::string>& choices) {
   const auto word = text(key);
   if (!word || contains(choices, *word)) return word;
-  if (contains(later, *word)) {
-    add_problem_at(key, fmt::format("{} = \"{}\" is not available in this version", key, *word),
-                   fmt::format("available: {}", quoted_list(choices)));
-  } else {
-    add_problem_at(key, fmt::format("unknown {} \"{}\"", key, *word),
-                   hint_for_name(*word, choices, "available"));
-  }
+  add_problem_at(key, fmt::format("unknown {} \"{}\"", key, *word),
+                 hint_for_name(*word, choices, "available"));
   return std::nullopt;
 }
 

@@ -57,9 +57,7 @@ class TableReader {
   std::optional<Vec3> vector(const std::string& key, const Range& range);
   /// A vector, or one number for all three axes.
   std::optional<Vec3> number_or_vector(const std::string& key, const Range& range);
-  /// One of `choices`, which exist, or of `later`, which are refused as not available in this version.
-  std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& choices,
-                                    const std::vector<std::string>& later = {});
+  std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& choices);
   /// The raw value, or null.
   const TomlValue* value(const std::string& key);
 

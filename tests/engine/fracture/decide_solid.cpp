@@ -430,3 +430,34 @@ TEST_CASE("decide solid: cost of a break of thirty thousand tetrahedra", "[solid
             << d.solve_ms << " ms, cracks in " << d.trace_ms << " ms\n";
   CHECK(d.verdict.outcome == Outcome::broke);
 }
+
+TEST_CASE("decide solid: grains lead a crack along their boundaries, and it costs less there") {
+  SolidSubject bar = box(Vec3(0.3, 0.05, 0.05), 0.025, "concrete");
+  const Impact impact = hit(Vec3(0.0, 0.0, 0.05), -Vec3::UnitZ(), 2.0, 8.0);
+  const SolidDecision plain = decide_solid(bar, impact);
+  REQUIRE(plain.verdict.outcome == Outcome::broke);
+  CHECK(plain.grain_area == 0.0);
+  CHECK(plain.fracture_energy == Approx(bar.material.fracture_energy * plain.new_area).epsilon(1e-9));
+
+  bar.material.grain_size = 0.05;
+  bar.grains = std::make_shared<const SpaceGrains>(
+      make_space_grains(bar.complex->elements->mesh, bar.material, bar.seed));
+  for (const double strength : {0.3, 0.8}) {
+    bar.material.grain_strength = strength;
+    const SolidDecision grained = decide_solid(bar, impact);
+    REQUIRE(grained.verdict.outcome == Outcome::broke);
+    // The same flaw under the same stress.
+    CHECK(grained.verdict.ratio == plain.verdict.ratio);
+    CHECK(grained.grain_area > 0.1 * grained.new_area);
+    CHECK(grained.grain_area < grained.new_area);
+    const double through = grained.new_area - grained.grain_area;
+    CHECK(grained.fracture_energy ==
+          Approx(bar.material.fracture_energy * (through + strength * strength * grained.grain_area))
+              .epsilon(1e-9));
+    CHECK(grained.fracture_energy <= grained.elastic_energy);
+    const SolidSplit split = split_solid(*grained.complex);
+    double volume = 0.0;
+    for (const SolidPiece& piece : split.pieces) volume += total_volume(piece.complex);
+    CHECK(volume == Approx(total_volume(*bar.complex)).epsilon(1e-12));
+  }
+}

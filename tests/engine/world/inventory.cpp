@@ -164,9 +164,14 @@ TEST_CASE("ways are tested where something may be met, and rest is watched where
 }
 
 TEST_CASE("a solid has tetrahedra if it can break, and nothing of shells whether it can or not") {
-  for (const bool is_breakable : {false, true}) {
+  struct Case {
+    bool is_breakable, has_grains;
+  };
+  for (const auto& [is_breakable, has_grains] : {Case{false, true}, Case{true, false}, Case{true, true}}) {
     world::World w{world::WorldSettings{}};
-    REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+    material::Material plaster = *material::find_preset("plaster");
+    plaster.grain_size = has_grains ? 0.06 : 0.0;
+    REQUIRE(w.add_material(plaster).ok());
     world::BodyDescription slab;
     world::SolidDescription solid;
     solid.mesh = geometry::make_box_surface(Vec3(0.1, 0.05, 0.05));
@@ -180,6 +185,8 @@ TEST_CASE("a solid has tetrahedra if it can break, and nothing of shells whether
     CHECK((part(w, "tetrahedra").count > 0) == is_breakable);
     CHECK((part(w, "tetrahedra").bytes > 0.0) == is_breakable);
     CHECK((part(w, "flaws").count > 0) == is_breakable);
+    CHECK((part(w, "grains").count > 0) == (is_breakable && has_grains));
+    CHECK((part(w, "grains").bytes > 0.0) == (is_breakable && has_grains));
     CHECK((part(w, "virtual_nodes").count > 0) == is_breakable);  // the lattice reaches beyond the surface
     CHECK(part(w, "bending").count == 0);
     CHECK(part(w, "shell_stiffness").count == 0);

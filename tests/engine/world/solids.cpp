@@ -96,9 +96,12 @@ namespace {
 
 /// A plaster slab that falls on its corner from that height, m; a tenth of a second after it has met the
 /// floor.
-world::World drop_slab(double height, const Vec3& half_extent = Vec3(0.3, 0.03, 0.2)) {
+world::World drop_slab(double height, const Vec3& half_extent = Vec3(0.3, 0.03, 0.2),
+                       double grain_size = 0.0) {
   world::World w{world::WorldSettings{}};
-  REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+  material::Material plaster = *material::find_preset("plaster");
+  plaster.grain_size = grain_size;
+  REQUIRE(w.add_material(plaster).ok());
   world::BodyDescription ground;
   ground.name = "floor";
   ground.form = world::PlaneDescription{};
@@ -150,15 +153,50 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
   CHECK(count_overlaps(first) == 0);
 }
 
+TEST_CASE("a solid with grains breaks along them, into pieces as whole as any") {
+  const world::World broken = drop_slab(1.5, Vec3(0.3, 0.03, 0.2), 0.12);
+  REQUIRE_FALSE(broken.report().breaks.empty());
+  const world::BreakRow& first = broken.report().breaks[0];
+  CHECK(first.pieces >= 2);
+  CHECK(first.grain_share > 0.1);
+  CHECK(first.grain_share < 1.0);
+  CHECK(count_overlaps(first) == 0);
+  for (const world::BreakRow& row : broken.report().breaks) {
+    CHECK(row.mass_error < 1e-10);
+    CHECK(row.momentum_error < 1e-10);
+    CHECK(row.energy_gain < 1e-10);
+    CHECK(row.fracture_energy <= row.elastic_energy);
+  }
+  for (const body::Body& body : broken.bodies()) {
+    if (body.shape->kind != body::ShapeKind::solid) continue;
+    CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
+    for (const int grain : body.shape->triangle_grains) REQUIRE(grain >= 0);
+  }
+}
+
+TEST_CASE("more grains than a solid can have are refused in words") {
+  world::World w{world::WorldSettings{}};
+  material::Material plaster = *material::find_preset("plaster");
+  plaster.grain_size = 1e-3;
+  REQUIRE(w.add_material(plaster).ok());
+  world::BodyDescription slab = make_slab(Vec3(0.3, 0.03, 0.2), Vec3::Zero());
+  std::get<world::SolidDescription>(slab.form).is_breakable = true;
+  const auto id = w.add_body(slab);
+  REQUIRE_FALSE(id.ok());
+  CHECK(id.error().find("grain_size of 0.001 m") != std::string::npos);
+  CHECK(id.error().find("or more") != std::string::npos);
+}
+
 TEST_CASE("solids: a break has the same bits for any number of threads") {
   if (test::kIsSanitized) return;  // the break is that of the test above; who shares its work is tsan's
-  const auto hash = [](int threads) {
+  const auto hash = [](int threads, double grain_size) {
     core::set_thread_count(threads);
-    const std::uint64_t bits = drop_slab(1.0).state_hash();
+    const std::uint64_t bits = drop_slab(1.0, Vec3(0.3, 0.03, 0.2), grain_size).state_hash();
     core::set_thread_count(0);
     return bits;
   };
-  CHECK(hash(1) == hash(3));
+  CHECK(hash(1, 0.0) == hash(3, 0.0));
+  CHECK(hash(1, 0.1) == hash(3, 0.1));
 }
 
 TEST_CASE("a solid on its foot keeps what holds on to it when it is hit") {
