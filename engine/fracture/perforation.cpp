@@ -95,11 +95,7 @@ double guess_volume(const geometry::SolidComplex& complex, const std::vector<int
   double volume = 0.0;
   for (const int c : cells) {
     const geometry::SolidPart& part = complex.cells[at(c)];
-    const geometry::TetMesh& mesh = complex.elements->mesh;
-    const geometry::Tetrahedron& nodes = mesh.tetrahedra[at(part.element)];
-    const Vec3& origin = mesh.positions[at(nodes[0])];
-    Vec3 middle = origin;
-    for (int i = 0; i < 3; ++i) middle += part.centroid(i) * (mesh.positions[at(nodes[at(i + 1)])] - origin);
+    const Vec3 middle = cell_centre(complex, part);
     if (std::all_of(sides.begin(), sides.end(),
                     [&](const PunchSide& side) { return side.normal.dot(middle) <= side.offset; }))
       volume += part.volume;
