@@ -35,7 +35,7 @@ std::vector<double> longest_edges(const geometry::TetMesh& mesh) {
 }
 
 /// Which grains matter at which node.
-void find_near(const geometry::TetMesh& mesh, SpaceGrains& grains) {
+void find_near(const geometry::TetMesh& mesh, const Mat3& squeeze, SpaceGrains& grains) {
   double greatest_weight = 0.0;
   for (const GrainSeed& s : grains.seeds) greatest_weight = std::max(greatest_weight, s.weight);
   grains.reach = longest_edges(mesh);
@@ -44,7 +44,7 @@ void find_near(const geometry::TetMesh& mesh, SpaceGrains& grains) {
   core::parallel_for(near.size(), 64, [&](Size n) {
     double least = 1e300;
     for (Size g = 0; g < grains.seeds.size(); ++g) {
-      const double energy = grains.energy(static_cast<int>(g), mesh.positions[n]);
+      const double energy = seed_energy(grains.seeds[g], squeeze, mesh.positions[n]);
       if (energy > least + grains.reach[n]) continue;
       least = std::min(least, energy);
       near[n].push_back({static_cast<int>(g), energy});
@@ -62,10 +62,6 @@ void find_near(const geometry::TetMesh& mesh, SpaceGrains& grains) {
 }
 
 }  // namespace
-
-double SpaceGrains::energy(int grain, const Vec3& place) const {
-  return seed_energy(seeds[at(grain)], squeeze, place);
-}
 
 double expected_grains(const Vec3& box, const material::Material& material) {
   const double size = material.grain_size;
@@ -105,19 +101,8 @@ SpaceGrains make_space_grains(const geometry::TetMesh& mesh, const material::Mat
   }
   SpaceGrains grains;
   grains.seeds = scatter_grain_seeds(low, high, material, seed);
-  grains.squeeze = grain_squeeze(material);
-  find_near(mesh, grains);
+  find_near(mesh, grain_squeeze(material), grains);
   return grains;
-}
-
-int grain_at(const SpaceGrains& grains, const geometry::TetMesh& mesh, int element, const Vec3& place) {
-  NodeGrain best{-1, 1e300};
-  for (const int node : mesh.tetrahedra[at(element)]) {
-    const int grain = grains.owner(node);
-    const double energy = grains.energy(grain, place);
-    if (energy < best.energy || (energy == best.energy && grain < best.grain)) best = {grain, energy};
-  }
-  return best.grain;
 }
 
 }  // namespace shatterbox::fracture

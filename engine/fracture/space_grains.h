@@ -23,13 +23,9 @@ struct NodeGrain {
 /// Shared by all pieces of one parent.
 struct SpaceGrains {
   std::vector<GrainSeed> seeds;
-  Mat3 squeeze = Mat3::Identity();  // see grain_squeeze
   std::vector<NodeGrain> near;  // of all nodes: those that may win on an edge there, the least energy first
   std::vector<int> first_of_node;  // |nodes of the element mesh| + 1
   std::vector<double> reach;       // |nodes|, m: no other grain's energy is less than this above the least
-
-  /// Energy of a grain at a place, m: it changes by no more than the greatest weight times the way.
-  double energy(int grain, const Vec3& place) const;
 
   std::span<const NodeGrain> of_node(int node) const {
     const auto begin = static_cast<std::size_t>(first_of_node[static_cast<std::size_t>(node)]);
@@ -51,8 +47,5 @@ std::vector<GrainSeed> scatter_grain_seeds(const Vec3& low, const Vec3& high,
 /// The grains of a mesh's material (grain_size above zero).
 SpaceGrains make_space_grains(const geometry::TetMesh& mesh, const material::Material& material,
                               std::uint64_t seed);
-
-/// The grain that a place (m) in an element is in.
-int grain_at(const SpaceGrains& grains, const geometry::TetMesh& mesh, int element, const Vec3& place);
 
 }  // namespace shatterbox::fracture

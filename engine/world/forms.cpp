@@ -138,9 +138,6 @@ core::Result<fracture::SolidSubject> make_subject(const SolidDescription& solid,
   auto grains = make_grains(material, surface, elements->mesh);
   if (!grains) return core::Error{grains.error()};
   subject.grains = std::move(grains.value());
-  if (subject.grains)
-    for (geometry::SolidPart& cell : complex.cells)
-      cell.grain = grain_at(*subject.grains, elements->mesh, cell.element, cell_centre(complex, cell));
   subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(complex));
   subject.material = material;
   // Vertices of the elements lie a little beyond the surface.
