@@ -50,6 +50,34 @@ TEST_CASE("each grain owns the places about its seed") {
   }
 }
 
+TEST_CASE("grains of a sheet are long along the material's direction") {
+  const auto elements = test::make_pane(0.2, 0.003);
+  for (const int axis : {0, 1}) {
+    material::Material m;
+    m.grain_direction = 3.0 * Vec3::Unit(axis);
+    const Mat3 squeeze = fracture::grain_squeeze(m);
+    const auto field = fracture::make_grain_field(
+        *elements, fracture::scatter_grain_seeds(*elements, 0.015, 2, squeeze), squeeze);
+    std::vector<std::vector<Vec3>> members(field.seeds.size());
+    for (int t = 0; t < static_cast<int>(elements->mesh.triangles.size()); ++t) {
+      const Vec2 middle(1.0 / 3.0, 1.0 / 3.0);
+      members[static_cast<std::size_t>(fracture::grain_at(field, t, middle))].push_back(
+          position_in_element(*elements, t, middle));
+    }
+    double along = 0.0, across = 0.0;
+    for (const auto& list : members) {
+      Vec3 mean = Vec3::Zero();
+      for (const Vec3& x : list) mean += x / static_cast<double>(list.size());
+      for (const Vec3& x : list) {
+        along += (x - mean)[axis] * (x - mean)[axis];
+        across += (x - mean)[1 - axis] * (x - mean)[1 - axis];
+      }
+    }
+    REQUIRE(across > 0.0);
+    CHECK(std::sqrt(along / across) == Approx(3.0).epsilon(0.25));
+  }
+}
+
 TEST_CASE("without seeds there are no grains") {
   const auto elements = test::make_pane(0.2, 0.05);
   const auto field = fracture::make_grain_field(*elements, {});
