@@ -15,6 +15,8 @@ using core::at;
 
 constexpr double kOnCrack = 1e-4;  // of the greatest value about: a node that has less is on the crack
 
+constexpr int kSmoothings = 3;
+
 /// On which side of a crack a grain lies.
 struct GrainSide {
   int above = 0, below = 0;  // nodes
@@ -65,6 +67,23 @@ std::vector<double> distances(const geometry::TetMesh& mesh, const std::vector<d
   return out;
 }
 
+/// Where three grains meet a crack has an edge as sharp as they have, and faces that turn so much in one
+/// element find no room to stand back: each value moves to the mean of itself and of its neighbours' mean.
+void smooth(const geometry::TetMesh& mesh, const std::vector<double>& known, std::vector<double>& field) {
+  std::vector<double> sum(field.size(), 0.0), weight(field.size(), 0.0);
+  for (const geometry::Tetrahedron& t : mesh.tetrahedra)
+    for (const auto& edge : geometry::kTetrahedronEdges) {
+      const int a = t[at(edge[0])], b = t[at(edge[1])];
+      if (known[at(a)] == 0.0 || known[at(b)] == 0.0) continue;
+      sum[at(a)] += field[at(b)];
+      sum[at(b)] += field[at(a)];
+      weight[at(a)] += 1.0;
+      weight[at(b)] += 1.0;
+    }
+  for (Size n = 0; n < field.size(); ++n)
+    if (weight[n] > 0.0) field[n] = 0.5 * field[n] + 0.5 * sum[n] / weight[n];
+}
+
 }  // namespace
 
 std::vector<double> follow_grains(const SpaceGrains& grains, const geometry::TetMesh& mesh,
@@ -88,6 +107,7 @@ std::vector<double> follow_grains(const SpaceGrains& grains, const geometry::Tet
     }
     field[n] = below - above;
   }
+  for (int pass = 0; pass < kSmoothings; ++pass) smooth(mesh, potential, field);
   settle_near_nodes(mesh, potential, field);
   return field;
 }

@@ -15,6 +15,9 @@ using core::at;
 
 constexpr double kLeastArea = 0.25;  // of a crack, in squares of the least size
 
+constexpr double kBesideCosine = 0.7;  // between two cracks that run beside each other
+constexpr double kBesideShare = 0.4;   // of the least size, at most, are they then apart
+
 double tension_of(const stress::SolidStress& stress, const Vec3& normal) {
   return normal.dot(stress::stress_tensor(stress) * normal);
 }
@@ -52,6 +55,24 @@ SolidTracer::SolidTracer(geometry::SolidComplex& complex, SolidTracerSetup setup
     volumes_.push_back(complex.cells[c].volume);
   }
   toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
+}
+
+/// Whether an older crack is so near beside the present one in a settled cell that nothing could be told of
+/// what is between: along a boundary between grains only the first one runs.
+bool SolidTracer::runs_beside_crack(int cell, const CrackCap& cap) const {
+  const geometry::SolidPart& part = complex_.cells[at(cell)];
+  const Vec3 across = field_.gradient(part.element).normalized();
+  for (int f = 0; f < part.facet_count; ++f) {
+    const geometry::SolidFacet& facet =
+        complex_.facets[at(complex_.cell_facets[at(part.first_facet + f)] / 2)];
+    if (facet.kind != geometry::FacetKind::crack && facet.kind != geometry::FacetKind::old_crack) continue;
+    const Vec3 normal = facet_area_vector(complex_, facet).normalized();
+    const Vec3& corner = complex_.position(complex_.side_begin(complex_.sides_of(facet)[0]));
+    if (std::abs(normal.dot(across)) > kBesideCosine &&
+        std::abs(normal.dot(cap.middle - corner)) < kBesideShare * setup_.least_size)
+      return true;
+  }
+  return false;
 }
 
 /// Fracture energy of a boundary between grains, share of their own: K_Ic falls as the strength does.
@@ -164,6 +185,7 @@ void SolidTracer::grow() {
     settle_cell(complex_, cell);
     const CrackCap cap = field_.cap(cell);
     if (!(cap.area > 0.0)) continue;
+    if (setup_.grains != nullptr && runs_beside_crack(cell, cap)) continue;
     const double tension = tension_across(cell, field_.gradient(element));
     const double mean = (crack_force_ + cap.area * tension) / (new_area_ + cap.area);
     const double area = crack_area_ + cap.area;

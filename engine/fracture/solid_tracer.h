@@ -97,6 +97,7 @@ class SolidTracer {
   Mat3 conduction(int element, const stress::SolidStress& stress) const;
   double tension_across(int cell, const Vec3& gradient) const;
   std::optional<double> intensity_beside(int cell);
+  bool runs_beside_crack(int cell, const CrackCap& cap) const;
   double boundary_weakness() const;
   double weakness_at(int element) const;
   bool pay(double area, double weakness);
