@@ -17,6 +17,7 @@ using geometry::PunchSide;
 constexpr double kPlugClearance = 0.02;   // of the section's diameter: by which the hole is wider, all around
 constexpr double kPlugTaper = 0.1;        // by which it widens along the way: plugs are cones of some degrees
 constexpr int kPunchSides = 24;           // of a round hole; at most so many of any
+constexpr double kLeastTurn = 1e-5;       // rad, between two sides
 constexpr double kLeastSquareness = 0.5;  // cosine: beyond 60 degrees strikers ricochet
 constexpr double kMostPlug = 0.5;         // of the body: a hole is in what is more than the hole
 constexpr double kShareThatCounts = 0.1;  // of the energy that a hole takes, from which it is looked for
@@ -50,7 +51,11 @@ std::vector<Vec2> side_normals(const Striker& striker) {
   }
   std::sort(angles.begin(), angles.end());
   std::vector<Vec2> normals;
-  for (const double angle : angles) normals.push_back(normal_at(angle));
+  // One side in two parts is one.
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double next = i + 1 < angles.size() ? angles[i + 1] : angles.front() + 2.0 * core::kPi;
+    if (next - angles[i] > kLeastTurn) normals.push_back(normal_at(angles[i]));
+  }
   return normals;
 }
 
@@ -168,7 +173,7 @@ std::optional<Perforation> find_perforation(const geometry::SolidComplex& comple
   // What is straight in his way tells how thick it is and where it begins; the plug is a cone from there.
   geometry::SolidComplex straight = complex;
   const geometry::Punched core = punch_out(straight, way, std::move(cells), tag);
-  if (!(core.volume > 0.0)) return std::nullopt;
+  if (!(core.volume > 0.0)) return std::nullopt;  // nothing is in his way
   out.thickness = core.volume / area_of_way(striker);
   out.sides = sides_of_way(striker, find_front(straight, core.is_inside, striker.direction), kPlugTaper);
   cells = find_punch_cells(complex, out.sides, striker.place);

@@ -229,6 +229,25 @@ TEST_CASE("perforation: square and long stamps cut what they are and what covers
   CHECK_FALSE(find_perforation(plate, steel, make_striker(Vec3::UnitZ(), 5000.0, all, 0.0), 1e-4, 0));
 }
 
+TEST_CASE("perforation: a side in two parts that hardly turn is one side") {
+  const geometry::SolidComplex plate = make_plate(0.02, 0.02);
+  const material::Material steel = *material::find_preset("steel");
+  const double half = 0.03;
+  const std::vector<Vec2> square{{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  const auto plain =
+      find_perforation(plate, steel, make_striker(Vec3::UnitZ(), 900.0, square, 0.0), 1e-4, 100);
+  REQUIRE((plain && plain->is_near()));
+  for (const double out : {0.0, 1e-19, 1e-12}) {
+    std::vector<Vec2> broken = square;
+    broken.insert(broken.begin() + 1, Vec2(0.2 * half, -half - out));
+    const auto hole =
+        find_perforation(plate, steel, make_striker(Vec3::UnitZ(), 900.0, broken, 0.0), 1e-4, 100);
+    REQUIRE((hole && hole->is_near()));
+    CHECK(hole->thickness == Approx(plain->thickness).epsilon(1e-6));
+    CHECK(hole->needed == Approx(plain->needed).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("convex hulls go round once counter-clockwise") {
   const std::vector<Vec2> hull =
       convex_hull({{0, 0}, {1, 0}, {0.5, 0.5}, {1, 1}, {0, 1}, {0.5, 0.0}, {1, 0.3}, {0, 0}});
