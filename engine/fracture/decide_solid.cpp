@@ -224,17 +224,8 @@ class SolidDecider {
       return;
     }
     decision_.verdict.outcome = Outcome::broke;
-    count_parts(*complex);
+    decision_.part_count = count_parts(*complex);
     decision_.complex = std::move(complex);
-  }
-
-  void count_parts(const geometry::SolidComplex& complex) {
-    core::DisjointSets parts(complex.cells.size());
-    for (const geometry::SolidContact& contact : find_solid_contacts(complex))
-      parts.unite(contact.cell_a, contact.cell_b);
-    decision_.part_count = 0;
-    for (int c = 0; c < static_cast<int>(complex.cells.size()); ++c)
-      if (parts.find(c) == c) ++decision_.part_count;
   }
 
   const SolidSubject subject_;

@@ -14,8 +14,7 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kOnCrack = 1e-4;  // of the greatest value about: a node that has less is on the crack
-
-constexpr int kSmoothings = 3;
+constexpr int kSmoothings = 3;     // of the field; fewer leave edges that pieces are born crossing at
 
 /// On which side of a crack a grain lies.
 struct GrainSide {

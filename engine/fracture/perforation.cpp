@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/core/disjoint_sets.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/fracture/perforation_law.h"
@@ -63,16 +62,6 @@ double support_of_core(const Striker& striker, const Vec2& normal) {
   double most = -1e300;
   for (const Vec2& corner : striker.core) most = std::max(most, normal.dot(corner));
   return most + striker.radius;
-}
-
-int count_parts_of(const geometry::SolidComplex& complex) {
-  core::DisjointSets parts(complex.cells.size());
-  for (const geometry::SolidContact& contact : find_solid_contacts(complex))
-    parts.unite(contact.cell_a, contact.cell_b);
-  int count = 0;
-  for (int c = 0; c < static_cast<int>(complex.cells.size()); ++c)
-    if (parts.find(c) == c) ++count;
-  return count;
 }
 
 /// The depth at which the material of these cells begins.
@@ -179,8 +168,8 @@ std::optional<Perforation> find_perforation(const geometry::SolidComplex& comple
   cells = find_punch_cells(complex, out.sides, striker.place);
   auto cut = std::make_shared<geometry::SolidComplex>(complex);
   const geometry::Punched punched = punch_out(*cut, out.sides, std::move(cells), tag);
-  out.part_count = count_parts_of(*cut);
-  if (out.part_count <= count_parts_of(complex)) return std::nullopt;
+  out.part_count = count_parts(*cut);
+  if (out.part_count <= count_parts(complex)) return std::nullopt;
   if (!(punched.volume > least_width * punched.wall_area)) return std::nullopt;
   if (punched.volume > kMostPlug * total_volume(complex)) return std::nullopt;
   out.complex = std::move(cut);

@@ -61,6 +61,16 @@ std::vector<SolidContact> find_solid_contacts(const SolidComplex& complex) {
   return sorted;
 }
 
+int count_parts(const SolidComplex& complex) {
+  core::DisjointSets parts(complex.cells.size());
+  for (const SolidContact& contact : find_solid_contacts(complex))
+    parts.unite(contact.cell_a, contact.cell_b);
+  int count = 0;
+  for (int c = 0; c < static_cast<int>(complex.cells.size()); ++c)
+    if (parts.find(c) == c) ++count;
+  return count;
+}
+
 SolidMesh make_solid_mesh(const SolidComplex& complex, const std::vector<SolidContact>& contacts) {
   SolidMesh mesh;
   mesh.elements = complex.elements;

@@ -13,6 +13,9 @@ namespace shatterbox::geometry {
 /// (cell_a < cell_b). The complex is settled.
 std::vector<SolidContact> find_solid_contacts(const SolidComplex& complex);
 
+/// How many parts a settled complex falls into.
+int count_parts(const SolidComplex& complex);
+
 /// The cells of a settled complex (of the same numbers) with their virtual vertices: of cells of two elements
 /// the copies of their common nodes are one, of cells of one element all four, where they touch. Numbers
 /// follow the order of the cells.
