@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <numeric>
 #include <utility>
 
@@ -39,81 +38,129 @@ bool is_open(const SolidFacet& facet) {
   return facet.parts[0] < 0 && facet.kind == FacetKind::crack && facet.cells[0] >= 0 && facet.cells[1] >= 0;
 }
 
-/// One round of joining pieces that are too narrow; false if there was nothing to do.
-bool merge_once(SolidComplex& complex, const std::vector<SolidContact>& contacts, double least_width,
-                SolidSplit& split) {
-  int count = 0;
-  const std::vector<int> label = label_cells(complex.cells.size(), contacts, count);
-  std::vector<double> volume(at(count), 0.0), area(at(count), 0.0);
-  for (Size c = 0; c < complex.cells.size(); ++c) volume[at(label[c])] += complex.cells[c].volume;
-  for (const SolidFacet& facet : complex.facets) {
-    if (!is_open(facet)) continue;
-    const double own = facet_area_vector(complex, facet).norm();
-    for (const int c : facet.cells) area[at(label[at(c)])] += own;
+/// The neighbour of each piece with the greatest common crack, -1 if there is none.
+std::vector<int> find_partners(Size piece_count, const std::map<std::pair<int, int>, double>& common) {
+  std::vector<int> partner(piece_count, -1);
+  std::vector<double> greatest(piece_count, -1.0);
+  const auto offer = [&](int piece, int other, double area) {
+    if (area <= greatest[at(piece)]) return;
+    greatest[at(piece)] = area;
+    partner[at(piece)] = other;
+  };
+  for (const auto& [pieces, area] : common) {
+    offer(pieces.first, pieces.second, area);
+    offer(pieces.second, pieces.first, area);
   }
-  const auto is_narrow = [&](int p) { return volume[at(p)] <= 0.5 * least_width * area[at(p)]; };
-  std::map<std::pair<int, int>, double> common;  // narrow piece, neighbour: area of their common crack
-  for (const SolidFacet& facet : complex.facets) {
-    if (!is_open(facet)) continue;
-    const int a = label[at(facet.cells[0])];
-    const int b = label[at(facet.cells[1])];
-    if (a == b || (!is_narrow(a) && !is_narrow(b))) continue;
-    const double own = facet_area_vector(complex, facet).norm();
-    if (is_narrow(a)) common[{a, b}] += own;
-    if (is_narrow(b)) common[{b, a}] += own;
-  }
-  if (common.empty()) return false;
-  std::vector<int> partner(at(count), -1);
-  std::vector<double> greatest(at(count), -1.0);
-  for (const auto& [pieces, own] : common)
-    if (own > greatest[at(pieces.first)]) {
-      greatest[at(pieces.first)] = own;
-      partner[at(pieces.first)] = pieces.second;
-    }
-  for (SolidFacet& facet : complex.facets) {
-    if (!is_open(facet)) continue;
-    const int a = label[at(facet.cells[0])];
-    const int b = label[at(facet.cells[1])];
-    if (a != b && (partner[at(a)] == b || partner[at(b)] == a)) facet.kind = FacetKind::grain;
-  }
-  for (int p = 0; p < count; ++p) {
-    const int q = partner[at(p)];
-    if (q < 0 || (partner[at(q)] == p && q > p)) continue;  // of two that join each other one is counted
-    ++split.merged_count;
-    split.merged_volume += volume[at(p)];
-  }
-  return true;
+  return partner;
 }
+
+/// The number of a copied vertex in the piece that it was last asked for.
+struct OwnNumber {
+  int piece = -1, number = -1;
+};
 
 }  // namespace
 
-SolidSplit split_solid(SolidComplex complex, double least_width) {
-  SolidSplit split;
-  settle(complex);
-  std::vector<SolidContact> contacts = find_solid_contacts(complex);
-  for (int pass = 0; pass < kMergeRounds; ++pass) {
+SolidSplitter::SolidSplitter(SolidComplex complex, double least_width) : complex_(std::move(complex)) {
+  settle(complex_);
+  label();
+  for (int round = 0; round < kMergeRounds; ++round) {
     core::stop_if_asked();
-    if (!merge_once(complex, contacts, least_width, split)) break;
-    contacts = find_solid_contacts(complex);
+    if (!join_narrow(least_width)) break;
   }
+}
+
+/// What hangs together, by descending volume.
+void SolidSplitter::label() {
+  contacts_ = find_solid_contacts(complex_);
   int count = 0;
-  const std::vector<int> label = label_cells(complex.cells.size(), contacts, count);
-  std::vector<std::vector<int>> cells(at(count));
+  piece_of_ = label_cells(complex_.cells.size(), contacts_, count);
   std::vector<double> volumes(at(count), 0.0);
-  for (Size c = 0; c < complex.cells.size(); ++c) {
-    cells[at(label[c])].push_back(static_cast<int>(c));
-    volumes[at(label[c])] += complex.cells[c].volume;
-  }
+  for (Size c = 0; c < piece_of_.size(); ++c) volumes[at(piece_of_[c])] += complex_.cells[c].volume;
   std::vector<int> order(at(count));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&volumes](int a, int b) {
     return volumes[at(a)] != volumes[at(b)] ? volumes[at(a)] > volumes[at(b)] : a < b;
   });
-  // No two pieces' cells share a copy of a node, but where nothing more than nodes ever joined them.
-  const geometry::SolidMesh whole = make_solid_mesh(complex, contacts);
-  std::vector<std::array<int, 2>> own_number(whole.vertex_source.size(), {-1, -1});  // piece, number in it
-  geometry::PieceExtractor extractor(complex);
+  std::vector<int> place(at(count));
+  volumes_.clear();
   for (const int p : order) {
+    place[at(p)] = static_cast<int>(volumes_.size());
+    volumes_.push_back(volumes[at(p)]);
+  }
+  for (int& p : piece_of_) p = place[at(p)];
+}
+
+/// m2, of the open cracks between pieces (the lower number first).
+std::map<std::pair<int, int>, double> SolidSplitter::find_common_areas() const {
+  std::map<std::pair<int, int>, double> areas;
+  for (const SolidFacet& facet : complex_.facets) {
+    if (!is_open(facet)) continue;
+    const auto [a, b] = std::minmax(piece_of_[at(facet.cells[0])], piece_of_[at(facet.cells[1])]);
+    if (a != b) areas[{a, b}] += facet_area_vector(complex_, facet).norm();
+  }
+  return areas;
+}
+
+/// One round of joining pieces that are too narrow; false if there was nothing to do.
+bool SolidSplitter::join_narrow(double least_width) {
+  std::vector<double> area(volumes_.size(), 0.0);
+  for (const SolidFacet& facet : complex_.facets) {
+    if (!is_open(facet)) continue;
+    const double own = facet_area_vector(complex_, facet).norm();
+    for (const int c : facet.cells) area[at(piece_of_[at(c)])] += own;
+  }
+  const std::vector<int> partner = find_partners(volumes_.size(), find_common_areas());
+  std::set<std::pair<int, int>> pairs;
+  for (int p = 0; at(p) < volumes_.size(); ++p)
+    if (partner[at(p)] >= 0 && volumes_[at(p)] <= 0.5 * least_width * area[at(p)])
+      pairs.insert(std::minmax(p, partner[at(p)]));
+  return unite(pairs);
+}
+
+bool SolidSplitter::join(const std::vector<PieceClash>& clashes) {
+  const std::map<std::pair<int, int>, double> common = find_common_areas();
+  const std::vector<int> partner = find_partners(volumes_.size(), common);
+  std::set<std::pair<int, int>> pairs;
+  for (const PieceClash& clash : clashes) {
+    const auto [larger, smaller] = std::minmax(clash.a, clash.b < 0 ? clash.a : clash.b);
+    if (common.count({larger, smaller}) > 0)
+      pairs.insert({larger, smaller});
+    else if (partner[at(smaller)] >= 0)
+      pairs.insert(std::minmax(smaller, partner[at(smaller)]));
+    else if (partner[at(larger)] >= 0)
+      pairs.insert(std::minmax(larger, partner[at(larger)]));
+  }
+  return unite(pairs);
+}
+
+/// From now on the cracks between these pairs of pieces hold; false if there are none.
+bool SolidSplitter::unite(const std::set<std::pair<int, int>>& pairs) {
+  if (pairs.empty()) return false;
+  for (SolidFacet& facet : complex_.facets) {
+    if (!is_open(facet)) continue;
+    const auto pair = std::minmax(piece_of_[at(facet.cells[0])], piece_of_[at(facet.cells[1])]);
+    if (pairs.count(pair) > 0) facet.kind = FacetKind::grain;
+  }
+  for (const auto& [larger, smaller] : pairs) {
+    ++merged_count_;
+    merged_volume_ += volumes_[at(smaller)];
+  }
+  label();
+  return true;
+}
+
+SolidSplit SolidSplitter::split() const {
+  SolidSplit split;
+  split.merged_count = merged_count_;
+  split.merged_volume = merged_volume_;
+  std::vector<std::vector<int>> cells(volumes_.size());
+  for (Size c = 0; c < piece_of_.size(); ++c) cells[at(piece_of_[c])].push_back(static_cast<int>(c));
+  // No two pieces' cells share a copy of a node, but where nothing more than nodes ever joined them.
+  const geometry::SolidMesh whole = make_solid_mesh(complex_, contacts_);
+  std::vector<OwnNumber> own_numbers(whole.vertex_source.size());
+  geometry::PieceExtractor extractor(complex_);
+  for (int p = 0; at(p) < cells.size(); ++p) {
     core::stop_if_asked();
     SolidPiece piece;
     piece.complex = extractor.extract(cells[at(p)]);
@@ -121,18 +168,22 @@ SolidSplit split_solid(SolidComplex complex, double least_width) {
     for (const int c : cells[at(p)]) {
       geometry::SolidCell cell = whole.cells[at(c)];
       for (int& v : cell.vertices) {
-        auto& own = own_number[at(v)];
-        if (own[0] != p) {
+        OwnNumber& own = own_numbers[at(v)];
+        if (own.piece != p) {
           own = {p, static_cast<int>(piece.mesh.vertex_source.size())};
           piece.mesh.vertex_source.push_back(whole.vertex_source[at(v)]);
         }
-        v = own[1];
+        v = own.number;
       }
       piece.mesh.cells.push_back(cell);
     }
     split.pieces.push_back(std::move(piece));
   }
   return split;
+}
+
+SolidSplit split_solid(SolidComplex complex, double least_width) {
+  return SolidSplitter(std::move(complex), least_width).split();
 }
 
 }  // namespace shatterbox::fracture

@@ -5,7 +5,6 @@
 
 #include "engine/core/parallel.h"
 #include "engine/fracture/split_shell.h"
-#include "engine/fracture/split_solid.h"
 #include "engine/world/forms.h"
 
 namespace shatterbox::world {
@@ -94,8 +93,9 @@ Pieces split_up(const Fragile& parent, const body::Shape& shape, const fracture:
   return out;
 }
 
-Pieces split_up(const Fragile& parent, const fracture::SolidDecision& decision) {
-  fracture::SolidSplit split = fracture::split_solid(*decision.complex, kLeastWidth * parent.size);
+Pieces split_up(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
+                const fracture::SolidDecision& decision, const fracture::SolidSplitter& splitter) {
+  fracture::SolidSplit split = splitter.split();
   Pieces out;
   out.merged_count = split.merged_count;
   const double volume = total_volume(*decision.complex);
@@ -104,6 +104,8 @@ Pieces split_up(const Fragile& parent, const fracture::SolidDecision& decision) 
   core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
     out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision);
   });
+  // What was joined again stands where it stood.
+  if (out.pieces.size() == 1) out.pieces[0].shape = shape;
   return out;
 }
 
@@ -113,10 +115,20 @@ std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::Sol
   return cut_from(whole, decision, decision.complex);
 }
 
-Pieces make_pieces(const Fragile& parent, const body::Shape& shape, const EvaluatedImpact& impact) {
-  if (const auto* shell = std::get_if<fracture::Decision>(&impact.decision))
-    return split_up(parent, shape, *shell);
-  return split_up(parent, std::get<fracture::SolidDecision>(impact.decision));
+Splitter::Splitter(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
+                   const EvaluatedImpact& impact)
+    : parent_(parent), shape_(std::move(shape)), impact_(impact) {
+  if (const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision))
+    solid_.emplace(*solid->complex, kLeastWidth * parent.size);
+}
+
+Pieces Splitter::split() const {
+  return solid_ ? split_up(parent_, shape_, std::get<fracture::SolidDecision>(impact_.decision), *solid_)
+                : split_up(parent_, *shape_, std::get<fracture::Decision>(impact_.decision));
+}
+
+bool Splitter::join(const std::vector<fracture::PieceClash>& clashes) {
+  return solid_ && solid_->join(clashes);
 }
 
 }  // namespace shatterbox::world

@@ -1,8 +1,10 @@
 // The pieces that a broken body's material falls into, on the way to becoming bodies.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "engine/fracture/split_solid.h"
 #include "engine/world/fragile.h"
 #include "engine/world/verdict.h"
 
@@ -23,7 +25,25 @@ struct Pieces {
 /// What a solid's cracks that part nothing leave of it: its shape is what it was.
 std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::SolidDecision& decision);
 
-/// Splits what the decision of an impact on `parent`, of that shape, left.
-Pieces make_pieces(const Fragile& parent, const body::Shape& shape, const EvaluatedImpact& impact);
+/// What the decision of an impact on `parent`, of that shape, left, on its way into pieces. Parent and impact
+/// must outlive it.
+class Splitter {
+ public:
+  Splitter(const Fragile& parent, std::shared_ptr<const body::Shape> shape, const EvaluatedImpact& impact);
+
+  Pieces split() const;
+
+  /// Sheets have room beside them; a solid's pieces fill it, and may be born in each other.
+  bool may_clash() const { return solid_.has_value(); }
+
+  /// From now on these pieces of the last split are not parted. False if there are none.
+  bool join(const std::vector<fracture::PieceClash>& clashes);
+
+ private:
+  const Fragile& parent_;
+  const std::shared_ptr<const body::Shape> shape_;
+  const EvaluatedImpact& impact_;
+  std::optional<fracture::SolidSplitter> solid_;
+};
 
 }  // namespace shatterbox::world

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/geometry/crossings.h"
+#include "engine/world/clashes.h"
 #include "engine/world/pieces.h"
 
 namespace shatterbox::world {
@@ -25,6 +26,13 @@ body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
   }
   born.is_awake = true;
   born.quiet_time = 0.0;
+  return born;
+}
+
+std::vector<body::Body> make_bodies(const body::Body& parent, const std::vector<Piece>& pieces) {
+  std::vector<body::Body> born;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    born.push_back(make_body(parent, pieces[i], pieces.size() == 1 ? -1 : static_cast<int>(i)));
   return born;
 }
 
@@ -152,13 +160,16 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   row.generation = memory.generation;
   row.place = impact.hardest.point_world;
 
-  Pieces split = make_pieces(*fragile, *parent.shape, impact);
+  Splitter splitter(*fragile, parent.shape, impact);
+  Pieces split = splitter.split();
+  std::vector<body::Body> born = make_bodies(parent, split.pieces);
+  while (splitter.may_clash() && splitter.join(find_clashes(parent, born, moving.bodies, moving.contact))) {
+    split = splitter.split();
+    born = make_bodies(parent, split.pieces);
+  }
   row.merged = split.merged_count;
   row.merged_mass_share = split.merged_share;
   const std::vector<Piece>& pieces = split.pieces;
-  std::vector<body::Body> born;
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-    born.push_back(make_body(parent, pieces[i], pieces.size() == 1 ? -1 : static_cast<int>(i)));
   row.pieces = static_cast<int>(pieces.size());
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);

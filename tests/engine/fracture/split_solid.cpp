@@ -83,6 +83,42 @@ TEST_CASE("split solid: a plate too thin joins what it has most in common with")
   CHECK(split.merged_volume == Approx(0.02));
 }
 
+TEST_CASE("split solid: pieces that cannot be beside each other are joined where a crack is between them") {
+  SolidComplex complex = make_solid_complex(test::make_cube_elements(3));
+  SolidCutter cutter(complex, 1e-3);
+  cutter.cut(test::plane_cut(complex, Vec3::UnitX(), 0.5, 0));
+  cutter.cut(test::plane_cut(complex, Vec3::UnitX(), 0.8, 1));
+  const auto volumes_after = [&](const std::vector<fracture::PieceClash>& clashes) {
+    fracture::SolidSplitter splitter(complex);
+    CHECK(splitter.join(clashes));
+    const fracture::SolidSplit split = splitter.split();
+    CHECK(split.merged_count == 1);
+    std::vector<double> volumes;
+    for (const auto& piece : split.pieces) {
+      const SolidSurface surface = extract_surface(piece.complex);
+      CHECK(fault_of(surface, piece.complex).empty());
+      volumes.push_back(total_volume(piece.complex));
+    }
+    return volumes;
+  };
+  const auto are = [](const std::vector<double>& volumes, double larger, double smaller) {
+    return volumes.size() == 2 && std::abs(volumes[0] - larger) < 1e-9 &&
+           std::abs(volumes[1] - smaller) < 1e-9;
+  };
+  // Of 0.5, 0.3 and 0.2, side by side.
+  CHECK(are(volumes_after({{0, 1}}), 0.8, 0.2));
+  CHECK(are(volumes_after({{2, 1}}), 0.5, 0.5));
+  CHECK(are(volumes_after({{0, 2}}), 0.5, 0.5));  // no crack between them: the smaller one and its neighbour
+  CHECK(are(volumes_after({{0, -1}}), 0.8, 0.2));
+  CHECK(are(volumes_after({{2, -1}}), 0.5, 0.5));
+
+  fracture::SolidSplitter splitter(complex);
+  CHECK_FALSE(splitter.join({}));
+  CHECK(splitter.join({{0, 1}, {1, 2}}));
+  CHECK(splitter.split().pieces.size() == 1);
+  CHECK_FALSE(splitter.join({{0, -1}}));  // there is nobody left
+}
+
 TEST_CASE("split solid: a boundary that holds keeps one piece, whose cells share their nodes") {
   SolidComplex complex = make_solid_complex(test::make_cube_elements(2));
   SolidCutter cutter(complex);

@@ -1,0 +1,91 @@
+#include "engine/world/clashes.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "engine/collision/broad_phase.h"
+#include "engine/collision/feature_list.h"
+#include "engine/core/index.h"
+#include "engine/core/parallel.h"
+
+namespace shatterbox::world {
+namespace {
+
+using body::Body;
+using collision::IndexPair;
+using core::at;
+using Size = std::size_t;
+
+struct Placed {
+  std::shared_ptr<const collision::Collider> collider;
+  collision::PlacedCollider placed;
+  geometry::Box box;
+};
+
+Placed place(const Body& body, std::shared_ptr<const collision::Collider> collider) {
+  Placed out;
+  out.collider = collider ? std::move(collider) : collision::make_collider(*body.shape);
+  out.placed.collider = out.collider.get();
+  const Mat3 turn = body.pose.rotation.toRotationMatrix();
+  for (const Vec3& v : out.collider->vertices) {
+    out.placed.start.push_back(turn * v + body.pose.translation);
+    out.box.include(out.placed.start.back());
+  }
+  collision::refit_boxes(out.placed);
+  return out;
+}
+
+std::shared_ptr<const collision::Collider> known_collider(const Body& body,
+                                                          const dynamics::ContactState& contact) {
+  const auto known = std::lower_bound(contact.bodies.begin(), contact.bodies.end(), body.id,
+                                      [](const auto& state, body::BodyId id) { return state.id < id; });
+  return known != contact.bodies.end() && known->shape == body.shape ? known->collider : nullptr;
+}
+
+/// Those with a surface that a piece of the whole may stick out into.
+std::vector<const Body*> find_neighbours(const Body& whole, const std::vector<Body>& bodies) {
+  std::vector<const Body*> out;
+  for (const Body& other : bodies) {
+    if (other.id == whole.id || !body::is_mesh(other.shape->kind)) continue;
+    const double reach = whole.shape->bounding_radius + other.shape->bounding_radius;
+    if ((other.pose.translation - whole.pose.translation).norm() <= reach) out.push_back(&other);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<fracture::PieceClash> find_clashes(const Body& whole, const std::vector<Body>& born,
+                                               const std::vector<Body>& bodies,
+                                               const dynamics::ContactState& contact) {
+  const std::vector<const Body*> neighbours = find_neighbours(whole, bodies);
+  std::vector<Placed> placed(born.size() + neighbours.size());
+  core::parallel_for(placed.size(), 1, [&](Size i) {
+    placed[i] = i < born.size() ? place(born[i], nullptr)
+                                : place(*neighbours[i - born.size()],
+                                        known_collider(*neighbours[i - born.size()], contact));
+  });
+  std::vector<collision::SweptBound> bounds;
+  for (Size i = 0; i < placed.size(); ++i) bounds.push_back({placed[i].box, i < born.size()});
+  const std::vector<IndexPair> pairs = collision::find_overlapping_pairs(bounds);
+  std::vector<char> is_clash(pairs.size(), 0);
+  core::parallel_for(pairs.size(), 1, [&](Size k) {
+    is_clash[k] = collision::crosses(placed[at(pairs[k].a)].placed, placed[at(pairs[k].b)].placed) ? 1 : 0;
+  });
+
+  std::vector<fracture::PieceClash> clashes;
+  std::unique_ptr<Placed> before;  // where the whole is
+  for (Size k = 0; k < pairs.size(); ++k) {
+    if (!is_clash[k]) continue;
+    const auto [a, b] = pairs[k];
+    if (at(b) < born.size()) {
+      clashes.push_back({a, b});
+      continue;
+    }
+    if (!before) before = std::make_unique<Placed>(place(whole, known_collider(whole, contact)));
+    if (!collision::crosses(before->placed, placed[at(b)].placed)) clashes.push_back({a, -1});
+  }
+  return clashes;
+}
+
+}  // namespace shatterbox::world
