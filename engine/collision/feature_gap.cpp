@@ -6,6 +6,7 @@
 
 #include "engine/core/index.h"
 #include "engine/geometry/closest_points.h"
+#include "engine/geometry/moving_plane.h"
 
 namespace shatterbox::collision {
 namespace {
@@ -165,6 +166,7 @@ bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Coll
 PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint,
                         const FeatureGap* start_gap) {
   constexpr int kMostSteps = 200;
+  constexpr int kTurnsTogether = 3;  // steps after which this is thought of
   constexpr double kAdvance = 0.95;
   const std::size_t split = start.is_edge_edge ? 2 : 1;  // points [0, split) are one body's
   std::array<Vec3, 4> ways;
@@ -201,6 +203,14 @@ PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, do
     for (std::size_t i = 0; i < 4; ++i) now.points[i] = start.points[i] + result.time * ways[i];
     measured = measure(now, hint);
     gap = &measured;
+    if (step != kTurnsTogether) continue;
+    const Vec3 direction = sign * measured.normal;
+    const double apart =
+        geometry::separation_by_moving_plane(now.points, end.points, start.is_edge_edge, direction);
+    if (apart - start.radii() <= least) continue;
+    result.spare = std::min(result.spare, apart - start.radii() - least);
+    result.time = 1.0;
+    return result;
   }
   result.has_hit = true;
   result.gap = *gap;

@@ -5,13 +5,14 @@
 // negatives.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/core/stop.h"
 #include "engine/dynamics/contact_graph.h"
 #include "engine/dynamics/contact_solver.h"
-#include "engine/dynamics/joint_work.h"
+#include "engine/dynamics/impact_zones.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/opening.h"
 #include "engine/dynamics/path_test.h"
@@ -32,7 +33,7 @@ constexpr double kOpening = 0.5, kLastOpening = 0.05;
 constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with the one before
 constexpr int kMostSolves = 8;        // of islands that got contacts on their ways
 constexpr int kPatience = 2;          // rounds without fewer hits
-constexpr int kMostPartialCuts = 5;   // before whole steps are taken back
+constexpr int kMostZoneRounds = 8;    // before whole steps are taken back
 
 double wanted_separation(double gap, double kept_gap) {
   const double safe = kSafe * kept_gap;
@@ -74,11 +75,15 @@ class Guard {
       has_hits = test();
     }
     note_trouble();
-    for (int cut = 0; has_hits; ++cut) {
-      cut_short(cut >= kMostPartialCuts);
+    if (has_hits) zones_.emplace(work_);
+    for (int round = 0; has_hits; ++round) {
+      if (round < kMostZoneRounds && round % 2 == 1)
+        open_zones();
+      else
+        go_in_zones(round >= kMostZoneRounds);
       has_hits = test();
     }
-    settle_cut_bodies();
+    if (zones_) settle_zones();
     note_stuck_pairs();
     report_.test_bytes = kept_bytes();
   }
@@ -92,7 +97,7 @@ class Guard {
     must_test_.resize(work_.pairs.size(), 1);
     hits_.resize(work_.pairs.size());
     known_.resize(work_.pairs.size());
-    is_cut_.resize(work_.pairs.size(), 0);
+    in_zone_.resize(work_.pairs.size(), 0);
     was_hit_.resize(work_.pairs.size(), 0);
     is_known_.resize(work_.pairs.size(), 0);
     spare_.resize(work_.pairs.size(), 0.0);
@@ -278,17 +283,31 @@ class Guard {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       if (!must_test_[p] || hits_[p].empty()) continue;
-      for (const PathHit& hit : hits_[p]) {
-        std::erase_if(known_[p], [&](const PathHit& k) { return k.contact.key == hit.contact.key; });
-        known_[p].push_back(hit);
-      }
+      add_to_known(p);
       for (const int i : {work_.pairs[p].a, work_.pairs[p].b})
         is_dirty[at(i)] = work_.bodies[at(i)].inverse_mass > 0.0;
     }
+    std::vector<Opening> openings = find_openings(
+        least_wanted, [&](const WorkPair& pair) { return is_dirty[at(pair.a)] || is_dirty[at(pair.b)]; });
+    // Pairs whose last test leaves more than both bodies moved are free still.
+    const std::vector<double> moves = open_gaps(openings, settings_.time_step, yielding, work_);
+    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+  }
+
+  void add_to_known(std::size_t p) {
+    for (const PathHit& hit : hits_[p]) {
+      std::erase_if(known_[p], [&](const PathHit& k) { return k.contact.key == hit.contact.key; });
+      known_[p].push_back(hit);
+    }
+  }
+
+  // The hits of all rounds, and the contacts, of these pairs.
+  template <class IsToOpen>
+  std::vector<Opening> find_openings(double least_wanted, const IsToOpen& is_to_open) const {
     std::vector<Opening> openings;
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
-      if (!is_dirty[at(pair.a)] && !is_dirty[at(pair.b)]) continue;
+      if (!is_to_open(pair)) continue;
       for (const PathHit& hit : known_[p]) {
         const double wanted =
             std::max(wanted_separation(hit.contact.gap, pair.kept_gap), least_wanted * pair.kept_gap);
@@ -297,9 +316,7 @@ class Guard {
       for (const Contact& c : pair.contacts)
         openings.push_back(make_opening(pair, work_, c, 1.0, wanted_separation(c.gap, pair.kept_gap)));
     }
-    // Pairs whose last test leaves more than both bodies moved are free still.
-    const std::vector<double> moves = open_gaps(openings, settings_.time_step, yielding, work_);
-    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+    return openings;
   }
 
   // How bodies went before they were solved anew.
@@ -358,57 +375,60 @@ class Guard {
     });
   }
 
-  // The last resort: bodies that are still in each other's way stop on theirs. Ends always: the start is
-  // free.
-  void cut_short(bool all_the_way) {
-    std::vector<double> share(work_.bodies.size(), 1.0);
+  // The last resort: bodies that are still in each other's way go as one, and as far as what cannot be moved
+  // lets them; `stops`: not at all. Ends always: the start is free.
+  void go_in_zones(bool stops) {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       if (!must_test_[p] || hits_[p].empty()) continue;
-      is_cut_[p] = 1;
+      in_zone_[p] = 1;
       known_[p] = hits_[p];
+      const int a = work_.pairs[p].a, b = work_.pairs[p].b;
+      if (!stops && zones_->unite(a, b)) continue;
       const double time = hits_[p].front().time;
-      const double kept = all_the_way || time < 0.05 ? 0.0 : 0.8 * time;
-      for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) share[at(i)] = std::min(share[at(i)], kept);
+      for (const int i : {a, b}) zones_->limit(i, stops || time < 0.05 ? 0.0 : 0.8 * time);
     }
-    stop_together(share);
-    std::vector<char> has_moved(work_.bodies.size(), 0);
-    for (std::size_t i = 0; i < work_.bodies.size(); ++i) {
-      WorkBody& w = work_.bodies[i];
-      if (share[i] >= 1.0 || !w.is_active) continue;
-      has_moved[i] = was_cut_[i] = 1;
-      shorten(w, share[i]);
+    note_moved(zones_->go());
+  }
+
+  // What zones meet on their ways is opened as other hits are, with them as wholes.
+  void open_zones() {
+    std::vector<char> is_due(work_.bodies.size(), 0);  // zones
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      if (!must_test_[p] || hits_[p].empty()) continue;
+      add_to_known(p);
+      for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) is_due[at(zones_->zone_of(i))] = 1;
     }
+    const auto is_to_open = [&](const WorkPair& pair) {
+      const int a = zones_->zone_of(pair.a), b = zones_->zone_of(pair.b);
+      return a != b && (is_due[at(a)] || is_due[at(b)]);
+    };
+    std::vector<Opening> openings = find_openings(kLastOpening, is_to_open);
+    note_moved(zones_->open(openings));
+    std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
+    remove_approach(openings, settings_.time_step, body::ImpulseKind::continuous, 1, work_);
+  }
+
+  void note_moved(const std::vector<char>& has_moved) {
+    for (std::size_t i = 0; i < has_moved.size(); ++i) was_cut_[i] = was_cut_[i] || has_moved[i] ? 1 : 0;
     mark_due_with(has_moved);
   }
 
-  // Who is joined goes as far as the one who is stopped first.
-  void stop_together(std::vector<double>& share) {
-    if (work_.joints.empty()) return;
-    core::DisjointSets joined = join_bodies(work_);
-    std::vector<double> least(share.size(), 1.0);
-    for (std::size_t i = 0; i < share.size(); ++i) {
-      double& of_all = least[at(joined.find(static_cast<int>(i)))];
-      of_all = std::min(of_all, share[i]);
-    }
-    for (std::size_t i = 0; i < share.size(); ++i) share[i] = least[at(joined.find(static_cast<int>(i)))];
-  }
-
-  // Poses stay; velocities lose what closes between the bodies of a zone, by impulses between them, and what
-  // gravity gave on the part of the way that was not gone.
-  void settle_cut_bodies() {
-    std::vector<Opening> zone;
+  // Velocities lose what closes between the bodies of a zone, by impulses between them, and what gravity gave
+  // on the part of the way that was not gone.
+  void settle_zones() {
+    std::vector<Opening> openings;
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      if (!is_cut_[p]) continue;
+      if (!in_zone_[p]) continue;
       for (const PathHit& hit : known_[p])
-        zone.push_back(make_opening(work_.pairs[p], work_, hit.contact, 1.0, 0.0));
+        openings.push_back(make_opening(work_.pairs[p], work_, hit.contact, 1.0, 0.0));
     }
     for (std::size_t i = 0; i < work_.bodies.size(); ++i) {
       WorkBody& w = work_.bodies[i];
       if (!was_cut_[i]) continue;
       ++work_.failsafe_bodies;
-      if (w.inverse_mass > 0.0) hold_back(i, w);
+      if (w.inverse_mass > 0.0 && zones_->share(static_cast<int>(i)) < 1.0) hold_back(i, w);
     }
-    remove_approach(zone, std::nullopt, body::ImpulseKind::failsafe, 30, work_);
+    remove_approach(openings, std::nullopt, body::ImpulseKind::failsafe, 30, work_);
   }
 
   // A pose that gravity did not move gets no speed from it.
@@ -454,7 +474,8 @@ class Guard {
   void note_stuck_pairs() {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       PairState& memory = state_.pairs[at(work_.pairs[p].state)];
-      memory.stuck_steps = is_cut_[p] ? memory.stuck_steps + 1 : 0;
+      const bool is_cut = in_zone_[p] && zones_->share(work_.pairs[p].a) < 1.0;
+      memory.stuck_steps = is_cut ? memory.stuck_steps + 1 : 0;
       report_.longest_cut = std::max(report_.longest_cut, memory.stuck_steps);
     }
   }
@@ -465,7 +486,8 @@ class Guard {
   MotionWork& work_;
   ContactReport& report_;
   PathTest paths_;
-  std::vector<char> must_test_, was_cut_, is_cut_, was_hit_;
+  std::optional<ImpactZones> zones_;  // once nothing else helped
+  std::vector<char> must_test_, was_cut_, in_zone_, was_hit_;
   std::vector<char> is_known_;              // per pair: the solver was given its hits
   std::vector<char> is_squeezed_;           // per body, by a scripted one that was held up; empty: nobody
   std::vector<double> spare_;               // per pair, m: ways this close to those that were tested are free

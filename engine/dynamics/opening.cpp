@@ -16,54 +16,20 @@ constexpr int kIterations = 20;
 constexpr int kIterationsAlike = 60;
 constexpr int kSweepsAlike = 30;
 
-// Turns and shifts of end poses, while they are sought.
-struct Moves {
-  std::vector<Vec3> shifts, turns;
-  Yielding yielding = Yielding::by_mass;
-
-  void push(const MotionWork& work, int i, const Vec3& impulse, const Vec3& arm) {
-    const WorkBody& w = work.bodies[at(i)];
-    if (w.inverse_mass <= 0.0) return;
-    const double unit = yielding == Yielding::alike ? 1.0 / w.inverse_mass : 1.0;
-    shifts[at(i)] += unit * w.inverse_mass * impulse;
-    turns[at(i)] += unit * (w.inverse_inertia * arm.cross(impulse));
-  }
-};
-
 // One over the response of the pair's gap to an impulse on it; 0 if nothing can move.
-double weight(const MotionWork& work, const Opening& o, Yielding yielding) {
+double weight(const Opening& o, const Mover& a, const Mover& b, Yielding yielding) {
   double sum = 0.0;
-  for (const auto& [i, arm] : {std::pair(o.a, &o.arm_a), std::pair(o.b, &o.arm_b)}) {
-    const WorkBody& w = work.bodies[at(i)];
-    if (w.inverse_mass <= 0.0) continue;
+  for (const auto& [m, arm] : {std::pair(&a, &o.arm_a), std::pair(&b, &o.arm_b)}) {
+    if (m->inverse_mass <= 0.0) continue;
     const Vec3 moment = arm->cross(o.normal);
-    const double own = w.inverse_mass + moment.dot(w.inverse_inertia * moment);
-    sum += yielding == Yielding::alike ? own / w.inverse_mass : own;
+    const double own = m->inverse_mass + moment.dot(m->inverse_inertia * moment);
+    sum += yielding == Yielding::alike ? own / m->inverse_mass : own;
   }
   return sum > 0.0 ? 1.0 / sum : 0.0;
 }
 
-void relax(const MotionWork& work, std::vector<Opening>& openings, Moves& moves) {
-  std::vector<double> weights;
-  const bool is_alike = moves.yielding == Yielding::alike;
-  for (const Opening& o : openings) weights.push_back(is_alike ? weight(work, o, Yielding::alike) : o.weight);
-  const int iterations = is_alike ? kIterationsAlike : kIterations;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    double greatest = 0.0;
-    for (std::size_t k = 0; k < openings.size(); ++k) {
-      Opening& o = openings[k];
-      const Vec3 relative = moves.shifts[at(o.a)] + moves.turns[at(o.a)].cross(o.arm_a) -
-                            moves.shifts[at(o.b)] - moves.turns[at(o.b)].cross(o.arm_b);
-      const double missing = (o.wanted - o.gap) / o.share - o.normal.dot(relative);
-      const double change = std::max(-o.impulse, missing * weights[k]);
-      if (change == 0.0) continue;
-      o.impulse += change;
-      greatest = std::max(greatest, std::abs(missing));
-      moves.push(work, o.a, change * o.normal, o.arm_a);
-      moves.push(work, o.b, -change * o.normal, o.arm_b);
-    }
-    if (greatest == 0.0) break;
-  }
+Mover mover_of(const WorkBody& w) {
+  return {w.inverse_mass, w.inverse_inertia};
 }
 
 void give(MotionWork& work, const Opening& o, double size, double closing, body::ImpulseKind kind) {
@@ -110,6 +76,40 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
 
 }  // namespace
 
+Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yielding yielding) {
+  Moves moves;
+  moves.shifts.assign(movers.size(), Vec3::Zero());
+  moves.turns.assign(movers.size(), Vec3::Zero());
+  const bool is_alike = yielding == Yielding::alike;
+  const auto push = [&](int i, const Vec3& impulse, const Vec3& arm) {
+    const Mover& m = movers[at(i)];
+    if (m.inverse_mass <= 0.0) return;
+    const double unit = is_alike ? 1.0 / m.inverse_mass : 1.0;
+    moves.shifts[at(i)] += unit * m.inverse_mass * impulse;
+    moves.turns[at(i)] += unit * (m.inverse_inertia * arm.cross(impulse));
+  };
+  std::vector<double> weights;
+  for (const Opening& o : openings) weights.push_back(weight(o, movers[at(o.a)], movers[at(o.b)], yielding));
+  const int iterations = is_alike ? kIterationsAlike : kIterations;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    double greatest = 0.0;
+    for (std::size_t k = 0; k < openings.size(); ++k) {
+      Opening& o = openings[k];
+      const Vec3 relative = moves.shifts[at(o.a)] + moves.turns[at(o.a)].cross(o.arm_a) -
+                            moves.shifts[at(o.b)] - moves.turns[at(o.b)].cross(o.arm_b);
+      const double missing = (o.wanted - o.gap) / o.share - o.normal.dot(relative);
+      const double change = std::max(-o.impulse, missing * weights[k]);
+      if (change == 0.0) continue;
+      o.impulse += change;
+      greatest = std::max(greatest, std::abs(missing));
+      push(o.a, change * o.normal, o.arm_a);
+      push(o.b, -change * o.normal, o.arm_b);
+    }
+    if (greatest == 0.0) break;
+  }
+  return moves;
+}
+
 double gap_on_way(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot) {
   return meet_on_way(pair, work, contact, knot).gap;
 }
@@ -127,17 +127,16 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   const Vec3 middle = contact.lean * there.on_a + (1.0 - contact.lean) * there.on_b;
   o.arm_a = middle - there.centre_a;
   o.arm_b = middle - there.centre_b;
-  o.weight = weight(work, o, Yielding::by_mass);
+  o.weight = weight(o, mover_of(work.bodies[at(o.a)]), mover_of(work.bodies[at(o.b)]), Yielding::by_mass);
   return o;
 }
 
 std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
                               MotionWork& work) {
-  Moves moves;
-  moves.yielding = yielding;
-  moves.shifts.assign(work.bodies.size(), Vec3::Zero());
-  moves.turns.assign(work.bodies.size(), Vec3::Zero());
-  relax(work, openings, moves);
+  std::vector<Mover> movers;
+  movers.reserve(work.bodies.size());
+  for (const WorkBody& w : work.bodies) movers.push_back(mover_of(w));
+  const Moves moves = relax(openings, movers, yielding);
   std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
   if (yielding == Yielding::by_mass)
     remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work);

@@ -24,6 +24,17 @@ struct Opening {
 /// Who gives way: the lighter by its mass, or all as if their masses were one.
 enum class Yielding { by_mass, alike };
 
+/// What moves as a whole while gaps are opened: a body, or several that go as one.
+struct Mover {
+  double inverse_mass = 0.0;            // 1/kg
+  Mat3 inverse_inertia = Mat3::Zero();  // world
+};
+
+/// By how much each mover was moved.
+struct Moves {
+  std::vector<Vec3> shifts, turns;  // m; rotation vectors about the centre of mass, rad
+};
+
 /// The constraint of a contact that was seen from the start, at the share `knot` of the step.
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
                      double knot, double wanted);
@@ -31,6 +42,10 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const collisi
 /// The gap of a contact at the share `knot` of the step, along its normal, m.
 double gap_on_way(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
                   double knot);
+
+/// Finds moves after which the gaps are as wanted, as far as that goes, and the impulses that make them. `a`,
+/// `b` and the arms of the openings are those of movers.
+Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yielding yielding);
 
 /// Moves end poses until the gaps are as wanted, as far as that goes; takes away the approach of those that
 /// pushed and logs it: by no more than what opened them if they yield by mass. Returns by how much the points

@@ -201,4 +201,28 @@ TEST_CASE("a path that is called free keeps its least separation") {
   CHECK(free > 100);
 }
 
+TEST_CASE("what turns together is free, however near it is to what it turns with") {
+  core::Random random(41);
+  const double gap = 1e-8, least = 1e-9;
+  for (int n = 0; n < 100; ++n) {
+    FeaturePoints start;
+    start.is_edge_edge = n % 2 == 0;
+    if (start.is_edge_edge)
+      start.points = {Vec3(-1, gap, 0), Vec3(1, gap, 0), Vec3(0, 0, -1), Vec3(0, 0, 1)};
+    else
+      start.points = {Vec3(0, gap, 0), Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 2)};
+    const Quat turn(Eigen::AngleAxisd(random.uniform(0.05, 0.5), draw(random).normalized()));
+    const Vec3 way = draw(random);
+    FeaturePoints end = start, closing = start;
+    for (std::size_t i = 0; i < 4; ++i) end.points[i] = closing.points[i] = turn * start.points[i] + way;
+    const PathResult path = follow_paths(start, end, least, Vec3::UnitY());
+    CHECK_FALSE(path.has_hit);
+    CHECK(path.spare <= gap - least);
+    // The same, but for as much as brings them together.
+    closing.points[0] -= 1.5 * gap * (turn * Vec3::UnitY());
+    if (start.is_edge_edge) closing.points[1] -= 1.5 * gap * (turn * Vec3::UnitY());
+    CHECK(follow_paths(start, closing, least, Vec3::UnitY()).has_hit);
+  }
+}
+
 }  // namespace shatterbox::collision

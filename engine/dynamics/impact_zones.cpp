@@ -1,0 +1,158 @@
+#include "engine/dynamics/impact_zones.h"
+
+#include <algorithm>
+
+#include "engine/core/index.h"
+#include "engine/dynamics/joint_work.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using core::at;
+
+Mat3 inertia_at(const WorkBody& w, const Pose& pose) {
+  const Mat3 axes = (pose.rotation * w.inertia.body_from_axes).toRotationMatrix();
+  return axes * w.inertia.moments.asDiagonal() * axes.transpose();
+}
+
+// Several bodies as one.
+struct Whole {
+  double mass = 0.0;            // kg
+  Vec3 centre = Vec3::Zero();   // m
+  Mat3 inertia = Mat3::Zero();  // kg m2, world, about the centre
+};
+
+template <class PoseOf>
+Whole gather_whole(const std::vector<int>& members, const MotionWork& work, const PoseOf& pose_of) {
+  Whole whole;
+  for (const int i : members) {
+    const double own = 1.0 / work.bodies[at(i)].inverse_mass;
+    whole.mass += own;
+    whole.centre += own * pose_of(work.bodies[at(i)]).translation;
+  }
+  whole.centre /= whole.mass;
+  for (const int i : members) {
+    const WorkBody& w = work.bodies[at(i)];
+    const Vec3 arm = pose_of(w).translation - whole.centre;
+    whole.inertia += inertia_at(w, pose_of(w)) +
+                     (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / w.inverse_mass;
+  }
+  return whole;
+}
+
+Pose start_of(const WorkBody& w) {
+  return w.start;
+}
+Pose end_of(const WorkBody& w) {
+  return w.end;
+}
+
+}  // namespace
+
+ImpactZones::ImpactZones(MotionWork& work)
+    : work_(work),
+      zones_(join_bodies(work)),
+      shares_(work.bodies.size(), 1.0),
+      limits_(work.bodies.size(), 1.0),
+      is_united_(work.bodies.size(), 0) {}
+
+bool ImpactZones::unite(int a, int b) {
+  if (!(work_.bodies[at(a)].inverse_mass > 0.0) || !(work_.bodies[at(b)].inverse_mass > 0.0)) return false;
+  if (zone_of(a) == zone_of(b) || share(a) < 1.0 || share(b) < 1.0) return false;
+  const double limit = std::min(limits_[at(zone_of(a))], limits_[at(zone_of(b))]);
+  zones_.unite(a, b);
+  limits_[at(zone_of(a))] = limit;
+  is_united_[at(zone_of(a))] = 1;
+  return true;
+}
+
+void ImpactZones::limit(int body, double share) {
+  double& least = limits_[at(zone_of(body))];
+  least = std::min(least, share);
+}
+
+std::vector<char> ImpactZones::go() {
+  std::vector<char> has_moved(work_.bodies.size(), 0);
+  std::vector<std::vector<int>> members(work_.bodies.size());
+  for (int i = 0; at(i) < members.size(); ++i) {
+    const std::size_t zone = at(zone_of(i));
+    if (!work_.bodies[at(i)].is_active || (!is_united_[zone] && limits_[zone] >= 1.0)) continue;
+    members[zone].push_back(i);
+    has_moved[at(i)] = 1;
+  }
+  for (std::size_t zone = 0; zone < members.size(); ++zone) {
+    if (members[zone].size() == 1)
+      shorten(work_.bodies[at(members[zone].front())], limits_[zone]);
+    else if (!members[zone].empty())
+      go_as_one(members[zone], limits_[zone]);
+    shares_[zone] *= limits_[zone];
+  }
+  std::fill(limits_.begin(), limits_.end(), 1.0);
+  std::fill(is_united_.begin(), is_united_.end(), 0);
+  return has_moved;
+}
+
+void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
+  const Whole whole = gather_whole(members, work_, start_of);
+  Vec3 way = Vec3::Zero(), momentum = Vec3::Zero();  // m; kg m2 rad
+  for (const int i : members) {
+    const WorkBody& w = work_.bodies[at(i)];
+    const Vec3 own_momentum = (w.end.translation - w.start.translation) / w.inverse_mass;
+    way += own_momentum / whole.mass;
+    momentum += (w.start.translation - whole.centre).cross(own_momentum) +
+                inertia_at(w, w.start) * turn_between(w.start.rotation, w.end.rotation);
+  }
+  // Beyond half a radian straight paths would cut the corner.
+  const Vec3 turn = whole.inertia.inverse() * momentum;
+  const double angle = turn.norm();
+  const double turned = std::min(share, angle > 0.0 ? 0.99 * kStraightTurn / angle : 1.0);
+  const Quat rotation = rotation_by(turned * turn);
+  for (const int i : members) {
+    WorkBody& w = work_.bodies[at(i)];
+    w.is_free = false;
+    w.knots.clear();
+    w.straight_parts = 1;
+    w.turn_angle = turned * angle;
+    w.end = w.start;
+    if (!(share > 0.0)) continue;
+    w.end.translation = whole.centre + share * way + rotation * (w.start.translation - whole.centre);
+    w.end.rotation = (rotation * w.start.rotation).normalized();
+  }
+}
+
+std::vector<char> ImpactZones::open(std::vector<Opening>& openings) {
+  std::vector<std::vector<int>> members(work_.bodies.size());
+  for (int i = 0; at(i) < members.size(); ++i)
+    if (work_.bodies[at(i)].inverse_mass > 0.0 && share(i) >= 1.0) members[at(zone_of(i))].push_back(i);
+  std::vector<Mover> movers(members.size());
+  std::vector<Vec3> centres(members.size(), Vec3::Zero());
+  for (std::size_t zone = 0; zone < members.size(); ++zone) {
+    if (members[zone].empty()) continue;
+    const Whole whole = gather_whole(members[zone], work_, end_of);
+    movers[zone] = {1.0 / whole.mass, whole.inertia.inverse()};
+    centres[zone] = whole.centre;
+  }
+  std::vector<Opening> of_zones = openings;
+  for (Opening& o : of_zones) {
+    for (auto [body, arm] : {std::pair(&o.a, &o.arm_a), std::pair(&o.b, &o.arm_b)}) {
+      const std::size_t zone = at(zone_of(*body));
+      *arm += work_.bodies[at(*body)].end.translation - centres[zone];
+      *body = static_cast<int>(zone);
+    }
+  }
+  const Moves moves = relax(of_zones, movers, Yielding::by_mass);
+  for (std::size_t k = 0; k < openings.size(); ++k) openings[k].impulse = of_zones[k].impulse;
+  std::vector<char> has_moved(work_.bodies.size(), 0);
+  for (std::size_t zone = 0; zone < members.size(); ++zone) {
+    if (moves.shifts[zone].isZero(0.0) && moves.turns[zone].isZero(0.0)) continue;
+    const Quat rotation = rotation_by(moves.turns[zone]);
+    for (const int i : members[zone]) {
+      const Vec3 arm = work_.bodies[at(i)].end.translation - centres[zone];
+      shift_end(work_.bodies[at(i)], moves.shifts[zone] + (rotation * arm - arm), moves.turns[zone]);
+      has_moved[at(i)] = 1;
+    }
+  }
+  return has_moved;
+}
+
+}  // namespace shatterbox::dynamics
