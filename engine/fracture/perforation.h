@@ -34,10 +34,10 @@ struct Perforation {
   double momentum_share() const;
 };
 
-/// Of a striker that has less than about a tenth of the energy, or meets at a slant of more than 60 degrees
-/// and slides off, only that he is far is said. Nothing where the law does not tell: his plug would be
-/// narrower than `least_width` m or more than what is left, or his line parts nothing. `tag` is that of the
-/// new crack facets.
+/// Of a striker that has less than about a tenth of the energy, or whose way enters and leaves the material
+/// at a slant of more than 60 degrees so that he slides off, or is open but for what is narrower than
+/// `least_width` m, only that he is far is said. Nothing where the law does not tell: his plug would be more
+/// than what is left, or his line parts nothing. `tag` is that of the new crack facets.
 std::optional<Perforation> find_perforation(const geometry::SolidComplex& complex,
                                             const material::Material& material, const Striker& striker,
                                             double least_width, int tag);

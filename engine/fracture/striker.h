@@ -17,7 +17,6 @@ struct Striker {
   double speed = 0.0;                                  // m/s, along the direction
   double mass = 0.0;                                   // kg
   double struck_inverse_mass = 0.0;                    // 1/kg, of the struck body on that line; 0: it is held
-  double squareness = 1.0;                             // cosine between motion and contact normal
   double time = 0.0;                                   // s, since the step began
   Vec3 first = Vec3::UnitX(), second = Vec3::UnitY();  // unit, across the direction; right-handed with it
   /// The section across the motion: all within `radius` of the convex polygon (counter-clockwise, m, from the

@@ -101,12 +101,14 @@ Punched punch_out(SolidComplex& complex, const std::vector<PunchSide>& sides, st
     out.volume += complex.cells[at(c)].volume;
   }
   for (SolidFacet& facet : complex.facets) {
-    if (facet.parts[0] >= 0 || facet.kind != FacetKind::crack || facet.tag != tag) continue;
-    const bool is_wall = facet.cells[0] >= 0 && facet.cells[1] >= 0 &&
-                         out.is_inside[at(facet.cells[0])] != out.is_inside[at(facet.cells[1])];
-    if (is_wall) {
+    if (facet.parts[0] >= 0 || facet.cells[0] < 0 || facet.cells[1] < 0) continue;
+    if (out.is_inside[at(facet.cells[0])] != out.is_inside[at(facet.cells[1])]) {
+      if (facet.kind == FacetKind::crack && facet.tag != tag) continue;  // stood open before
+      // Where a plane lies on one that was cut before, its facets are there already.
+      facet.kind = FacetKind::crack;
+      facet.tag = tag;
       out.wall_area += facet_area_vector(complex, facet).norm();
-    } else if (facet.cells[0] >= 0 && facet.cells[1] >= 0) {
+    } else if (facet.kind == FacetKind::crack && facet.tag == tag) {
       facet.kind = FacetKind::grain;
       facet.tag = -1;
     }

@@ -12,7 +12,8 @@ constexpr double kSurelyBefore = 0.002;  // and at least, so that rounding does 
 constexpr int kMostHoleParts = 4096;     // of one step
 constexpr double kHoleLengths = 3.0;     // of its own, and of the hole, that a striker goes until he is out
 constexpr double kLongestWay = 30.0;     // times as long as at his first speed, that this takes at most
-constexpr double kPlugTolerance = 1e-6;  // of the section's diameter
+constexpr double kPlugTolerance =
+    0.01;  // of the section's diameter: a plug's sharp corner, which stands back, may stand out so far
 
 /// A plug is inside of all the hole's sides.
 bool is_plug(const body::Shape& shape, const fracture::Perforation& hole) {

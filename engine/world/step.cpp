@@ -184,7 +184,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
         }
       }
       const double step = s.contact_settings.time_step;
-      const auto impacts = judge_impacts(given, {before, time() + step * part.number / part.count});
+      const auto impacts = judge_impacts(given, {before, time() + step * part.number / part.count, time()});
       if (const auto finer = divide_before_holes(impacts, part, time(), step)) {
         s.moving = std::move(snapshot);
         part = *finer;

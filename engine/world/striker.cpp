@@ -7,9 +7,6 @@
 namespace shatterbox::world {
 namespace {
 
-/// The normal speed of the collision may differ by so much from what the motion at the begin of the part
-/// says; else it was another one that came first, and only the normal is known.
-constexpr double kKnownMotion = 0.2;
 constexpr double kFrontDepth = 0.05;  // of the section's diameter: how deep its front is looked at
 constexpr double kRoundFront = 0.25;  // of the section: a ball's front is about that large, and not flat
 
@@ -73,40 +70,69 @@ void set_section(const body::Shape& shape, const Mat3& struck_from_striker, frac
   striker.flatness = std::clamp((share - kRoundFront) / (1.0 - kRoundFront), 0.0, 1.0);
 }
 
+/// Where two met first.
+struct FirstTouch {
+  const body::LoggedImpulse* entry = nullptr;
+  bool is_as_begun = true;  // the striker had met nobody else until then
+};
+
+FirstTouch find_first_touch(const body::ImpulseLog& log, body::BodyId struck, body::BodyId striker) {
+  FirstTouch touch;
+  const auto is_of = [](const body::LoggedImpulse& entry, body::BodyId id) {
+    return entry.kind == body::ImpulseKind::collision && (entry.body_a == id || entry.body_b == id);
+  };
+  const auto is_before = [](const body::LoggedImpulse& entry, const body::LoggedImpulse& other) {
+    if (entry.time != other.time) return entry.time < other.time;
+    return entry.closing_speed > other.closing_speed;
+  };
+  for (const body::LoggedImpulse& entry : log)
+    if (is_of(entry, striker) && is_of(entry, struck) && (!touch.entry || is_before(entry, *touch.entry)))
+      touch.entry = &entry;
+  if (!touch.entry) return touch;
+  touch.is_as_begun = std::none_of(log.begin(), log.end(), [&](const body::LoggedImpulse& entry) {
+    return is_of(entry, striker) && !is_of(entry, struck) && entry.time < touch.entry->time;
+  });
+  return touch;
+}
+
 }  // namespace
 
-std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, body::BodyId struck_id,
-                                                      const Load& load) {
+std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, const body::ImpulseLog& log,
+                                                      body::BodyId struck_id, body::BodyId other_id) {
   const body::Body* struck = body::find_body(begin.bodies, struck_id);
-  const body::Body* other = body::find_body(begin.bodies, load.other);
+  const body::Body* other = body::find_body(begin.bodies, other_id);
   if (!struck || !other || !other->is_dynamic() || other->shape->kind == body::ShapeKind::plane)
     return nullptr;
   // Of one metal, neither is rigid to the other.
   if (struck->family != 0 && struck->family == other->family) return nullptr;
-  if (load.time < begin.time || !(load.closing_speed > 0.0)) return nullptr;
+  const FirstTouch touch = find_first_touch(log, struck_id, other_id);
+  if (!touch.entry || !(touch.entry->closing_speed > 0.0)) return nullptr;
+  const bool is_a = touch.entry->body_a == struck_id;
+  const Vec3 point_body = is_a ? touch.entry->point_a : touch.entry->point_b;
+  const Vec3 other_point = is_a ? touch.entry->point_b : touch.entry->point_a;
   const Quat to_struck = struck->pose.rotation.conjugate();
   const Mat3 struck_from_striker = (to_struck * other->pose.rotation).toRotationMatrix();
-  const Vec3 normal = load.impulse_body.normalized();
-  Vec3 velocity = to_struck * (other->velocity - struck->velocity_at(struck->pose.apply(load.point_body)));
-  if (std::abs(velocity.dot(normal) - load.closing_speed) > kKnownMotion * load.closing_speed)
-    velocity = load.closing_speed * normal;
+  const Vec3 impulse_body = is_a ? touch.entry->impulse_a : touch.entry->impulse_b;
+  Vec3 velocity = to_struck * (other->velocity - struck->velocity_at(struck->pose.apply(point_body)));
+  // Who has met a third one before has another motion since, of which only this is known.
+  if (!touch.is_as_begun || !(velocity.dot(impulse_body) > 0.0))
+    velocity = touch.entry->closing_speed * impulse_body.normalized();
 
   fracture::Striker striker;
-  striker.number = load.other;
+  striker.number = other_id;
   striker.speed = velocity.norm();
   striker.direction = velocity / striker.speed;
-  striker.squareness = striker.direction.dot(normal);
   int least = 0;
   striker.direction.cwiseAbs().minCoeff(&least);
   striker.first = striker.direction.cross(Vec3::Unit(least)).normalized();
   striker.second = striker.direction.cross(striker.first);
   striker.mass = 1.0 / other->inverse_mass;
   // Where it was when they met: they met in one point of both.
-  const Vec3 centre_body = load.point_body - struck_from_striker * load.other_point;
+  const Vec3 centre_body = point_body - struck_from_striker * other_point;
   striker.centre = centre_body + struck->shape->material_from_body;
-  striker.place = load.point_body + struck->shape->material_from_body;
+  striker.place = point_body + struck->shape->material_from_body;
   striker.struck_inverse_mass = mobility(*struck, centre_body, striker.direction);
-  striker.time = load.time;
+  striker.time = begin.step_time + touch.entry->time;
   set_section(*other->shape, struck_from_striker, striker);
   return std::make_shared<const fracture::Striker>(std::move(striker));
 }

@@ -13,11 +13,14 @@ namespace shatterbox::world {
 struct PartBegin {
   const std::vector<body::Body>& bodies;  // ascending ids
   double time = 0.0;                      // s
+  double step_time = 0.0;                 // s, where the step began, from which the log counts
 };
 
-/// The striker behind a collision of this part. Null if it came before, or from what is held or has no end (a
-/// plane): that has no motion of its own to spend; or from another piece of the same body.
-std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, body::BodyId struck,
-                                                      const Load& load);
+/// The body `other` as it came at `struck`, by their first collision in `log`, which is that of this part:
+/// who is turned aside there, and hits again, comes at it once. Null if they did not collide, or `other` is
+/// held or has no end (a plane): that has no motion of its own to spend; or is another piece of the same
+/// body.
+std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, const body::ImpulseLog& log,
+                                                      body::BodyId struck, body::BodyId other);
 
 }  // namespace shatterbox::world

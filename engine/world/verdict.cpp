@@ -43,6 +43,7 @@ struct Judge {
   const WorldSettings& settings;
   const dynamics::ContactSettings& contact;
   const PartBegin* begin = nullptr;
+  const body::ImpulseLog& log;
 
   double restitution(const body::Body& struck, body::BodyId other) const {
     const body::Body* partner = body::find_body(bodies, other);
@@ -197,8 +198,9 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
 
   for (const Load& load : memory.event) {
     candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
-    if (judge.begin && !is_paper && candidate.fragile->material().yield > 0.0)
-      candidate.impact.loads.back().striker = find_striker(*judge.begin, body.id, load);
+    if (judge.begin && !is_paper && load.time >= judge.begin->time &&
+        candidate.fragile->material().yield > 0.0)
+      candidate.impact.loads.back().striker = find_striker(*judge.begin, judge.log, body.id, load.other);
   }
   const std::optional<double> blast = blast_duration_of(memory.event);
   // What presses at rest is nothing beside a blast, whose duration is that of all loads.
@@ -285,7 +287,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
                                              std::map<body::BodyId, ImpactMemory>& memories,
                                              BorneImpacts& borne, EvaluationFigures& figures,
                                              const PartBegin* begin) {
-  const Judge judge{bodies, memories, settings, contact, begin};
+  const Judge judge{bodies, memories, settings, contact, begin, log};
   std::vector<body::BodyId> touched;
   for (const body::LoggedImpulse& entry : log)
     for (const body::BodyId id : {entry.body_a, entry.body_b})

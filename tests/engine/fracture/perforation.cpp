@@ -51,7 +51,6 @@ Striker make_striker(const Vec3& direction, double speed, std::vector<Vec2> core
   striker.second = striker.direction.cross(striker.first);
   striker.speed = speed;
   striker.mass = 0.89;
-  striker.squareness = striker.direction.z();
   striker.core = std::move(core);
   striker.radius = radius;
   return striker;
@@ -182,6 +181,60 @@ TEST_CASE("perforation: at a slant the way is longer and beyond sixty degrees th
   const Vec3 grazing(std::sin(65 * degree), 0.0, std::cos(65 * degree));
   REQUIRE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0));
   CHECK_FALSE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0)->is_near());
+}
+
+namespace {
+
+/// What is left when the plug is gone.
+geometry::SolidComplex take_plug_out(const Perforation& hole) {
+  const geometry::SolidComplex& cut = *hole.complex;
+  std::vector<int> kept;
+  for (std::size_t c = 0; c < cut.cells.size(); ++c) {
+    const Vec3 middle = cell_centre(cut, cut.cells[c]);
+    const bool is_in =
+        std::all_of(hole.sides.begin(), hole.sides.end(),
+                    [&](const geometry::PunchSide& side) { return side.normal.dot(middle) <= side.offset; });
+    if (!is_in) kept.push_back(static_cast<int>(c));
+  }
+  return geometry::PieceExtractor(cut).extract(kept);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "perforation: who comes at the rim of a hole goes through the faces and not through the hole's wall") {
+  const material::Material steel = *material::find_preset("steel");
+  const geometry::SolidComplex plate = make_plate(0.02, 0.02);
+  const auto first = find_perforation(plate, steel, make_striker(Vec3::UnitZ(), 900.0), 1e-4, 1);
+  REQUIRE((first && first->is_through()));
+  const geometry::SolidComplex holed = take_plug_out(*first);
+  // Sides of the second way lie on planes that the first one was cut along.
+  double last = 0.0;
+  for (const double aside : {0.01, 0.02, 0.03, 0.045}) {
+    Striker striker = make_striker(Vec3::UnitZ(), 900.0);
+    striker.centre = Vec3(aside, 0.0, -0.03);
+    striker.place = Vec3(0.0322, 0.0, 0.001);
+    const auto second = find_perforation(holed, steel, striker, 1e-4, 2);
+    CAPTURE(aside);
+    REQUIRE((second && second->is_near()));
+    CHECK(second->is_through());
+    CHECK(second->part_count == 2);
+    CHECK(second->work > last);
+    CHECK(second->work < first->work);
+    last = second->work;
+  }
+  // Who has the way open but for a hair meets nothing that could break.
+  Striker brushing = make_striker(Vec3::UnitZ(), 900.0);
+  brushing.centre = Vec3(0.0014, 0.0, -0.03);
+  brushing.place = Vec3(0.0322, 0.0, 0.001);
+  REQUIRE(find_perforation(holed, steel, brushing, 1e-3, 2));
+  CHECK_FALSE(find_perforation(holed, steel, brushing, 1e-3, 2)->is_near());
+  // At sixty-five degrees he slides off, there as elsewhere.
+  Striker grazing = make_striker(Vec3(std::sin(65 * kPi / 180), 0.0, std::cos(65 * kPi / 180)), 900.0);
+  grazing.centre = Vec3(0.02, 0.0, 0.0);
+  grazing.place = Vec3(0.0322, 0.0, 0.0);
+  REQUIRE(find_perforation(holed, steel, grazing, 1e-4, 2));
+  CHECK_FALSE(find_perforation(holed, steel, grazing, 1e-4, 2)->is_near());
 }
 
 TEST_CASE("perforation: around the limit the energy decides and nobody asks where it is far") {
