@@ -44,7 +44,7 @@ std::optional<Perforation> find_perforation(const geometry::SolidComplex& comple
   if (way.squareness < kLeastSquareness) return out;
   out.thickness = way.thickness;
   out.work = out.needed =
-      perforation_work({way.thickness, section.area, section.perimeter, striker.flatness}, flow);
+      perforation_work({section.area, section.perimeter, striker.flatness, way.section, way.rim}, flow);
   if (out.there < kShareThatCounts * out.needed) return out;
   const std::vector<geometry::PunchSide> sides = sides_of_way(striker, way.front, kPlugTaper);
   cells = find_punch_cells(complex, sides, striker.place);

@@ -21,10 +21,19 @@ double flow_stress(const material::Material& material) {
 }
 
 double perforation_work(const PlateHit& hit, double flow_stress) {
-  if (!(hit.area > 0.0) || !(hit.thickness > 0.0)) return 0.0;
+  const std::vector<ThicknessShare> all{{hit.thickness, 1.0}};
+  return perforation_work({hit.area, hit.perimeter, hit.flatness, all, all}, flow_stress);
+}
+
+double perforation_work(const UnevenPlateHit& hit, double flow_stress) {
+  if (!(hit.area > 0.0)) return 0.0;
   const double diameter = 2.0 * core::sqrt(hit.area / core::kPi);
-  const double spread = resistance(hit.thickness / diameter) * flow_stress * hit.area * hit.thickness;
-  const double sheared = flow_stress / core::sqrt(3.0) * hit.perimeter * hit.thickness * hit.thickness;
+  double spread = 0.0, sheared = 0.0;
+  for (const auto& [thickness, share] : hit.section)
+    if (thickness > 0.0)
+      spread += share * resistance(thickness / diameter) * flow_stress * hit.area * thickness;
+  for (const auto& [thickness, share] : hit.rim)
+    sheared += share * flow_stress / core::sqrt(3.0) * hit.perimeter * thickness * thickness;
   return spread + hit.flatness * (std::min(spread, sheared) - spread);
 }
 

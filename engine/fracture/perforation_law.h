@@ -7,6 +7,8 @@
 // material.
 #pragma once
 
+#include <vector>
+
 #include "engine/material/material.h"
 
 namespace shatterbox::fracture {
@@ -18,12 +20,29 @@ struct PlateHit {
   double flatness = 0.0;   // of the striker's front: 0 round, 1 flat
 };
 
+/// What is that thick, of all of something.
+struct ThicknessShare {
+  double thickness = 0.0;  // m, along the motion
+  double share = 0.0;      // all of them are 1 together, but for where there is nothing
+};
+
+/// A plate that is not equally thick everywhere, or not there.
+struct UnevenPlateHit {
+  double area = 0.0;                         // m2, of the striker's section
+  double perimeter = 0.0;                    // m, of that
+  double flatness = 0.0;                     // of the striker's front
+  std::vector<ThicknessShare> section, rim;  // of that area, and of that perimeter
+};
+
 /// Pa, at which it flows when it is torn: the tensile strength, for by then it has hardened. 0: it does not
 /// yield.
 double flow_stress(const material::Material& material);
 
 /// J, that a hole takes. Grows with the thickness.
 double perforation_work(const PlateHit& hit, double flow_stress);
+/// The same, place by place: the material that is spread is that over the section, each part against the
+/// resistance of a plate of its thickness; the wall that is sheared stands where material is at the rim.
+double perforation_work(const UnevenPlateHit& hit, double flow_stress);
 
 /// J, that a striker of `mass` kg must bring: the hole's work, and what is lost as it takes the plug along,
 /// which was at rest (perfectly inelastic) [RI63].

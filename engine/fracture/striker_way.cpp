@@ -179,13 +179,14 @@ WayMaterial find_way_material(const geometry::SolidComplex& complex, const std::
   const std::vector<Vec2> section = corners_of_section(striker, 0.0);
   const std::vector<Vec2> reached = clip_to_cells(section, complex, cells, striker);
   const double reached_share = area_of(reached) / area_of(section);
-  const SharedPlaces inner = places_over(reached);
+  const SharedPlaces inner = places_over(reached), rim = places_along(section);
   WayMaterial way;
   way.front = 1e300;
   double met = 0.0;  // of the section
   const std::vector<geometry::SolidColumn> columns = columns_at(inner.places);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const double share = reached_share * inner.shares[i];
+    way.section.push_back({columns[i].length, share});
     way.thickness += share * columns[i].length;
     if (!(columns[i].length > 0.0)) continue;
     way.front = std::min(way.front, columns[i].begin);
@@ -193,6 +194,8 @@ WayMaterial find_way_material(const geometry::SolidComplex& complex, const std::
     met += share;
   }
   if (met > 0.0) way.squareness /= met;
+  const std::vector<geometry::SolidColumn> wall = columns_at(rim.places);
+  for (std::size_t i = 0; i < wall.size(); ++i) way.rim.push_back({wall[i].length, rim.shares[i]});
   // The clearance is cut, too.
   const double clearance = kPlugClearance * section_of(striker).diameter;
   for (const geometry::SolidColumn& column :

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/fracture/perforation_law.h"
 #include "engine/fracture/striker.h"
 #include "engine/geometry/solid_complex.h"
 #include "engine/geometry/solid_punch.h"
@@ -15,8 +16,9 @@ std::vector<geometry::PunchSide> sides_of_way(const Striker& striker, double fro
 
 /// What lies in it.
 struct WayMaterial {
-  double thickness = 0.0;  // m, along the motion: the mean over the section
-  double front = 0.0;      // m, along the direction: where the first of it is
+  double thickness = 0.0;                    // m, along the motion: the mean over the section
+  std::vector<ThicknessShare> section, rim;  // of the section's area, and of its rim
+  double front = 0.0;                        // m, along the direction: where the first of it is
   /// Cosine between the motion and the normals of the faces where it enters and leaves the material: the mean
   /// over both, and over what of the section meets any.
   double squareness = 0.0;

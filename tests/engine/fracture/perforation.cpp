@@ -125,6 +125,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "perforation law: a plate that is there in part takes as much of the work and a wall only where it "
+    "stands") {
+  const double d = 0.06, area = kPi / 4 * d * d;
+  for (const double flatness : {0.0, 0.4, 1.0}) {
+    const double whole = perforation_work(disc_hit(0.02, d, flatness), kFlow);
+    const std::vector<ThicknessShare> half{{0.0, 0.5}, {0.02, 0.25}, {0.02, 0.25}};
+    CHECK(perforation_work(UnevenPlateHit{area, kPi * d, flatness, half, half}, kFlow) ==
+          Approx(0.5 * whole));
+    // Two plates beside each other.
+    const double other = perforation_work(disc_hit(0.01, d, flatness), kFlow);
+    const std::vector<ThicknessShare> both{{0.02, 0.3}, {0.01, 0.7}};
+    CHECK(perforation_work(UnevenPlateHit{area, kPi * d, flatness, both, both}, kFlow) ==
+          Approx(0.3 * whole + 0.7 * other));
+  }
+}
+
 TEST_CASE("perforation law: residual speeds are Recht and Ipson's and close the energy") {
   const double work = 40e3, mass = 0.9, plug = 0.45;
   const double limit = ballistic_limit(work, mass, plug);
@@ -181,6 +198,26 @@ TEST_CASE("perforation: at a slant the way is longer and beyond sixty degrees th
   const Vec3 grazing(std::sin(65 * degree), 0.0, std::cos(65 * degree));
   REQUIRE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0));
   CHECK_FALSE(find_perforation(plate, steel, make_striker(grazing, 600.0), 1e-4, 0)->is_near());
+}
+
+TEST_CASE("perforation: a way that is half open beside an edge costs half of the work") {
+  const material::Material steel = *material::find_preset("steel");
+  const geometry::SolidComplex plate = make_plate(0.02, 0.02);
+  const std::vector<Vec2> square = {{-0.03, -0.03}, {0.03, -0.03}, {0.03, 0.03}, {-0.03, 0.03}};
+  for (const bool is_flat : {true, false}) {
+    Striker striker = make_striker(Vec3::UnitZ(), 900.0);
+    if (is_flat) striker = make_striker(Vec3::UnitZ(), 900.0, square, 0.0);
+    striker.flatness = is_flat ? 1.0 : 0.0;
+    const auto whole = find_perforation(plate, steel, striker, 1e-4, 0);
+    striker.centre = Vec3(0.2, 0.0, -0.03);
+    striker.place = Vec3(0.19, 0.0, 0.0);
+    const auto half = find_perforation(plate, steel, striker, 1e-4, 0);
+    REQUIRE((whole && half && half->is_near()));
+    // Of a square's wall one side stands, and half of two.
+    CHECK(half->thickness == Approx(0.01).epsilon(0.02));
+    CHECK(half->work == Approx(0.5 * whole->work).epsilon(0.02));
+    CHECK(half->part_count == 2);
+  }
 }
 
 namespace {
