@@ -126,7 +126,7 @@ class SolidDecider {
     if (!(material.yield > 0.0)) return;
     const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
     const double energy = share * share;
-    YieldFinding finding = find_yield(model(), material, share * force_.struck_displacement(),
+    YieldFinding finding = find_yield(subject_.model, material, share * force_.struck_displacement(),
                                       {energy * force_.struck_energy(), energy * force_.lost_energy()});
     decision_.verdict.von_mises = finding.stress / share;
     decision_.verdict.yield = material.yield;

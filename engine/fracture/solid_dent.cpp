@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/index.h"
+#include "engine/fracture/dent_shape.h"
 #include "engine/geometry/solid_deform.h"
 #include "engine/stress/solid_stress.h"
 #include "engine/stress/solid_yield.h"
@@ -15,7 +17,8 @@ using core::at;
 
 constexpr double kDentTolerance = 1e-4;  // of the solve for the shape, whose displacement is seen
 constexpr double kLeastElement = 0.3;    // of an element's volume, that a dent leaves
-constexpr double kCrushStep = 0.8;       // by which a dent is cut until elements keep that
+constexpr double kMostSwelling = 0.03;  // of the solid's volume: beyond it the shape is none that flow leaves
+constexpr double kCrushStep = 0.8;      // by which a dent is cut until that is so
 constexpr int kMostCrushSteps = 40;
 
 /// Moves of the elements' vertices; copies of one, on both sides of a standing crack, share their mean.
@@ -32,14 +35,46 @@ std::vector<Vec3> moves_of(const geometry::SolidMesh& mesh, const VecX& displace
   return moves;
 }
 
+bool is_sound(const geometry::SolidComplex& complex, const std::vector<Vec3>& moves) {
+  return geometry::least_volume_share(complex, moves) >= kLeastElement &&
+         std::abs(geometry::volume_share(complex, moves) - 1.0) <= kMostSwelling;
+}
+
 }  // namespace
 
-YieldFinding find_yield(const SolidModel& model, const material::Material& material, const VecX& displacement,
-                        const DentEnergy& energy) {
+std::vector<Vec3> moves_of_share(const SolidDent& dent, double share, const LeftDents& before) {
+  const geometry::SolidMesh& mesh = dent.model->mesh;
+  if (before.elements != dent.model->complex->elements)
+    return share == 1.0 ? dent.moves
+                        : moves_of(mesh, turn_dent_shape(*dent.model, share * dent.displacement));
+  VecX all = share * dent.displacement;
+  for (std::size_t v = 0; v < mesh.vertex_source.size(); ++v)
+    all.segment<3>(static_cast<Eigen::Index>(3 * v)) += before.displacement[at(mesh.vertex_source[v])];
+  std::vector<Vec3> moves = moves_of(mesh, turn_dent_shape(*dent.model, all));
+  for (std::size_t v = 0; v < moves.size(); ++v) moves[v] -= before.moves[v];
+  return moves;
+}
+
+void leave(const SolidDent& dent, double share, const std::vector<Vec3>& moves, LeftDents& left) {
+  if (left.elements != dent.model->complex->elements) {
+    left.elements = dent.model->complex->elements;
+    left.displacement.assign(moves.size(), Vec3::Zero());
+    left.moves = left.displacement;
+  }
+  const std::vector<Vec3> displacement = moves_of(dent.model->mesh, dent.displacement);
+  for (std::size_t v = 0; v < moves.size(); ++v) {
+    left.displacement[v] += share * displacement[v];
+    left.moves[v] += moves[v];
+  }
+}
+
+YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model, const material::Material& material,
+                        const VecX& displacement, const DentEnergy& energy) {
   YieldFinding finding;
+  const stress::SolidStiffness& stiffness = *model->stiffness;
   const std::vector<stress::SolidStress> stresses = stress::average_stresses(
-      model.mesh, model.contacts, stress::cell_stresses(*model.stiffness, model.mesh, displacement));
-  stress::PlasticFlow flow = stress::find_plastic_flow(*model.stiffness, model.mesh, stresses,
+      model->mesh, model->contacts, stress::cell_stresses(stiffness, model->mesh, displacement));
+  stress::PlasticFlow flow = stress::find_plastic_flow(stiffness, model->mesh, stresses,
                                                        {material.yield, material.elongation, energy.all});
   finding.stress = flow.greatest_stress;
   const double factor = flow.work > energy.most ? energy.most / flow.work : 1.0;
@@ -48,17 +83,20 @@ YieldFinding find_yield(const SolidModel& model, const material::Material& mater
 
   stress::SolidSolveSettings settings;
   settings.tolerance = kDentTolerance;
-  const stress::SolidSolution shape =
-      model.system->solve(stress::eigenstrain_load(*model.stiffness, model.mesh, flow.strains), settings);
+  stress::SolidSolution shape =
+      model->system->solve(stress::eigenstrain_load(stiffness, model->mesh, flow.strains), settings);
   if (!shape.is_evaluated()) return finding;
   auto dent = std::make_shared<SolidDent>();
-  dent->moves = moves_of(model.mesh, shape.displacement);
+  dent->model = model;
+  dent->displacement = std::move(shape.displacement);
   dent->work = factor * flow.work;
   dent->flowed = flow.volume;
-  for (int step = 0; geometry::least_volume_share(*model.complex, dent->moves) < kLeastElement; ++step) {
+  for (int step = 0;; ++step) {
+    dent->moves = moves_of(model->mesh, turn_dent_shape(*model, dent->displacement));
+    if (is_sound(*model->complex, dent->moves)) break;
     if (step == kMostCrushSteps) return finding;
     dent->is_cut = true;
-    for (Vec3& move : dent->moves) move *= kCrushStep;
+    dent->displacement *= kCrushStep;
   }
   finding.dent = std::move(dent);
   return finding;

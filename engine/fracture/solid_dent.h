@@ -13,11 +13,27 @@
 namespace shatterbox::fracture {
 
 struct SolidDent {
-  std::vector<Vec3> moves;  // |vertices of the element mesh|, m; a free solid's without rigid motion
+  std::shared_ptr<const SolidModel> model;
+  VecX displacement;        // |dof|, m, to first order; a free solid's without rigid motion
+  std::vector<Vec3> moves;  // |vertices of the element mesh|, m: where it leaves them
   double work = 0.0;        // J, of plastic flow
   double flowed = 0.0;      // m3
-  bool is_cut = false;      // elements would have been crushed by all of it
+  bool is_cut = false;      // elements would have been crushed by all of it, or all have swollen
 };
+
+/// What dents of one solid have left of its elements so far. All of them are told from the shape before.
+struct LeftDents {
+  std::shared_ptr<const geometry::SolidElements> elements;  // null: none yet
+  std::vector<Vec3> displacement;                           // |vertices|, m, to first order
+  std::vector<Vec3> moves;                                  // |vertices|, m
+};
+
+/// The moves that a share of a dent's strains leaves, after others. They are not a share of the dent's moves
+/// (half of what turns is shorter than either), nor those that it makes alone.
+std::vector<Vec3> moves_of_share(const SolidDent& dent, double share, const LeftDents& before);
+
+/// Adds what `moves_of_share` gave.
+void leave(const SolidDent& dent, double share, const std::vector<Vec3>& moves, LeftDents& left);
 
 /// What an impact brings for it.
 struct DentEnergy {
@@ -32,7 +48,7 @@ struct YieldFinding {
   std::shared_ptr<const SolidDent> dent;  // null: nothing flows, or its shape cannot be told
 };
 
-YieldFinding find_yield(const SolidModel& model, const material::Material& material, const VecX& displacement,
-                        const DentEnergy& energy);
+YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model, const material::Material& material,
+                        const VecX& displacement, const DentEnergy& energy);
 
 }  // namespace shatterbox::fracture

@@ -106,6 +106,17 @@ class FlatParts {
   std::vector<int> sources_;
 };
 
+/// 1 for an element without volume.
+double element_volume_share(const SolidComplex& piece, int element, const std::vector<Vec3>& moves) {
+  const TetMesh& mesh = piece.elements->mesh;
+  const Tetrahedron& t = mesh.tetrahedra[at(element)];
+  const Mat3 before = edge_matrix(mesh, element);
+  Mat3 after = before;
+  for (int i = 0; i < 3; ++i) after.col(i) += moves[at(t[at(i + 1)])] - moves[at(t[0])];
+  const double volume = before.determinant();
+  return volume > 0.0 ? after.determinant() / volume : 1.0;
+}
+
 }  // namespace
 
 DeformedSolid deform(const SolidComplex& piece, const std::vector<Vec3>& moves, double flatness) {
@@ -125,17 +136,19 @@ DeformedSolid deform(const SolidComplex& piece, const std::vector<Vec3>& moves, 
 }
 
 double least_volume_share(const SolidComplex& piece, const std::vector<Vec3>& moves) {
-  const TetMesh& mesh = piece.elements->mesh;
   double least = 1.0;
-  for (const SolidPart& cell : piece.cells) {
-    const Tetrahedron& t = mesh.tetrahedra[at(cell.element)];
-    const Mat3 before = edge_matrix(mesh, cell.element);
-    Mat3 after = before;
-    for (int i = 0; i < 3; ++i) after.col(i) += moves[at(t[at(i + 1)])] - moves[at(t[0])];
-    const double volume = before.determinant();
-    if (volume > 0.0) least = std::min(least, after.determinant() / volume);
-  }
+  for (const SolidPart& cell : piece.cells)
+    least = std::min(least, element_volume_share(piece, cell.element, moves));
   return least;
+}
+
+double volume_share(const SolidComplex& piece, const std::vector<Vec3>& moves) {
+  double before = 0.0, after = 0.0;
+  for (const SolidPart& cell : piece.cells) {
+    before += cell.volume;
+    after += cell.volume * element_volume_share(piece, cell.element, moves);
+  }
+  return after / before;
 }
 
 }  // namespace shatterbox::geometry

@@ -20,4 +20,7 @@ DeformedSolid deform(const SolidComplex& piece, const std::vector<Vec3>& moves, 
 /// Volume of each element after the moves as a share of what it was, the least over elements with cells.
 double least_volume_share(const SolidComplex& piece, const std::vector<Vec3>& moves);
 
+/// Volume of all material after the moves as a share of what it was.
+double volume_share(const SolidComplex& piece, const std::vector<Vec3>& moves);
+
 }  // namespace shatterbox::geometry

@@ -102,6 +102,7 @@ struct Dented {
   std::shared_ptr<const Fragile> fragile;
   std::shared_ptr<const body::Shape> shape;
   Pose pose;
+  std::vector<Vec3> moves;     // |vertices of the element mesh|, m
   double share = 0.0;          // of the whole dent
   double depth = 0.0;          // m, of the surface
   double volume_change = 0.0;  // relative
@@ -184,7 +185,8 @@ void replace_by(MovingState& moving, const body::Body& body, body::Body born, co
 
 /// Nothing if there is no room at all.
 std::optional<Dented> find_dented(const MovingState& moving, const dynamics::ContactSettings& contact,
-                                  const body::Body& body, const fracture::SolidDent& dent) {
+                                  const body::Body& body, const fracture::SolidDent& dent,
+                                  const fracture::LeftDents& left) {
   const Fragile& whole = *moving.fragiles.at(body.id);
   const geometry::SolidComplex& before = *std::get<fracture::SolidSubject>(whole.subject).complex;
   const double volume = total_volume(before);
@@ -192,11 +194,10 @@ std::optional<Dented> find_dented(const MovingState& moving, const dynamics::Con
   for (int room = 0; room < kMostRooms && share > kLeastDentShare; ++room) {
     Dented dented;
     dented.share = share;
-    std::vector<Vec3> moves = dent.moves;
-    for (Vec3& move : moves) move *= share;
+    dented.moves = moves_of_share(dent, share, left);
     std::shared_ptr<geometry::SolidComplex> complex;
     dented.fragile = dent_fragile(whole, body.shape->mass,
-                                  deform(before, moves, kDentFlatness * kKerf * whole.size), complex);
+                                  deform(before, dented.moves, kDentFlatness * kKerf * whole.size), complex);
     dented.shape = make_solid_shape(*complex, *dented.fragile);
     dented.pose = body.pose;
     // A free body's centre of mass stays where it is; what is held stays in its place.
@@ -281,12 +282,15 @@ void World::dent_bodies(const MovingState& snapshot) {
     std::vector<ComingDent> dents = std::move(s.moving.memories[id].dents);
     s.moving.memories[id].dents.clear();
     s.moving.memories[id].has_open_dent = false;
+    fracture::LeftDents left;
     for (const ComingDent& coming : dents) {
       const body::Body body = *body::find_body(s.moving.bodies, id);
-      const std::optional<Dented> dented = find_dented(s.moving, s.contact_settings, body, *coming.dent);
+      const std::optional<Dented> dented =
+          find_dented(s.moving, s.contact_settings, body, *coming.dent, left);
       DentRow row = describe_dent(body, *coming.dent, dented ? &*dented : nullptr, coming.place,
                                   coming.von_mises, coming.yield, end_time);
       if (dented) {
+        leave(*coming.dent, dented->share, dented->moves, left);
         row.born = put_dented(s.moving, body, *dented, s.ancestry);
         regrip(s.hands, body, {row.born}, s.moving.bodies);
         rehang(s.moving.contact.joints, body, {row.born}, s.moving.bodies);

@@ -79,7 +79,7 @@ struct DentRow {
   double von_mises = 0.0;      // Pa, greatest
   double yield = 0.0;          // Pa
   double share = 1.0;          // of the dent for which there was room; 0: none
-  bool is_cut = false;         // all of it would have crushed elements
+  bool is_cut = false;         // all of it would have crushed elements, or swollen
   double mass_error = 0.0;     // relative
   Vec3 place = Vec3::Zero();   // m, world: where the hit was
 };

@@ -22,6 +22,7 @@ struct SlabHit {
   bool has_copy = false;
   double plasticity = 1.0;
   bool goes_through = true;  // false: without going back nobody perforates, and what is overloaded cracks
+  Vec3 half_extent = Vec3(0.2, 0.15, 0.01);  // m, of the slab
 };
 
 struct SlabRun {
@@ -29,7 +30,7 @@ struct SlabRun {
   audit::AuditReport audit;
 };
 
-/// A ball hits the middle of a steel slab of 40 x 30 x 2 cm.
+/// A ball hits the middle of a steel slab.
 SlabRun hit_slab(const SlabHit& hit, double seconds = 0.03) {
   world::WorldSettings settings;
   settings.steps_per_second = hit.rate;
@@ -43,9 +44,9 @@ SlabRun hit_slab(const SlabHit& hit, double seconds = 0.03) {
   world::BodyDescription slab;
   slab.name = "slab";
   world::SolidDescription solid;
-  solid.mesh = geometry::make_box_surface(Vec3(0.2, 0.15, 0.01));
+  solid.mesh = geometry::make_box_surface(hit.half_extent);
   solid.element_size = test::kIsSanitized ? 0.04 : 0.02;
-  if (hit.is_held) solid.held = {{Vec3::UnitY(), -0.13}};
+  if (hit.is_held) solid.held = {{Vec3::UnitY(), 0.02 - hit.half_extent.y()}};
   slab.form = solid;
   REQUIRE(w.add_body(slab).ok());
   if (hit.has_copy) {
@@ -97,8 +98,7 @@ TEST_CASE("a hit beyond the yield strength leaves a dent, the deeper the harder 
     CHECK(dent.depth > 1.3 * last);
     last = dent.depth;
     CHECK(dent.mass_error < 1e-12);
-    // Flow keeps the volume to first order: what is left goes with the square of the strain.
-    CHECK(std::abs(dent.volume_change) < dent.depth / 0.2);
+    CHECK(std::abs(dent.volume_change) < 0.01);
     CHECK(dent.energy < 0.5 * 0.9 * speed * speed);
     CHECK(run.audit.crossings + run.audit.passages == 0);
     if (test::kIsSanitized) return;
@@ -111,6 +111,40 @@ TEST_CASE("a hit beyond the yield strength leaves a dent, the deeper the harder 
   const SlabRun half = hit_slab({80.0, 240, false, 0.0, false, 0.5}), whole = hit_slab({80.0});
   CHECK(half.world.report().dents[0].depth ==
         Approx(0.5 * whole.world.report().dents[0].depth).epsilon(0.05));
+}
+
+TEST_CASE(
+    "dents that turn what they bend do not swell it, in light and narrow plates and where there is no room") {
+  if (test::kIsSanitized) return;  // its steps are those of the tests above
+  const auto expect_volume = [](const SlabHit& hit, double depth) {
+    const SlabRun run = hit_slab(hit);
+    CAPTURE(hit.speed, hit.half_extent.x(), hit.gap);
+    REQUIRE_FALSE(run.world.report().dents.empty());
+    const world::DentRow& dent = run.world.report().dents[0];
+    CHECK(dent.depth > depth);
+    CHECK(std::abs(dent.volume_change) < 0.03);
+    CHECK(dent.mass_error < 1e-12);
+    CHECK((dent.share < 1.0) == (hit.gap > 0.0));
+    CHECK(run.audit.crossings + run.audit.passages == 0);
+    for (const body::Body& body : run.world.bodies())
+      if (body.id == dent.born)
+        CHECK(geometry::enclosed_volume(body.shape->surface) * 7850.0 ==
+              Approx(body.shape->mass).epsilon(0.03));
+  };
+  SlabHit hit{350.0, 240, true};
+  expect_volume(hit, 0.05);
+  hit.half_extent = Vec3(0.06, 0.15, 0.01);
+  hit.speed = 300.0;
+  expect_volume(hit, 0.05);
+  hit.is_held = false;
+  hit.speed = 250.0;
+  expect_volume(hit, 0.04);
+  // Half of the way is not half of every move.
+  hit.half_extent = Vec3(0.2, 0.15, 0.01);
+  hit.speed = 350.0;
+  hit.is_held = true;
+  hit.gap = 0.03;
+  expect_volume(hit, 0.01);
 }
 
 TEST_CASE("what is dented keeps its momentum and its centre, and its copies keep their shape") {

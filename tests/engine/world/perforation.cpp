@@ -272,26 +272,47 @@ TEST_CASE("a plate with a hole dents under the next ball") {
   CHECK(range.world.report().dents[1].depth > 0.003);
 }
 
+TEST_CASE("dents about a hole and of the next ball do not swell the plate") {
+  if (test::kIsSanitized) return;
+  Shot shot;
+  shot.speed = 450.0;
+  shot.second = 300.0;
+  shot.aside = 0.06;
+  const Range range = fire(shot);
+  check_whole(range);
+  REQUIRE(range.world.report().dents.size() == 2);
+  for (const world::DentRow& dent : range.world.report().dents) {
+    CHECK(dent.depth > 0.03);
+    CHECK(std::abs(dent.volume_change) < 0.02);
+    CHECK(dent.mass_error < 1e-12);
+  }
+}
+
 TEST_CASE("a second ball at the rim of the hole takes along what is in its way at any rate") {
   if (test::kIsSanitized) return;
   Shot shot;
   shot.speed = shot.second = 1000.0;
-  shot.aside = 0.01;
   shot.behind = 20.6;  // when the plate about the hole is dented, at 240 and 960 steps a second
-  for (const int rate : {60, 240, 960}) {
-    shot.rate = rate;
-    const Range range = fire(shot);
-    CAPTURE(rate);
-    check_whole(range);
-    REQUIRE(range.world.report().breaks.size() == 2);
-    CHECK(range.world.report().breaks[1].pieces == 2);
-    CHECK(range.world.report().breaks[1].fracture_energy <
-          0.15 * range.world.report().breaks[0].fracture_energy);
-    for (const world::DentRow& dent : range.world.report().dents) {
-      CHECK(dent.depth < 0.01);
-      CHECK(std::abs(dent.volume_change) < 0.005);
+  struct Rim {
+    double aside, most_work;  // of the first hole's
+    bool is_free;             // the thinner sickle may jam on its way out
+  };
+  for (const Rim& rim : {Rim{0.01, 0.15, false}, Rim{0.02, 0.3, true}})
+    for (const int rate : {60, 240, 960}) {
+      shot.aside = rim.aside;
+      shot.rate = rate;
+      const Range range = fire(shot);
+      CAPTURE(rim.aside, rate);
+      check_whole(range);
+      REQUIRE(range.world.report().breaks.size() == 2);
+      CHECK(range.world.report().breaks[1].pieces == 2);
+      CHECK(range.world.report().breaks[1].fracture_energy <
+            rim.most_work * range.world.report().breaks[0].fracture_energy);
+      for (const world::DentRow& dent : range.world.report().dents) {
+        CHECK(dent.depth < 0.01);
+        CHECK(std::abs(dent.volume_change) < 0.005);
+      }
+      CHECK(range.world.report().impacts[1].verdict.starts_with("perforated: "));
+      if (rim.is_free) CHECK(body_of(range, range.bullet + 1).velocity.z() < -0.5 * shot.second);
     }
-    CHECK(range.world.report().impacts[1].verdict.starts_with("perforated: "));
-    CHECK(body_of(range, range.bullet + 1).velocity.z() < -0.5 * shot.second);
-  }
 }
