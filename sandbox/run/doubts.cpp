@@ -46,6 +46,25 @@ void doubt_thickness(const scene::SceneDescription& scene, const scene::BuiltSce
   }
 }
 
+/// Told once: of the first body that would be dented.
+void doubt_criterion(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                     scene::Problems& doubts) {
+  if (scene.world.criterion != world::Criterion::paper) return;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& body = scene.bodies[i];
+    const material::Material& material = scene.materials[static_cast<std::size_t>(body.material)].material;
+    const auto& form = built.plan.bodies[i].description.form;
+    if (!std::holds_alternative<world::SolidDescription>(form) || !(material.yield > 0.0)) continue;
+    scene::book(
+        doubts, body.place,
+        fmt::format(
+            "\"{}\" is of \"{}\", which yields, but criterion = \"paper\" knows neither dents nor holes",
+            body.name, material.name),
+        "it holds or breaks as if brittle; criterion = \"event\", the usual one, dents and perforates it");
+    return;
+  }
+}
+
 /// Bodies whose bounding balls meet, and of which one at least can move; planes meet everything.
 std::vector<std::pair<const Body*, const Body*>> near_pairs(std::span<const Body> bodies) {
   std::vector<const Body*> planes, others;
@@ -203,6 +222,7 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
 scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
   scene::Problems doubts;
   doubt_thickness(scene, built, doubts);
+  doubt_criterion(scene, built, doubts);
   doubt_room(scene, built, doubts);
   doubt_camera(scene, built, doubts);
   doubt_throws(scene, built, doubts);

@@ -33,6 +33,19 @@ TEST_CASE("a shell that is nearly as thick as wide is doubted") {
   CHECK(doubts_of(bowl + "0.003\n").empty());
 }
 
+TEST_CASE("the paper's criterion says that what yields gets neither dents nor holes") {
+  const std::string slab =
+      "[[body]]\nname = \"slab\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.2, 0.02]\n"
+      "element_size = 0.05\nmaterial = ";
+  const std::string paper = "[scene]\ncriterion = \"paper\"\n";
+  CHECK(
+      has(doubts_of(paper + slab + "\"steel\"\n"),
+          "t.toml:3:1: \"slab\" is of \"steel\", which yields, but criterion = \"paper\" knows neither dents "
+          "nor holes"));
+  CHECK(doubts_of(paper + slab + "\"concrete\"\n").empty());
+  CHECK(doubts_of(slab + "\"steel\"\n").empty());
+}
+
 TEST_CASE("bodies that begin in each other or in the floor are doubted, what touches or is nested is not") {
   const std::string floor = kFloor, crate = kCrate;
   CHECK(doubts_of(floor + crate).empty());  // it stands on the floor, exactly
