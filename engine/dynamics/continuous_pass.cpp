@@ -77,7 +77,7 @@ class Guard {
     note_trouble();
     if (has_hits) zones_.emplace(work_);
     for (int round = 0; has_hits; ++round) {
-      if (round < kMostZoneRounds && round % 2 == 1)
+      if (round < kMostZoneRounds && round % 2 == 1 && zones_->has_wholes())
         open_zones();
       else
         go_in_zones(round >= kMostZoneRounds);
@@ -383,11 +383,14 @@ class Guard {
       in_zone_[p] = 1;
       known_[p] = hits_[p];
       const int a = work_.pairs[p].a, b = work_.pairs[p].b;
-      if (!stops && zones_->unite(a, b)) continue;
+      // Boxes and balls are followed as they turn, not along straight lines.
+      if (!stops && !work_.pairs[p].is_analytic && zones_->unite(a, b)) continue;
       const double time = hits_[p].front().time;
       for (const int i : {a, b}) zones_->limit(i, stops || time < 0.05 ? 0.0 : 0.8 * time);
     }
-    note_moved(zones_->go());
+    const std::vector<char> has_moved = zones_->go();
+    for (std::size_t i = 0; i < has_moved.size(); ++i) was_cut_[i] = was_cut_[i] || has_moved[i] ? 1 : 0;
+    mark_due_with(has_moved);
   }
 
   // What zones meet on their ways is opened as other hits are, with them as wholes.
@@ -403,14 +406,9 @@ class Guard {
       return a != b && (is_due[at(a)] || is_due[at(b)]);
     };
     std::vector<Opening> openings = find_openings(kLastOpening, is_to_open);
-    note_moved(zones_->open(openings));
+    mark_due_with(zones_->open(openings));
     std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
     remove_approach(openings, settings_.time_step, body::ImpulseKind::continuous, 1, work_);
-  }
-
-  void note_moved(const std::vector<char>& has_moved) {
-    for (std::size_t i = 0; i < has_moved.size(); ++i) was_cut_[i] = was_cut_[i] || has_moved[i] ? 1 : 0;
-    mark_due_with(has_moved);
   }
 
   // Velocities lose what closes between the bodies of a zone, by impulses between them, and what gravity gave

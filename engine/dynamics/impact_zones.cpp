@@ -61,6 +61,7 @@ bool ImpactZones::unite(int a, int b) {
   if (zone_of(a) == zone_of(b) || share(a) < 1.0 || share(b) < 1.0) return false;
   const double limit = std::min(limits_[at(zone_of(a))], limits_[at(zone_of(b))]);
   zones_.unite(a, b);
+  has_wholes_ = true;
   limits_[at(zone_of(a))] = limit;
   is_united_[at(zone_of(a))] = 1;
   return true;

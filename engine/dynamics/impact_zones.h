@@ -22,6 +22,9 @@ class ImpactZones {
   /// stopped.
   bool unite(int a, int b);
 
+  /// True if any were united.
+  bool has_wholes() const { return has_wholes_; }
+
   /// A body's zone goes only this share of its present way, at most.
   void limit(int body, double share);
 
@@ -47,6 +50,7 @@ class ImpactZones {
   // Per zone, at its least body.
   std::vector<double> shares_, limits_;  // in all, and since the last call of `go`
   std::vector<char> is_united_;          // since then
+  bool has_wholes_ = false;
 };
 
 }  // namespace shatterbox::dynamics

@@ -83,6 +83,18 @@ TEST_CASE("arch: twenty-five stones stand by friction alone, and come down witho
         0.7 * standing["conservation"]["potential_energy_j"].get<double>());
 }
 
+TEST_CASE("dominoes and blast: nobody hangs where he is, boxes that fall or splinters wedged in what flies") {
+  const Folder folder;
+  for (const char* scene : {"dominoes --set scene.steps_per_second=60", "blast --seconds 0.8"}) {
+    const auto report = play(folder, std::string(scene) + " --audit");
+    CHECK(report["contact"]["longest_cut"].get<int>() <= 4);
+    CHECK(report["contact"]["frozen_share"].get<double>() < 0.03);
+    CHECK(report["contact"]["crossing_pairs_at_start"] == 0);
+    CHECK(report["audit"]["crossings"] == 0);
+    CHECK(report["audit"]["passages"] == 0);
+  }
+}
+
 TEST_CASE("slab: one ball dents it one goes through and what stands is one piece with a dent and a hole") {
   const Folder folder;
   const auto report = play(folder, "slab --seconds 0.31 --audit");
