@@ -54,13 +54,15 @@ ImpactZones::ImpactZones(MotionWork& work)
       zones_(join_bodies(work)),
       shares_(work.bodies.size(), 1.0),
       limits_(work.bodies.size(), 1.0),
-      is_united_(work.bodies.size(), 0) {}
+      is_united_(work.bodies.size(), 0),
+      is_whole_(work.bodies.size(), 0) {}
 
 bool ImpactZones::unite(int a, int b) {
   if (!(work_.bodies[at(a)].inverse_mass > 0.0) || !(work_.bodies[at(b)].inverse_mass > 0.0)) return false;
   if (zone_of(a) == zone_of(b) || share(a) < 1.0 || share(b) < 1.0) return false;
   const double limit = std::min(limits_[at(zone_of(a))], limits_[at(zone_of(b))]);
   zones_.unite(a, b);
+  is_whole_[at(zone_of(a))] = 1;
   has_wholes_ = true;
   limits_[at(zone_of(a))] = limit;
   is_united_[at(zone_of(a))] = 1;
@@ -82,10 +84,12 @@ std::vector<char> ImpactZones::go() {
     has_moved[at(i)] = 1;
   }
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
-    if (members[zone].size() == 1)
-      shorten(work_.bodies[at(members[zone].front())], limits_[zone]);
-    else if (!members[zone].empty())
+    if (is_whole_[zone] && !members[zone].empty()) {
       go_as_one(members[zone], limits_[zone]);
+    } else {
+      // Who is joined goes as far as the one who is stopped first.
+      for (const int i : members[zone]) shorten(work_.bodies[at(i)], limits_[zone]);
+    }
     shares_[zone] *= limits_[zone];
   }
   std::fill(limits_.begin(), limits_.end(), 1.0);

@@ -15,7 +15,8 @@ namespace shatterbox::dynamics {
 
 class ImpactZones {
  public:
-  /// Each body is a zone of its own, but those that joints hold. `work` must outlive it.
+  /// Each body is a zone of its own, but those that joints hold: they keep their own ways, and go equally
+  /// far. `work` must outlive it.
   explicit ImpactZones(MotionWork& work);
 
   /// From now on two bodies are in one zone. False if they were, or if one cannot be moved or has been
@@ -50,6 +51,7 @@ class ImpactZones {
   // Per zone, at its least body.
   std::vector<double> shares_, limits_;  // in all, and since the last call of `go`
   std::vector<char> is_united_;          // since then
+  std::vector<char> is_whole_;           // united at any time
   bool has_wholes_ = false;
 };
 
