@@ -263,6 +263,21 @@ bool an_edge_pierces(const std::array<Vec3, 3>& edges, const std::array<Vec3, 3>
 
 }  // namespace
 
+void place_vertices(const Collider& collider, const Pose& pose, std::vector<Vec3>& out) {
+  const Mat3 r = pose.rotation.toRotationMatrix();
+  const auto& vertices = collider.vertices;
+  out.resize(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) out[i] = r * vertices[i] + pose.translation;
+}
+
+PlacedCollider place_collider(const Collider& collider, const Pose& pose) {
+  PlacedCollider placed;
+  placed.collider = &collider;
+  place_vertices(collider, pose, placed.start);
+  refit_boxes(placed);
+  return placed;
+}
+
 void refit_boxes(PlacedCollider& placed) {
   const double radius = placed.collider->radius;
   placed.boxes.vertices.resize(placed.start.size());

@@ -51,6 +51,12 @@ struct PlacedCollider {
   std::vector<Vec3> swept_from, swept_to;  // |V| x 3, world, m: the ends of those paths
 };
 
+/// Vertices (|V| x 3, world, m) at a pose.
+void place_vertices(const Collider& collider, const Pose& pose, std::vector<Vec3>& out);
+
+/// At a pose, with `boxes`.
+PlacedCollider place_collider(const Collider& collider, const Pose& pose);
+
 /// Fills `placed.boxes` from `placed.start`.
 void refit_boxes(PlacedCollider& placed);
 

@@ -1,8 +1,8 @@
 // Stage: the continuous pass over the straight paths of all vertices from the old to the new rigid pose. What
 // would meet on the way first becomes a contact of the solver, which is run again; then hits are opened again
-// in position and the paths tested anew; at last steps are cut short. [BFA02], [BHTF07] sec. III; departs
-// from both because the tests are by separating directions with a least separation, which has no false
-// negatives.
+// in position and the paths tested anew; at last bodies go as one, or not all the way. [BFA02], [BHTF07] sec.
+// III; departs from both because the tests are by separating directions with a least separation, which has no
+// false negatives.
 #include <algorithm>
 #include <cmath>
 #include <optional>

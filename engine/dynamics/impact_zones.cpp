@@ -22,29 +22,22 @@ struct Whole {
   Mat3 inertia = Mat3::Zero();  // kg m2, world, about the centre
 };
 
-template <class PoseOf>
-Whole gather_whole(const std::vector<int>& members, const MotionWork& work, const PoseOf& pose_of) {
+// `pose`: at the start or at the end.
+Whole gather_whole(const std::vector<int>& members, const MotionWork& work, Pose WorkBody::*pose) {
   Whole whole;
   for (const int i : members) {
     const double own = 1.0 / work.bodies[at(i)].inverse_mass;
     whole.mass += own;
-    whole.centre += own * pose_of(work.bodies[at(i)]).translation;
+    whole.centre += own * (work.bodies[at(i)].*pose).translation;
   }
   whole.centre /= whole.mass;
   for (const int i : members) {
     const WorkBody& w = work.bodies[at(i)];
-    const Vec3 arm = pose_of(w).translation - whole.centre;
-    whole.inertia += inertia_at(w, pose_of(w)) +
+    const Vec3 arm = (w.*pose).translation - whole.centre;
+    whole.inertia += inertia_at(w, w.*pose) +
                      (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / w.inverse_mass;
   }
   return whole;
-}
-
-Pose start_of(const WorkBody& w) {
-  return w.start;
-}
-Pose end_of(const WorkBody& w) {
-  return w.end;
 }
 
 }  // namespace
@@ -62,10 +55,9 @@ bool ImpactZones::unite(int a, int b) {
   if (zone_of(a) == zone_of(b) || share(a) < 1.0 || share(b) < 1.0) return false;
   const double limit = std::min(limits_[at(zone_of(a))], limits_[at(zone_of(b))]);
   zones_.unite(a, b);
-  is_whole_[at(zone_of(a))] = 1;
-  has_wholes_ = true;
-  limits_[at(zone_of(a))] = limit;
-  is_united_[at(zone_of(a))] = 1;
+  const std::size_t zone = at(zone_of(a));
+  is_whole_[zone] = is_united_[zone] = 1;
+  limits_[zone] = limit;
   return true;
 }
 
@@ -98,7 +90,7 @@ std::vector<char> ImpactZones::go() {
 }
 
 void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
-  const Whole whole = gather_whole(members, work_, start_of);
+  const Whole whole = gather_whole(members, work_, &WorkBody::start);
   Vec3 way = Vec3::Zero(), momentum = Vec3::Zero();  // m; kg m2 rad
   for (const int i : members) {
     const WorkBody& w = work_.bodies[at(i)];
@@ -133,7 +125,7 @@ std::vector<char> ImpactZones::open(std::vector<Opening>& openings) {
   std::vector<Vec3> centres(members.size(), Vec3::Zero());
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
     if (members[zone].empty()) continue;
-    const Whole whole = gather_whole(members[zone], work_, end_of);
+    const Whole whole = gather_whole(members[zone], work_, &WorkBody::end);
     movers[zone] = {1.0 / whole.mass, whole.inertia.inverse()};
     centres[zone] = whole.centre;
   }
@@ -144,6 +136,7 @@ std::vector<char> ImpactZones::open(std::vector<Opening>& openings) {
       *arm += work_.bodies[at(*body)].end.translation - centres[zone];
       *body = static_cast<int>(zone);
     }
+    o.weight = opening_weight(o, movers[at(o.a)], movers[at(o.b)], Yielding::by_mass);
   }
   const Moves moves = relax(of_zones, movers, Yielding::by_mass);
   for (std::size_t k = 0; k < openings.size(); ++k) openings[k].impulse = of_zones[k].impulse;

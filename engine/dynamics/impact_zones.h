@@ -4,6 +4,7 @@
 // it is.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "engine/core/disjoint_sets.h"
@@ -24,7 +25,7 @@ class ImpactZones {
   bool unite(int a, int b);
 
   /// True if any were united.
-  bool has_wholes() const { return has_wholes_; }
+  bool has_wholes() const { return std::find(is_whole_.begin(), is_whole_.end(), 1) != is_whole_.end(); }
 
   /// A body's zone goes only this share of its present way, at most.
   void limit(int body, double share);
@@ -52,7 +53,6 @@ class ImpactZones {
   std::vector<double> shares_, limits_;  // in all, and since the last call of `go`
   std::vector<char> is_united_;          // since then
   std::vector<char> is_whole_;           // united at any time
-  bool has_wholes_ = false;
 };
 
 }  // namespace shatterbox::dynamics

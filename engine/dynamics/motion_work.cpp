@@ -7,10 +7,7 @@
 namespace shatterbox::dynamics {
 
 void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out) {
-  const Mat3 r = pose.rotation.toRotationMatrix();
-  const auto& vertices = body.collider->vertices;
-  out.resize(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) out[i] = r * vertices[i] + pose.translation;
+  collision::place_vertices(*body.collider, pose, out);
 }
 
 void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin) {

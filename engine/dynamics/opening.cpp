@@ -16,18 +16,6 @@ constexpr int kIterations = 20;
 constexpr int kIterationsAlike = 60;
 constexpr int kSweepsAlike = 30;
 
-// One over the response of the pair's gap to an impulse on it; 0 if nothing can move.
-double weight(const Opening& o, const Mover& a, const Mover& b, Yielding yielding) {
-  double sum = 0.0;
-  for (const auto& [m, arm] : {std::pair(&a, &o.arm_a), std::pair(&b, &o.arm_b)}) {
-    if (m->inverse_mass <= 0.0) continue;
-    const Vec3 moment = arm->cross(o.normal);
-    const double own = m->inverse_mass + moment.dot(m->inverse_inertia * moment);
-    sum += yielding == Yielding::alike ? own / m->inverse_mass : own;
-  }
-  return sum > 0.0 ? 1.0 / sum : 0.0;
-}
-
 Mover mover_of(const WorkBody& w) {
   return {w.inverse_mass, w.inverse_inertia};
 }
@@ -76,6 +64,17 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
 
 }  // namespace
 
+double opening_weight(const Opening& o, const Mover& a, const Mover& b, Yielding yielding) {
+  double sum = 0.0;
+  for (const auto& [m, arm] : {std::pair(&a, &o.arm_a), std::pair(&b, &o.arm_b)}) {
+    if (m->inverse_mass <= 0.0) continue;
+    const Vec3 moment = arm->cross(o.normal);
+    const double own = m->inverse_mass + moment.dot(m->inverse_inertia * moment);
+    sum += yielding == Yielding::alike ? own / m->inverse_mass : own;
+  }
+  return sum > 0.0 ? 1.0 / sum : 0.0;
+}
+
 Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yielding yielding) {
   Moves moves;
   moves.shifts.assign(movers.size(), Vec3::Zero());
@@ -89,7 +88,8 @@ Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yi
     moves.turns[at(i)] += unit * (m.inverse_inertia * arm.cross(impulse));
   };
   std::vector<double> weights;
-  for (const Opening& o : openings) weights.push_back(weight(o, movers[at(o.a)], movers[at(o.b)], yielding));
+  for (const Opening& o : openings)
+    weights.push_back(is_alike ? opening_weight(o, movers[at(o.a)], movers[at(o.b)], yielding) : o.weight);
   const int iterations = is_alike ? kIterationsAlike : kIterations;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     double greatest = 0.0;
@@ -127,7 +127,8 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   const Vec3 middle = contact.lean * there.on_a + (1.0 - contact.lean) * there.on_b;
   o.arm_a = middle - there.centre_a;
   o.arm_b = middle - there.centre_b;
-  o.weight = weight(o, mover_of(work.bodies[at(o.a)]), mover_of(work.bodies[at(o.b)]), Yielding::by_mass);
+  o.weight =
+      opening_weight(o, mover_of(work.bodies[at(o.a)]), mover_of(work.bodies[at(o.b)]), Yielding::by_mass);
   return o;
 }
 

@@ -43,8 +43,12 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const collisi
 double gap_on_way(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
                   double knot);
 
+/// kg: one over the response of the gap to an impulse on it; 0 if nothing can move. The arms of the opening
+/// are those of the movers.
+double opening_weight(const Opening& opening, const Mover& a, const Mover& b, Yielding yielding);
+
 /// Finds moves after which the gaps are as wanted, as far as that goes, and the impulses that make them. `a`,
-/// `b` and the arms of the openings are those of movers.
+/// `b`, the arms and the weights (by mass) of the openings are those of movers.
 Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yielding yielding);
 
 /// Moves end poses until the gaps are as wanted, as far as that goes; takes away the approach of those that

@@ -16,14 +16,6 @@ using core::at;
 
 constexpr double kAside = 0.03;  // of the usual gap: just more than the least that is kept
 
-collision::PlacedCollider place_at_pose(const WorkBody& w, const Pose& pose) {
-  collision::PlacedCollider placed;
-  placed.collider = w.collider;
-  place_at(w, pose, placed.start);
-  collision::refit_boxes(placed);
-  return placed;
-}
-
 class Parting {
  public:
   Parting(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
@@ -98,7 +90,7 @@ class Parting {
 
   bool is_free(int mover, const Pose& pose) const {
     const WorkBody& w = work_.bodies[at(mover)];
-    const collision::PlacedCollider placed = place_at_pose(w, pose);
+    const collision::PlacedCollider placed = collision::place_collider(*w.collider, pose);
     return std::all_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
       if (pair.a != mover && pair.b != mover) return true;
       if (state_.pairs[at(pair.state)].is_exempt) return true;
@@ -115,7 +107,7 @@ class Parting {
       Vec3 normal;
       if (pair.is_analytic)
         return collision::analytic_gap(*w.shape, pose, *other.shape, there, normal) >= 0.0;
-      return !collision::crosses(placed, place_at_pose(other, there));
+      return !collision::crosses(placed, collision::place_collider(*other.collider, there));
     });
   }
 

@@ -25,13 +25,8 @@ struct Placed {
 Placed place(const Body& body, std::shared_ptr<const collision::Collider> collider) {
   Placed out;
   out.collider = collider ? std::move(collider) : collision::make_collider(*body.shape);
-  out.placed.collider = out.collider.get();
-  const Mat3 turn = body.pose.rotation.toRotationMatrix();
-  for (const Vec3& v : out.collider->vertices) {
-    out.placed.start.push_back(turn * v + body.pose.translation);
-    out.box.include(out.placed.start.back());
-  }
-  collision::refit_boxes(out.placed);
+  out.placed = collision::place_collider(*out.collider, body.pose);
+  for (const Vec3& v : out.placed.start) out.box.include(v);
   return out;
 }
 
