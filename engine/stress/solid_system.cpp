@@ -1,16 +1,12 @@
 #include "engine/stress/solid_system.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
-#include "engine/stress/block_gradients.h"
-#include "engine/stress/coarse_modes.h"
-#include "engine/stress/rigid_modes.h"
-#include "engine/stress/solid_period.h"
+#include "engine/stress/part_system.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -18,138 +14,69 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kRigidLoad = 1e-12;  // of a load, left after balancing: nothing but rounding
+/// A connected part of the mesh by itself.
+struct Part {
+  std::vector<int> vertices;  // of the whole mesh, ascending: which its own are
+  geometry::SolidMesh mesh;
+  SolidSystemOptions options;
+  std::unique_ptr<const PartSystem> system;
 
-/// Three vertices of a part that are not nearly in line, the first ones in order; -1 where there are none.
-std::array<int, 3> first_anchors(const std::vector<Vec3>& positions, const std::vector<int>& vertices) {
-  constexpr double kLeastAngle = 1e-3;
-  std::array<int, 3> anchors{-1, -1, -1};
-  for (const int v : vertices) {
-    const auto from_first = [&](int vertex) -> Vec3 {
-      return positions[at(vertex)] - positions[at(anchors[0])];
-    };
-    if (anchors[0] < 0) {
-      anchors[0] = v;
-    } else if (anchors[1] < 0) {
-      if (from_first(v).squaredNorm() > 0.0) anchors[1] = v;
-    } else {
-      const double area = from_first(anchors[1]).cross(from_first(v)).norm();
-      if (area > kLeastAngle * from_first(anchors[1]).norm() * from_first(v).norm()) {
-        anchors[2] = v;
-        break;
-      }
-    }
+  VecX gather(const VecX& whole) const {
+    VecX own(static_cast<Eigen::Index>(3 * vertices.size()));
+    for (Size v = 0; v < vertices.size(); ++v)
+      own.segment<3>(static_cast<Eigen::Index>(3 * v)) = whole.segment<3>(3 * vertices[v]);
+    return own;
   }
-  return anchors;
+  void scatter(const VecX& own, VecX& whole) const {
+    for (Size v = 0; v < vertices.size(); ++v)
+      whole.segment<3>(3 * vertices[v]) = own.segment<3>(static_cast<Eigen::Index>(3 * v));
+  }
+};
+
+/// The connected parts of a mesh with what of its support and anchors is theirs, by their first vertices.
+std::vector<Part> divide(const geometry::SolidMesh& mesh, const std::vector<int>& part_of,
+                         const SolidSystemOptions& options) {
+  const int count = part_of.empty() ? 0 : *std::max_element(part_of.begin(), part_of.end()) + 1;
+  std::vector<Part> parts(at(count));
+  std::vector<int> number(part_of.size(), -1);
+  for (Size v = 0; v < part_of.size(); ++v) {
+    if (part_of[v] < 0) continue;
+    Part& part = parts[at(part_of[v])];
+    number[v] = static_cast<int>(part.vertices.size());
+    part.vertices.push_back(static_cast<int>(v));
+    part.mesh.vertex_source.push_back(mesh.vertex_source[v]);
+  }
+  for (Part& part : parts) {
+    part.mesh.elements = mesh.elements;
+    part.options.null_space = options.null_space;
+  }
+  for (geometry::SolidCell cell : mesh.cells) {
+    Part& part = parts[at(part_of[at(cell.vertices[0])])];
+    for (int& vertex : cell.vertices) vertex = number[at(vertex)];
+    part.mesh.cells.push_back(cell);
+  }
+  for (const int dof : options.support.dofs)
+    if (const int v = dof / 3; part_of[at(v)] >= 0)
+      parts[at(part_of[at(v)])].options.support.dofs.push_back(3 * number[at(v)] + dof % 3);
+  for (const auto& [x1, x2, x3] : options.anchors)
+    if (part_of[at(x1)] >= 0)
+      parts[at(part_of[at(x1)])].options.anchors.push_back({number[at(x1)], number[at(x2)], number[at(x3)]});
+  return parts;
 }
 
 }  // namespace
 
-/// Everything in units of the solid (SolidStiffness).
 struct SolidSystem::State {
   std::shared_ptr<const SolidStiffness> stiffness;
-  BlockRows rows;
-  VecX mass;  // |dof|
-  RigidModes rigid;
-  CoarseModes coarse;
-  BlockSystem system;  // without inertia
-  NullSpace null_space = NullSpace::balanced;
+  std::vector<int> part_of;  // |V|, -1 for vertices in no cell
+  std::vector<Part> parts;
   mutable std::once_flag has_period;
   mutable double period = 0.0;
 
-  double seconds() const {
-    return stiffness->length *
-           core::sqrt(stiffness->properties.density / stiffness->properties.youngs_modulus);
-  }
-  bool is_relieved() const { return null_space == NullSpace::balanced && rigid.mode_count() > 0; }
-
-  void build(const geometry::SolidMesh& mesh, const SolidSystemOptions& options);
-  void add_anchors(const std::vector<Vec3>& positions, const SolidSystemOptions& options,
-                   const std::vector<char>& is_clamped, const std::vector<int>& part_of_dof);
-  VecX scaled(const VecX& load) const;
-  SolidSolution solution_of(const GradientResult& result, const VecX& load, const VecX& rigid_part,
-                            const VecX& inertia) const;
+  VecX zero() const { return VecX::Zero(static_cast<Eigen::Index>(3 * part_of.size())); }
+  std::vector<std::vector<Size>> loads_of_parts(const std::vector<VecX>& loads) const;
+  void add(const Part& part, const SolidSolution& own, SolidSolution& whole) const;
 };
-
-void SolidSystem::State::build(const geometry::SolidMesh& mesh, const SolidSystemOptions& options) {
-  const double length = stiffness->length;
-  rows = assemble_stiffness(*stiffness, mesh);
-  mass = lumped_mass(*stiffness, mesh) / (stiffness->properties.density * length * length * length);
-  null_space = options.null_space;
-  std::vector<Vec3> positions(mesh.vertex_source.size());
-  for (Size v = 0; v < positions.size(); ++v)
-    positions[v] = mesh.elements->mesh.positions[at(mesh.vertex_source[v])] / length;
-  std::vector<char> is_clamped(at(mesh.degree_of_freedom_count()), 0);
-  for (const int dof : options.support.dofs) is_clamped[at(dof)] = 1;
-
-  system.rows = &rows;
-  system.hold_of.assign(positions.size(), -1);
-  for (Size v = 0; v < positions.size(); ++v) {
-    const Vec3 free(is_clamped[3 * v] == 0, is_clamped[3 * v + 1] == 0, is_clamped[3 * v + 2] == 0);
-    if (free == Vec3::Ones()) continue;
-    system.hold_of[v] = static_cast<int>(system.holds.size());
-    system.holds.push_back({static_cast<int>(v), free.asDiagonal()});
-  }
-  const std::vector<int> part_of_dof = part_of_dofs(mesh);
-  if (null_space == NullSpace::paper) add_anchors(positions, options, is_clamped, part_of_dof);
-  rigid = RigidModes(part_of_dof, positions, {}, mass, is_clamped);
-  if (is_relieved()) system.project = [this](VecX& residual) { rigid.balance(residual); };
-  invert_diagonal(system);
-  std::vector<Mat3> allowed(positions.size(), Mat3::Identity());
-  std::vector<double> vertex_mass(positions.size());
-  for (Size v = 0; v < positions.size(); ++v) {
-    if (system.hold_of[v] >= 0) allowed[v] = system.holds[at(system.hold_of[v])].allowed;
-    vertex_mass[v] = mass(static_cast<Eigen::Index>(3 * v));
-  }
-  coarse = CoarseModes(rows, positions, allowed, vertex_mass);
-  system.coarse = &coarse;
-  system.coarse_factor = coarse.factor(0.0);
-}
-
-/// [BHTF07] sec. V: X1 is fixed; X2 keeps its direction from X1; X3 keeps the plane of the three.
-void SolidSystem::State::add_anchors(const std::vector<Vec3>& positions, const SolidSystemOptions& options,
-                                     const std::vector<char>& is_clamped,
-                                     const std::vector<int>& part_of_dof) {
-  int parts = 0;
-  for (const int part : part_of_dof) parts = std::max(parts, part + 1);
-  std::vector<std::vector<int>> vertices(at(parts));
-  std::vector<char> is_held(at(parts), 0);
-  for (Size v = 0; v < positions.size(); ++v) {
-    const int part = part_of_dof[3 * v];
-    if (part < 0) continue;
-    vertices[at(part)].push_back(static_cast<int>(v));
-    if (is_clamped[3 * v] != 0 || is_clamped[3 * v + 1] != 0 || is_clamped[3 * v + 2] != 0)
-      is_held[at(part)] = 1;
-  }
-  std::vector<std::array<int, 3>> anchors = options.anchors;
-  for (const auto& three : anchors) is_held[at(part_of_dof[3 * at(three[0])])] = 1;
-  for (Size part = 0; part < vertices.size(); ++part)
-    if (is_held[part] == 0) anchors.push_back(first_anchors(positions, vertices[part]));
-  const auto hold = [&](int vertex, const Mat3& allowed) {
-    system.hold_of[at(vertex)] = static_cast<int>(system.holds.size());
-    system.holds.push_back({vertex, allowed});
-  };
-  for (const auto& [x1, x2, x3] : anchors) {
-    if (x3 < 0) continue;
-    const Vec3 along = (positions[at(x2)] - positions[at(x1)]).normalized();
-    const Vec3 normal = along.cross(positions[at(x3)] - positions[at(x1)]).normalized();
-    hold(x1, Mat3::Zero());
-    hold(x2, along * along.transpose());
-    hold(x3, Mat3::Identity() - normal * normal.transpose());
-  }
-}
-
-VecX SolidSystem::State::scaled(const VecX& load) const {
-  VecX b = load / stiffness->force_unit();
-  for (Size v = 0; v < rows.size(); ++v) {
-    const auto first = static_cast<Eigen::Index>(3 * v);
-    if (rows.first[v] == rows.first[v + 1])
-      b.segment<3>(first).setZero();
-    else if (system.hold_of[v] >= 0)
-      b.segment<3>(first) = (system.holds[at(system.hold_of[v])].allowed * b.segment<3>(first)).eval();
-  }
-  return b;
-}
 
 SolidSystem::SolidSystem(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SolidSystem::~SolidSystem() = default;
@@ -162,88 +89,64 @@ core::Result<std::shared_ptr<const SolidSystem>> SolidSystem::make(
     if (!(stiffness->solids[at(cell.element)].volume > 0.0))
       return core::Error{"an element of the solid has no volume"};
   auto state = std::make_unique<State>();
-  state->stiffness = std::move(stiffness);
-  state->build(mesh, options);
-  if (std::all_of(state->system.inverse.begin(), state->system.inverse.end(),
-                  [](double e) { return e == 0.0; }))
+  const std::vector<int> part_of_dof = part_of_dofs(mesh);
+  for (Size dof = 0; dof < part_of_dof.size(); dof += 3) state->part_of.push_back(part_of_dof[dof]);
+  state->parts = divide(mesh, state->part_of, options);
+  core::parallel_for(state->parts.size(), 1, [&](Size p) {
+    Part& part = state->parts[p];
+    part.system = std::make_unique<PartSystem>(stiffness, part.mesh, part.options);
+    part.mesh = {};
+  });
+  if (std::none_of(state->parts.begin(), state->parts.end(),
+                   [](const Part& part) { return part.system->can_move(); }))
     return core::Error{"the support clamps the whole solid"};
+  state->stiffness = std::move(stiffness);
   return std::shared_ptr<const SolidSystem>(new SolidSystem(std::move(state)));
 }
 
-SolidSolution SolidSystem::State::solution_of(const GradientResult& result, const VecX& load,
-                                              const VecX& rigid_part, const VecX& inertia) const {
-  SolidSolution solution;
-  solution.iterations = result.iterations;
-  solution.residual = result.residual;
-  VecX x = result.x, image = result.image;
-  if (!std::isfinite(x.squaredNorm()) || !std::isfinite(result.residual)) {
-    solution.fault = "the solve left the range of numbers";
-    solution.residual = 1.0;
-    solution.displacement = VecX::Zero(x.size());
-    return solution;
+/// Which loads are on each part.
+std::vector<std::vector<Size>> SolidSystem::State::loads_of_parts(const std::vector<VecX>& loads) const {
+  std::vector<std::vector<Size>> on(parts.size());
+  for (Size l = 0; l < loads.size(); ++l)
+    for (Size v = 0; v < part_of.size(); ++v) {
+      if (part_of[v] < 0) continue;
+      std::vector<Size>& own = on[at(part_of[v])];
+      if ((own.empty() || own.back() != l) &&
+          loads[l].segment<3>(static_cast<Eigen::Index>(3 * v)) != Vec3::Zero())
+        own.push_back(l);
+    }
+  return on;
+}
+
+/// Adds what a load does to one part to what it does to all.
+void SolidSystem::State::add(const Part& part, const SolidSolution& own, SolidSolution& whole) const {
+  part.scatter(own.displacement, whole.displacement);
+  if (own.rigid_displacement.size() > 0) {
+    if (whole.rigid_displacement.size() == 0) whole.rigid_displacement = zero();
+    part.scatter(own.rigid_displacement, whole.rigid_displacement);
   }
-  if (!result.is_converged)
-    solution.fault = "the solve did not settle in " + std::to_string(result.iterations) + " iterations";
-  if (inertia.size() > 0) image -= inertia.cwiseProduct(x);
-  solution.elastic_compliance = std::max(0.0, x.dot(image)) * stiffness->force_unit() * stiffness->length;
-  if (is_relieved()) rigid.remove_motion(x);
-  solution.displacement = x * stiffness->length;
-  solution.compliance = load.dot(solution.displacement);
-  if (rigid_part.size() > 0) {
-    solution.rigid_displacement = rigid_part * stiffness->length;
-    solution.compliance += load.dot(solution.rigid_displacement);
-  }
-  return solution;
+  whole.compliance += own.compliance;
+  whole.elastic_compliance += own.elastic_compliance;
+  whole.residual = std::max(whole.residual, own.residual);
+  whole.iterations = std::max(whole.iterations, own.iterations);
+  if (whole.fault.empty()) whole.fault = own.fault;
 }
 
 std::vector<SolidSolution> SolidSystem::solve(const std::vector<VecX>& loads,
                                               const SolidSolveSettings& settings) const {
   const State& state = *state_;
-  const double screening = settings.screening * state.seconds();
-  const double screening_squared = screening * screening;
-  const bool is_screened = screening_squared > 0.0;
-
-  BlockSystem screened;
-  VecX inertia;
-  if (is_screened) {
-    inertia = screening_squared * state.mass;
-    screened.rows = state.system.rows;
-    screened.hold_of = state.system.hold_of;
-    screened.holds = state.system.holds;
-    screened.inertia.resize(state.rows.size());
-    for (Size v = 0; v < state.rows.size(); ++v)
-      screened.inertia[v] = inertia(static_cast<Eigen::Index>(3 * v));
-    invert_diagonal(screened);
-    screened.coarse = &state.coarse;
-    screened.coarse_factor = state.coarse.factor(screening_squared);
-  }
-
-  // A screened load's rigid part is answered in closed form, R R^T / s^2: only what bends is left to iterate.
-  std::vector<VecX> work(loads.size()), rigid_parts(loads.size());
-  core::parallel_for(loads.size(), 1, [&](Size l) {
-    work[l] = state.scaled(loads[l]);
-    if (!state.is_relieved()) return;
-    const VecX whole = work[l];
-    state.rigid.balance(work[l]);
-    if (is_screened) {
-      const VecX resultant = whole - work[l];  // M R R^T b
-      rigid_parts[l] = VecX::Zero(whole.size());
-      for (Eigen::Index i = 0; i < whole.size(); ++i)
-        if (state.mass(i) > 0.0) rigid_parts[l](i) = resultant(i) / inertia(i);
-    }
-    if (!(work[l].norm() > kRigidLoad * whole.norm())) work[l].setZero();
+  const std::vector<std::vector<Size>> loads_on = state.loads_of_parts(loads);
+  std::vector<std::vector<SolidSolution>> own(state.parts.size());
+  core::parallel_for(state.parts.size(), 1, [&](Size p) {
+    if (loads_on[p].empty()) return;
+    std::vector<VecX> own_loads;
+    for (const Size l : loads_on[p]) own_loads.push_back(state.parts[p].gather(loads[l]));
+    own[p] = state.parts[p].system->solve(own_loads, settings);
   });
-  GradientSettings gradients;
-  gradients.tolerance = settings.tolerance;
-  gradients.most_iterations = settings.most_iterations;
-  if (gradients.most_iterations == 0)
-    gradients.most_iterations =
-        1000 + static_cast<int>(40.0 * core::pow(static_cast<double>(state.rows.size()), 1.0 / 3.0));
-  const std::vector<GradientResult> results =
-      solve_by_gradients(is_screened ? screened : state.system, work, gradients);
   std::vector<SolidSolution> solutions(loads.size());
-  for (Size l = 0; l < loads.size(); ++l)
-    solutions[l] = state.solution_of(results[l], loads[l], rigid_parts[l], inertia);
+  for (SolidSolution& solution : solutions) solution.displacement = state.zero();
+  for (Size p = 0; p < own.size(); ++p)
+    for (Size i = 0; i < own[p].size(); ++i) state.add(state.parts[p], own[p][i], solutions[loads_on[p][i]]);
   return solutions;
 }
 
@@ -252,45 +155,51 @@ SolidSolution SolidSystem::solve(const VecX& load, const SolidSolveSettings& set
 }
 
 VecX SolidSystem::balance(const VecX& load) const {
-  VecX b = state_->scaled(load);
-  state_->rigid.balance(b);
-  return b * state_->stiffness->force_unit();
+  VecX balanced = state_->zero();
+  for (const Part& part : state_->parts) part.scatter(part.system->balance(part.gather(load)), balanced);
+  return balanced;
 }
 
 double SolidSystem::first_period() const {
   std::call_once(state_->has_period, [this] {
-    const State& state = *state_;
-    const double squared = lowest_frequency_squared(state.system, state.mass, state.rigid);
-    if (squared > 0.0) state.period = 2.0 * core::kPi / core::sqrt(squared) * state.seconds();
+    for (const Part& part : state_->parts)
+      state_->period = std::max(state_->period, part.system->first_period());
   });
   return state_->period;
 }
 
 double SolidSystem::trial_period(const SolidSolution& solution) const {
   const State& state = *state_;
-  VecX x = solution.displacement / state.stiffness->length;
-  state.rigid.remove_motion(x);
-  const double vibrating = (state.mass.array() * x.array().square()).sum();
+  double vibrating = 0.0;
+  for (const Part& part : state.parts)
+    vibrating += part.system->vibrating_moment(part.gather(solution.displacement));
   const double elastic =
       solution.elastic_compliance / (state.stiffness->force_unit() * state.stiffness->length);
   if (!(elastic > 0.0)) return 0.0;
-  return 2.0 * core::kPi * core::sqrt(vibrating / elastic) * state.seconds();
+  return 2.0 * core::kPi * core::sqrt(vibrating / elastic) * state.parts.front().system->seconds();
 }
 
 int SolidSystem::dof_count() const {
-  return static_cast<int>(state_->mass.size());
+  return 3 * static_cast<int>(state_->part_of.size());
 }
 int SolidSystem::part_count() const {
-  return state_->rigid.part_count();
+  return static_cast<int>(state_->parts.size());
+}
+const std::vector<int>& SolidSystem::part_of_vertex() const {
+  return state_->part_of;
 }
 int SolidSystem::rigid_mode_count() const {
-  return state_->rigid.mode_count();
+  int count = 0;
+  for (const Part& part : state_->parts) count += part.system->rigid.mode_count();
+  return count;
 }
 const SolidStiffness& SolidSystem::stiffness() const {
   return *state_->stiffness;
 }
 double SolidSystem::block_count() const {
-  return static_cast<double>(state_->rows.column.size());
+  double count = 0.0;
+  for (const Part& part : state_->parts) count += static_cast<double>(part.system->rows.column.size());
+  return count;
 }
 
 Eigen::MatrixXd compliance_matrix(const std::vector<VecX>& loads,

@@ -42,9 +42,9 @@ struct SolidSolution {
   VecX rigid_displacement;          // |dof|, m: that motion, in a screened solve; else empty
   double compliance = 0.0;          // load . (both displacements), J (for a unit force: m/N)
   double elastic_compliance = 0.0;  // displacement . K displacement, J: twice the elastic energy
-  double residual = 0.0;            // |b - A u| / |b|, of the balanced load
-  int iterations = 0;
-  std::string fault;  // why the displacement is no answer; empty if it is one
+  double residual = 0.0;            // |b - A u| / |b|, of the balanced load; the worst of its parts
+  int iterations = 0;               // of the part that took most
+  std::string fault;                // why the displacement is no answer; empty if it is one
   bool is_evaluated() const { return fault.empty(); }
 };
 
@@ -75,7 +75,9 @@ class SolidSystem {
   double trial_period(const SolidSolution& solution) const;
 
   int dof_count() const;
-  int part_count() const;        // connected parts of the mesh
+  int part_count() const;  // connected parts of the mesh, each solved by itself
+  /// |virtual vertices|: the part that each is of, numbered by their first vertices; -1 for none.
+  const std::vector<int>& part_of_vertex() const;
   int rigid_mode_count() const;  // over all parts: 6 for each free one, fewer where supported
   const SolidStiffness& stiffness() const;
   double block_count() const;  // 3 x 3 blocks of the matrix, for benches
