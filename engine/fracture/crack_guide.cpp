@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <Eigen/SparseCholesky>
+#include <optional>
 
 #include "engine/core/index.h"
-#include "engine/stress/elimination_order.h"
+#include "engine/core/parallel.h"
+#include "engine/stress/front_solve.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -40,7 +40,20 @@ std::array<Vec3, 4> shape_gradients(const geometry::TetMesh& mesh, int element) 
 }  // namespace
 
 struct CrackGuide::Factor {
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> solver;
+  stress::FrontTree tree;
+  std::optional<stress::FrontFactor> factor;
+
+  /// |nodes|: unknown, -1 for none.
+  const std::vector<int>& number() const { return tree.node_place; }
+
+  /// Solves in place, by unknown.
+  std::vector<double> solve(std::vector<double> load) const {
+    stress::SolveLanes x(tree, 1);
+    x.values = std::move(load);
+    solve_forward(tree, *factor, x);
+    solve_backward(tree, *factor, x);
+    return std::move(x.values);
+  }
 };
 
 Mat3 guide_conduction(const Vec3& across, double sureness) {
@@ -61,55 +74,39 @@ void settle_near_nodes(const geometry::TetMesh& mesh, const std::vector<double>&
       field[v] = std::max(kOnNode * change[v], 1e-300);
 }
 
-CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements)
-    : mesh_(mesh), elements_(std::move(elements)), number_(mesh.positions.size(), -1) {
-  for (const GuideElement& e : elements_)
-    for (const int v : mesh_.tetrahedra[at(e.element)]) number_[at(v)] = 0;
-  int count = 0;
-  for (int& n : number_)
-    if (n == 0) n = count++;
-  dissect(count);
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(10 * elements_.size() + at(count));
-  double trace = 0.0;
+CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements,
+                       const std::vector<int>& vertex_rank)
+    : mesh_(mesh), elements_(std::move(elements)), factor_(std::make_unique<Factor>()) {
+  stress::NodeGraph graph;
+  graph.element_unknowns = {1, 1, 1, 1, 0, 0};
+  graph.node_size.assign(mesh_.positions.size(), 1);
   for (const GuideElement& e : elements_) {
+    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
+    graph.elements.push_back({t[0], t[1], t[2], t[3], -1, -1});
+  }
+  std::vector<int> order(vertex_rank.size());
+  for (Size v = 0; v < order.size(); ++v) order[at(vertex_rank[v])] = static_cast<int>(v);
+  factor_->tree = build_front_tree(graph, order);
+
+  using Entries = std::array<double, 10>;  // of an element: lower triangle, column after column
+  std::vector<Entries> entries(elements_.size());
+  core::parallel_for(elements_.size(), 1024, [&](Size k) {
+    const GuideElement& e = elements_[k];
     const std::array<Vec3, 4> gradients = shape_gradients(mesh_, e.element);
     const double full = geometry::tetrahedron_volume(mesh_, e.element);
     const double volume = std::max(e.volume, kLeastShare * full);
-    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
-    for (Size i = 0; i < 4; ++i) {
-      const Vec3 flow = volume * (e.conduction * gradients[i]);
-      trace += flow.dot(gradients[i]);
-      for (Size j = 0; j < 4; ++j) {
-        const int row = number_[at(t[i])], column = number_[at(t[j])];
-        if (row >= column) entries.emplace_back(row, column, flow.dot(gradients[j]));
-      }
+    Size next = 0;
+    for (Size j = 0; j < 4; ++j) {
+      const Vec3 flow = volume * (e.conduction * gradients[j]);
+      for (Size i = j; i < 4; ++i) entries[k][next++] = flow.dot(gradients[i]);
     }
-  }
-  for (int n = 0; n < count; ++n) entries.emplace_back(n, n, kHold * trace / count);
-  Eigen::SparseMatrix<double> matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_ = std::make_unique<Factor>();
-  factor_->solver.compute(matrix);
-}
-
-/// Numbers the unknowns as they are best eliminated. In three dimensions the factor is several times smaller
-/// than by least degrees.
-void CrackGuide::dissect(int count) {
-  std::vector<std::array<int, 2>> edges;
-  edges.reserve(6 * elements_.size());
-  for (const GuideElement& e : elements_) {
-    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
-    for (const auto& ends : geometry::kTetrahedronEdges) {
-      const auto [low, high] = std::minmax(number_[at(t[at(ends[0])])], number_[at(t[at(ends[1])])]);
-      edges.push_back({low, high});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  const std::vector<int> rank = stress::rank_vertices(at(count), edges);
-  for (int& n : number_)
-    if (n >= 0) n = rank[at(n)];
+  });
+  double trace = 0.0;
+  for (const Entries& e : entries) trace += (e[0] + e[4]) + (e[7] + e[9]);
+  const std::vector<double> hold(at(factor_->tree.unknowns), kHold * trace / factor_->tree.unknowns);
+  factor_->factor = stress::FrontFactor::make(factor_->tree, hold, [&](int e) {
+    return stress::ElementEntries{entries[at(e)].data(), 1.0};
+  });
 }
 
 CrackGuide::~CrackGuide() = default;
@@ -118,7 +115,9 @@ CrackGuide::CrackGuide(CrackGuide&&) noexcept = default;
 std::vector<double> CrackGuide::potential(int element, const Vec3& place, const Vec3& normal) const {
   // A ball of sources and sinks, the elements about the start: the potential inside is nearly linear.
   const geometry::Tetrahedron& start = mesh_.tetrahedra[at(element)];
-  VecX source = VecX::Zero(factor_->solver.rows());
+  if (!factor_->factor) return std::vector<double>(mesh_.positions.size(), 0.0);
+  const std::vector<int>& number = factor_->number();
+  std::vector<double> source(at(factor_->tree.unknowns), 0.0);
   for (const GuideElement& e : elements_) {
     const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
     const bool is_near = std::any_of(
@@ -126,29 +125,29 @@ std::vector<double> CrackGuide::potential(int element, const Vec3& place, const 
     if (!is_near) continue;
     const std::array<Vec3, 4> gradients = shape_gradients(mesh_, e.element);
     const double volume = geometry::tetrahedron_volume(mesh_, e.element);
-    for (Size i = 0; i < 4; ++i) source(number_[at(t[i])]) += volume * gradients[i].dot(normal);
+    for (Size i = 0; i < 4; ++i) source[at(number[at(t[i])])] += volume * gradients[i].dot(normal);
   }
-  const VecX flow = factor_->solver.solve(source);
+  const std::vector<double> flow = factor_->solve(std::move(source));
   double here = 0.0;
   const std::array<Vec3, 4> gradients = shape_gradients(mesh_, element);
   for (Size i = 0; i < 4; ++i) {
     const double weight = (i == 0 ? 1.0 : 0.0) + gradients[i].dot(place - mesh_.positions[at(start[0])]);
-    here += weight * flow(number_[at(start[i])]);
+    here += weight * flow[at(number[at(start[i])])];
   }
   // The change of the potential over the elements about each node is the measure of what is near zero.
   std::vector<double> values(mesh_.positions.size(), 0.0), change(values.size(), 0.0);
   for (const GuideElement& e : elements_) {
     double low = 1e300, high = -1e300;
     for (const int v : mesh_.tetrahedra[at(e.element)]) {
-      low = std::min(low, flow(number_[at(v)]));
-      high = std::max(high, flow(number_[at(v)]));
+      low = std::min(low, flow[at(number[at(v)])]);
+      high = std::max(high, flow[at(number[at(v)])]);
     }
     for (const int v : mesh_.tetrahedra[at(e.element)]) change[at(v)] = std::max(change[at(v)], high - low);
   }
   const double faintest = kFaint * *std::max_element(change.begin(), change.end());
   for (Size v = 0; v < values.size(); ++v) {
-    if (number_[v] < 0 || !(change[v] > faintest)) continue;
-    const double value = flow(number_[v]) - here;
+    if (number[v] < 0 || !(change[v] > faintest)) continue;
+    const double value = flow[at(number[v])] - here;
     values[v] = std::abs(value) < kToNode * change[v] ? kOnNode * change[v] : value;
   }
   return values;

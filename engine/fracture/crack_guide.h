@@ -24,8 +24,10 @@ struct GuideElement {
 
 class CrackGuide {
  public:
-  /// `elements` hang together by faces and come ascending.
-  CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements);
+  /// `elements` hang together by faces and come ascending; `vertex_rank` (|nodes of the mesh|): a good order
+  /// of elimination (stress/elimination_order.h).
+  CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements,
+             const std::vector<int>& vertex_rank);
   ~CrackGuide();
   CrackGuide(CrackGuide&&) noexcept;
 
@@ -38,11 +40,8 @@ class CrackGuide {
  private:
   struct Factor;
 
-  void dissect(int count);
-
   const geometry::TetMesh& mesh_;
   std::vector<GuideElement> elements_;
-  std::vector<int> number_;  // |nodes|: unknown, -1 for none
   std::unique_ptr<Factor> factor_;
 };
 

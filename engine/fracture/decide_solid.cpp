@@ -8,6 +8,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/fracture/path_noise.h"
 #include "engine/fracture/solid_force.h"
 #include "engine/fracture/solid_tracer.h"
 
@@ -171,12 +172,13 @@ class SolidDecider {
   SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) const {
     SolidTracerSetup setup;
     setup.solved = {&mesh, &force_.displacement()};
-    setup.stresses = &stresses_;
-    setup.pieces = &pieces_;
+    setup.guides.stresses = &stresses_;
+    setup.guides.pieces = &pieces_;
+    setup.guides.turns = &turns_;
+    setup.guides.vertex_rank = &model().stiffness->vertex_rank.of(*model().mesh.elements);
+    setup.guides.strength = subject_.material.strength;
     setup.material = &subject_.material;
     setup.grains = subject_.grains.get();
-    setup.noise_a = &*noise_a_;
-    setup.noise_b = &*noise_b_;
     for (const SolidPress& press : force_.presses())
       setup.centres.push_back({press.contact.point, press.contact.radius});
     setup.least_size = kToldSize * model().mean_edge_length;
@@ -187,9 +189,24 @@ class SolidDecider {
     return setup;
   }
 
+  /// Once for all generations: sums of waves are slow.
+  void find_turns() {
+    const PathNoise a(kSolidWaveLength * model().size, settings_.waviness, subject_.seed);
+    const PathNoise b(kSolidWaveLength * model().size, settings_.waviness, core::mix(subject_.seed + 1));
+    const geometry::TetMesh& mesh = model().mesh.elements->mesh;
+    std::vector<char> is_used(mesh.tetrahedra.size(), 0);
+    for (const geometry::SolidCell& cell : model().mesh.cells) is_used[at(cell.element)] = 1;
+    turns_.assign(is_used.size(), {});
+    core::parallel_for(is_used.size(), 512, [&](Size e) {
+      if (is_used[e] == 0) return;
+      Vec3 middle = Vec3::Zero();
+      for (const int v : mesh.tetrahedra[e]) middle += 0.25 * mesh.positions[at(v)];
+      turns_[e] = {a.at(middle), b.at(middle)};
+    });
+  }
+
   void run_generations(std::vector<SolidCandidate> candidates) {
-    noise_a_.emplace(kSolidWaveLength * model().size, settings_.waviness, subject_.seed);
-    noise_b_.emplace(kSolidWaveLength * model().size, settings_.waviness, core::mix(subject_.seed + 1));
+    find_turns();
     auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
     geometry::SolidMesh mesh;
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
@@ -232,7 +249,7 @@ class SolidDecider {
   const FractureSettings& settings_;
   SolidForce force_;
   SolidDecision decision_;
-  std::optional<PathNoise> noise_a_, noise_b_;
+  CrackTurns turns_;
   std::vector<stress::SolidStress> stresses_;  // of this generation, per cell
   std::vector<double> tensions_;               // their first principal values
   std::vector<int> pieces_;                    // that its cells are in

@@ -1,6 +1,7 @@
 #include "engine/fracture/solid_tracer.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
@@ -48,12 +49,10 @@ SolidTracer::SolidTracer(geometry::SolidComplex& complex, SolidTracerSetup setup
       setup_(std::move(setup)),
       cutter_(complex),
       field_(complex),
+      guides_(complex, setup_.guides),
       origin_(complex.cells.size()),
       entered_(complex.cells.size(), 0) {
-  for (Size c = 0; c < origin_.size(); ++c) {
-    origin_[c] = static_cast<int>(c);
-    volumes_.push_back(complex.cells[c].volume);
-  }
+  std::iota(origin_.begin(), origin_.end(), 0);
   toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
 }
 
@@ -100,50 +99,10 @@ bool SolidTracer::pay(double area, double weakness) {
   return true;
 }
 
-/// Across the first principal stress; where the two greatest are alike, or little pulls, the crack is not
-/// told where to go.
-Mat3 SolidTracer::conduction(int element, const stress::SolidStress& stress) const {
-  const stress::PrincipalAxes axes = stress::principal_axes(stress);
-  if (!(axes.values(0) > 0.0)) return Mat3::Identity();
-  const Vec3 across = axes.directions.col(0);
-  const geometry::TetMesh& mesh = complex_.elements->mesh;
-  Vec3 middle = Vec3::Zero();
-  for (const int v : mesh.tetrahedra[at(element)]) middle += 0.25 * mesh.positions[at(v)];
-  int least = 0;
-  across.cwiseAbs().minCoeff(&least);
-  const Vec3 u = across.cross(Vec3::Unit(least)).normalized();
-  const Vec3 wavy = across + setup_.noise_a->at(middle) * u + setup_.noise_b->at(middle) * across.cross(u);
-  const double anisotropy = std::clamp((axes.values(0) - axes.values(1)) / axes.values(0), 0.0, 1.0);
-  const double pull = std::min(1.0, axes.values(0) / setup_.material->strength);
-  return guide_conduction(wavy.normalized(), pull * anisotropy);
-}
-
-/// Made at the piece's first crack.
-const CrackGuide& SolidTracer::guide_of(int piece) {
-  if (const auto known = guides_.find(piece); known != guides_.end()) return known->second;
-  std::map<int, GuideElement> elements;
-  std::map<int, stress::SolidStress> stresses;  // times volume
-  for (Size c = 0; c < volumes_.size(); ++c) {
-    if ((*setup_.pieces)[c] != piece) continue;
-    const int element = complex_.cells[c].element;
-    GuideElement& own = elements[element];
-    own.element = element;
-    own.volume += volumes_[c];
-    stresses.try_emplace(element, stress::SolidStress::Zero()).first->second +=
-        volumes_[c] * (*setup_.stresses)[c];
-  }
-  std::vector<GuideElement> list;
-  for (auto& [element, own] : elements) {
-    if (own.volume > 0.0) own.conduction = conduction(element, stresses.at(element) / own.volume);
-    list.push_back(own);
-  }
-  return guides_.try_emplace(piece, complex_.elements->mesh, std::move(list)).first->second;
-}
-
 double SolidTracer::tension_across(int cell, const Vec3& gradient) const {
   const double steep = gradient.norm();
   if (!(steep > 0.0)) return 0.0;
-  return tension_of((*setup_.stresses)[at(origin_[at(cell)])], gradient / steep);
+  return tension_of((*setup_.guides.stresses)[at(origin_[at(cell)])], gradient / steep);
 }
 
 /// Takes a cell into the crack; its crossed facets become fronts.
@@ -215,7 +174,7 @@ bool SolidTracer::take() {
     CrackStretch stretch;
     stretch.begin = stretch.end = middles_[i];
     stretch.crack = present_id_;
-    stretch.piece = (*setup_.pieces)[at(origin_[at(active_[i])])];
+    stretch.piece = (*setup_.guides.pieces)[at(origin_[at(active_[i])])];
     present_.add(stretch);
   }
   cut();
@@ -332,10 +291,10 @@ bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>&
     cell = *holder;
   }
   settle_cell(complex_, cell);
-  const stress::PrincipalAxes axes = stress::principal_axes((*setup_.stresses)[at(origin_[at(cell)])]);
+  const stress::PrincipalAxes axes = stress::principal_axes((*setup_.guides.stresses)[at(origin_[at(cell)])]);
   begin(setup_.first_id + crack_count_, 0.0);
-  const int piece = (*setup_.pieces)[at(origin_[at(cell)])];
-  std::vector<double> values = guide_of(piece).potential(element, candidate.place, axes.directions.col(0));
+  const int piece = (*setup_.guides.pieces)[at(origin_[at(cell)])];
+  std::vector<double> values = guides_.of(piece).potential(element, candidate.place, axes.directions.col(0));
   if (setup_.grains != nullptr)
     values = follow_grains(*setup_.grains, complex_.elements->mesh, values, element, boundary_weakness());
   field_.take(std::make_shared<const std::vector<double>>(std::move(values)));
@@ -406,7 +365,7 @@ bool SolidTracer::is_shielded(const SolidCandidate& candidate) const {
     nearest = std::min(nearest, std::max((candidate.place - centre.point).norm(), centre.radius));
   const double reach = nearest / core::sqrt(candidate.overload);
   const double spacing = setup_.material->crack_spacing;
-  const int piece = (*setup_.pieces)[at(candidate.cell)];
+  const int piece = (*setup_.guides.pieces)[at(candidate.cell)];
   bool is_near = false;
   present_.visit_near(candidate.place, std::max(spacing * reach, setup_.least_size),
                       [&](const CrackStretch& s, const Vec3&, double distance) {

@@ -2,14 +2,12 @@
 // stress drives it on, until it arrests, reaches the surface, or meets another cut.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <vector>
 
-#include "engine/fracture/crack_guide.h"
 #include "engine/fracture/crack_set.h"
-#include "engine/fracture/path_noise.h"
 #include "engine/fracture/solid_crack.h"
+#include "engine/fracture/solid_guides.h"
 #include "engine/fracture/space_grains.h"
 #include "engine/geometry/solid_complex.h"
 #include "engine/geometry/solid_cutter.h"
@@ -47,13 +45,10 @@ struct SolvedOpening {
 
 /// What does not change while the cracks of a generation run. All that is pointed to must outlive the tracer.
 struct SolidTracerSetup {
-  const std::vector<stress::SolidStress>* stresses = nullptr;  // Pa, per cell at the generation's beginning
-  const std::vector<int>* pieces = nullptr;                    // that each of these cells is in
+  SolidGuideSetup guides;  // stresses and pieces are those of the cells at the generation's beginning
   SolvedOpening solved;
   const material::Material* material = nullptr;
   const SpaceGrains* grains = nullptr;  // null: none
-  const PathNoise* noise_a = nullptr;
-  const PathNoise* noise_b = nullptr;
   std::vector<SolidLoadCentre> centres;
   double least_size = 0.0;     // m, of a crack, and of what is between two: what the elements can tell
   double energy_budget = 0.0;  // J, for this generation; below zero: no guard
@@ -93,8 +88,6 @@ class SolidTracer {
   void enter(int cell, const CrackCap& cap, double intensity);
   double opening_of(const geometry::SolidFacet& facet) const;
   void grow();
-  const CrackGuide& guide_of(int piece);
-  Mat3 conduction(int element, const stress::SolidStress& stress) const;
   double tension_across(int cell, const Vec3& gradient) const;
   std::optional<double> intensity_beside(int cell);
   bool runs_beside_crack(int cell, const CrackCap& cap) const;
@@ -109,16 +102,15 @@ class SolidTracer {
   SolidTracerSetup setup_;
   geometry::SolidCutter cutter_;
   CrackField field_;
-  CrackSet present_;                  // caps of this generation
-  std::vector<double> lengths_;       // m, square root of each crack's area, by id
-  std::map<int, CrackGuide> guides_;  // by piece
-  std::vector<double> volumes_;       // m3, of the cells at the generation's beginning
-  std::vector<int> origin_;           // |cells|: the cell at the generation's beginning that it is part of
-  std::vector<int> entered_;          // |cells|: id of the last crack in it + 1
-  std::vector<int> active_;           // cells of the present crack
-  std::vector<Vec3> middles_;         // m, of its caps in them
-  std::vector<Front> fronts_;         // heap
-  std::vector<int> rests_;            // elements that the present crack did not enter
+  CrackSet present_;             // caps of this generation
+  std::vector<double> lengths_;  // m, square root of each crack's area, by id
+  SolidGuides guides_;
+  std::vector<int> origin_;    // |cells|: the cell at the generation's beginning that it is part of
+  std::vector<int> entered_;   // |cells|: id of the last crack in it + 1
+  std::vector<int> active_;    // cells of the present crack
+  std::vector<Vec3> middles_;  // m, of its caps in them
+  std::vector<Front> fronts_;  // heap
+  std::vector<int> rests_;     // elements that the present crack did not enter
   int next_order_ = 0, crack_count_ = 0, present_id_ = 0;
   double crack_area_ = 0.0;      // m2, of the present crack
   double solved_area_ = 0.0;     // m2, of it when it was solved

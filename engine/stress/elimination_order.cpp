@@ -48,6 +48,22 @@ std::vector<int> rank_vertices(Size count, const std::vector<std::array<int, 2>>
   return rank;
 }
 
+const std::vector<int>& SolidVertexRank::of(const geometry::SolidElements& elements) const {
+  std::call_once(is_found_, [&] {
+    std::vector<std::array<int, 2>> edges;
+    edges.reserve(6 * elements.mesh.tetrahedra.size());
+    for (const geometry::Tetrahedron& t : elements.mesh.tetrahedra)
+      for (const auto& ends : geometry::kTetrahedronEdges) {
+        const auto [low, high] = std::minmax(t[at(ends[0])], t[at(ends[1])]);
+        edges.push_back({low, high});
+      }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    rank_ = rank_vertices(elements.mesh.positions.size(), edges);
+  });
+  return rank_;
+}
+
 std::vector<int> order_nodes(const geometry::ShellMesh& mesh, const std::vector<int>& vertex_rank,
                              bool with_edges) {
   // A node's bucket is the place of its (first eliminated) source vertex; in it come edges before vertices,

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <array>
+#include <mutex>
 #include <vector>
 
 #include "engine/geometry/shell_mesh.h"
+#include "engine/geometry/solid_mesh.h"
 
 namespace shatterbox::stress {
 
@@ -17,6 +19,17 @@ std::vector<int> rank_vertices(const geometry::ShellElements& elements);
 
 /// Likewise of any graph: `edges` (each once, no loops) between `vertex_count` vertices.
 std::vector<int> rank_vertices(std::size_t vertex_count, const std::vector<std::array<int, 2>>& edges);
+
+/// The same of a solid's elements (|V|), found when it is first asked for and then kept: only cracks ask.
+class SolidVertexRank {
+ public:
+  /// Any thread; `elements` are always the same ones.
+  const std::vector<int>& of(const geometry::SolidElements& elements) const;
+
+ private:
+  mutable std::once_flag is_found_;
+  mutable std::vector<int> rank_;
+};
 
 /// The nodes of a (cut) mesh in elimination order: virtual vertex v is node v, virtual edge e is node
 /// |virtual vertices| + e. Edges are left out if `with_edges` is false.

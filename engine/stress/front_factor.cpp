@@ -21,17 +21,19 @@ constexpr double kLeastPivot = 1e-15;
 /// From so many multiplications on a front's rest matrix is worth several tasks.
 constexpr double kParallelWork = 2e6;
 
-constexpr std::array<int, NodeGraph::kElementNodes> kNodeUnknowns{3, 3, 3, 1, 1, 1};
-constexpr int kElementUnknowns = 12;
+using NodeNumbers = std::array<int, NodeGraph::kElementNodes>;
+constexpr int kMostElementUnknowns = 12;
 
-/// Places in the front of an element's twelve unknowns, -1 for those that are not there.
-std::array<int, kElementUnknowns> expand(const std::array<int, NodeGraph::kElementNodes>& nodes) {
-  std::array<int, kElementUnknowns> places{};
-  Size next = 0;
-  for (Size node = 0; node < nodes.size(); ++node)
-    for (int i = 0; i < kNodeUnknowns[node]; ++i) places[next++] = nodes[node] < 0 ? -1 : nodes[node] + i;
-  return places;
-}
+/// Places in the front of an element's unknowns, -1 for those that are not there.
+struct ElementPlaces {
+  std::array<int, kMostElementUnknowns> at{};
+  Size count = 0;
+
+  ElementPlaces(const NodeNumbers& nodes, const NodeNumbers& unknowns) {
+    for (Size node = 0; node < nodes.size(); ++node)
+      for (int i = 0; i < unknowns[node]; ++i) at[count++] = nodes[node] < 0 ? -1 : nodes[node] + i;
+  }
+};
 
 /// Addresses of a front's entries: row i of the front, column j, i >= j.
 class FrontView {
@@ -94,13 +96,13 @@ class Factorisation {
     for (const Front& front : tree_.fronts)
       for (int e = front.first_element; e < front.first_element + front.element_count; ++e) {
         const ElementEntries entries = element_(tree_.elements[at(e)]);
-        const auto places = expand(tree_.element_local[at(e)]);
+        const ElementPlaces places(tree_.element_local[at(e)], tree_.element_unknowns);
         Size entry = 0;
-        for (Size i = 0; i < kElementUnknowns; entry += kElementUnknowns - i, ++i) {
-          if (places[i] < 0) continue;
-          const int row = places[i] - front.pivots;
-          const int place =
-              row < 0 ? front.first_pivot + places[i] : tree_.row_place[at(front.first_row + row)];
+        for (Size i = 0; i < places.count; entry += places.count - i, ++i) {
+          const int own = places.at[i];
+          if (own < 0) continue;
+          const int row = own - front.pivots;
+          const int place = row < 0 ? front.first_pivot + own : tree_.row_place[at(front.first_row + row)];
           least_pivots_[at(place)] += entries.factor * entries.lower[entry];
         }
       }
@@ -171,16 +173,17 @@ class Factorisation {
 
   void add_element(int e, const Front& front, const FrontView& view) const {
     const ElementEntries entries = element_(tree_.elements[at(e)]);
-    const auto places = expand(tree_.element_local[at(e)]);
-    std::array<double*, kElementUnknowns> panel_rows{}, rest_rows{};
-    for (Size i = 0; i < kElementUnknowns; ++i) {
+    const ElementPlaces all(tree_.element_local[at(e)], tree_.element_unknowns);
+    const auto& places = all.at;
+    std::array<double*, kMostElementUnknowns> panel_rows{}, rest_rows{};
+    for (Size i = 0; i < all.count; ++i) {
       if (places[i] < 0) continue;
       panel_rows[i] = view.panel_row(places[i]);
       if (places[i] >= front.pivots) rest_rows[i] = view.rest_row(places[i] - front.pivots);
     }
     Size entry = 0;
-    for (Size j = 0; j < kElementUnknowns; ++j)
-      for (Size i = j; i < kElementUnknowns; ++i, ++entry) {
+    for (Size j = 0; j < all.count; ++j)
+      for (Size i = j; i < all.count; ++i, ++entry) {
         if (places[i] < 0 || places[j] < 0) continue;
         const bool is_below = places[i] >= places[j];
         const Size row = is_below ? i : j;

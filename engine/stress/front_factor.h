@@ -13,8 +13,8 @@
 
 namespace shatterbox::stress {
 
-/// The lower triangle of an element's 12 x 12 matrix, column after column, and a factor. Unknowns: nodes 0,
-/// 1, 2 (three each), then nodes 3, 4, 5 (one each).
+/// The lower triangle of an element's matrix, column after column, and a factor. Unknowns: node after node,
+/// as many of each as the graph's `element_unknowns` (of a shell's element 12).
 struct ElementEntries {
   const double* lower = nullptr;
   double factor = 1.0;

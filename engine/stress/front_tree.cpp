@@ -145,6 +145,7 @@ FrontTree build_front_tree(const NodeGraph& graph, const std::vector<int>& order
   const EliminationOrder elimination = order_by_elimination(graph, order);
   TreeBuilder builder(graph, elimination);
   FrontTree tree = builder.build();
+  tree.element_unknowns = graph.element_unknowns;
   tree.node_place.assign(elimination.number.size(), -1);
   for (Size node = 0; node < elimination.number.size(); ++node)
     if (const int number = elimination.number[node]; number >= 0)

@@ -12,6 +12,8 @@ namespace shatterbox::stress {
 /// The unknowns of a problem made of elements: each couples up to six nodes.
 struct NodeGraph {
   static constexpr int kElementNodes = 6;
+  /// Of an element's first, second, ... node; none where there are fewer nodes. At most 12 in all.
+  std::array<int, kElementNodes> element_unknowns{3, 3, 3, 1, 1, 1};
   std::vector<int> node_size;                            // |N|: 1 or 3 unknowns
   std::vector<std::array<int, kElementNodes>> elements;  // node numbers, -1 for none
 };
@@ -31,8 +33,9 @@ struct Front {
 
 struct FrontTree {
   int unknowns = 0;
-  std::vector<Front> fronts;   // children before parents
-  std::vector<int> children;   // front numbers
+  std::array<int, NodeGraph::kElementNodes> element_unknowns{};  // of the graph
+  std::vector<Front> fronts;                                     // children before parents
+  std::vector<int> children;                                     // front numbers
   std::vector<int> row_place;  // place in the order of elimination of each row below the pivots, ascending
   std::vector<int> row_in_parent;  // the same row's place in the parent front: pivots first, then rows
   std::vector<int> node_place;     // |N|: place of a node's first unknown, -1 if it is in no element

@@ -8,6 +8,7 @@
 
 #include "engine/core/vec.h"
 #include "engine/geometry/solid_mesh.h"
+#include "engine/stress/elimination_order.h"
 
 namespace shatterbox::stress {
 
@@ -41,6 +42,7 @@ struct SolidStiffness {
   double poisson_ratio = 0.0;        // as used: at most kMostPoissonRatio
   double length = 1.0;               // m, diagonal of the bounding box of the uncut elements
   std::vector<SolidElement> solids;  // |T|
+  SolidVertexRank vertex_rank;
 
   bool is_poisson_clamped() const { return poisson_ratio < properties.poisson_ratio; }
   double force_unit() const { return properties.youngs_modulus * length * length; }  // N

@@ -1,0 +1,48 @@
+// The guides of one generation of cracks in a solid (crack_guide.h): one a piece, made when its first crack
+// asks, from the stresses and the material that its cells had when the generation began.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "engine/core/vec.h"
+#include "engine/fracture/crack_guide.h"
+#include "engine/geometry/solid_complex.h"
+#include "engine/stress/solid_stress.h"
+
+namespace shatterbox::fracture {
+
+/// rad, by element: by how much cracks bend from the planes of the stress, about two axes.
+using CrackTurns = std::vector<std::array<double, 2>>;
+
+/// All that is pointed to must outlive the guides.
+struct SolidGuideSetup {
+  const std::vector<stress::SolidStress>* stresses = nullptr;  // |cells|, Pa
+  const std::vector<int>* pieces = nullptr;                    // |cells|: that each is in
+  const CrackTurns* turns = nullptr;                           // |elements|
+  const std::vector<int>* vertex_rank = nullptr;               // |nodes|: stress/elimination_order.h
+  double strength = 0.0;                                       // Pa: what a sure stress pulls with
+};
+
+class SolidGuides {
+ public:
+  /// Of the complex as it is now; the mesh of its elements must outlive the guides.
+  SolidGuides(const geometry::SolidComplex& complex, const SolidGuideSetup& setup);
+
+  const CrackGuide& of(int piece);
+
+ private:
+  struct Cell {
+    int element = 0;
+    double volume = 0.0;
+  };
+  Mat3 conduction(int element, const stress::SolidStress& stress) const;
+
+  SolidGuideSetup setup_;
+  const geometry::TetMesh& mesh_;
+  std::vector<Cell> cells_;
+  std::map<int, CrackGuide> guides_;  // by piece
+};
+
+}  // namespace shatterbox::fracture
