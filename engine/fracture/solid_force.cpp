@@ -5,6 +5,7 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/shell_system_cache.h"
 #include "engine/stress/stress_bound.h"
@@ -22,6 +23,8 @@ constexpr Size kMostSolidGroups = 8;           // pieces that share one load: ea
 constexpr int kMostSolidScreenings = 6;        // steps of the search for the duration
 constexpr double kSolidSpinThatCounts = 1e-3;  // least stress of a spin worth a solve, in strengths
 constexpr double kSolidSpinSafety = 4.0;       // by which a bound exceeds the estimate of the spin's stress
+// Resting contact that together presses less than that, of the greatest force on its part, is one load.
+constexpr double kMinorForce = 0.01;
 
 PressGroups find_solid_groups(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin,
                               const ContactPress& load) {
@@ -42,6 +45,19 @@ PressGroups find_solid_groups(const geometry::SolidMesh& mesh, const stress::Sol
 
 }  // namespace
 
+int SolidStage::part_of(Size press, Size group) const {
+  const VecX& force = groups[press].forces[group];
+  for (Size v = 0; v < system->part_of_vertex().size(); ++v)
+    if (force.segment<3>(static_cast<Eigen::Index>(3 * v)) != Vec3::Zero())
+      return system->part_of_vertex()[v];
+  return -1;
+}
+
+Size SolidStage::heaviest_group(Size press) const {
+  const std::vector<double>& weights = groups[press].weights;
+  return static_cast<Size>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+}
+
 SolidForce::SolidForce(const SolidSubject& subject, const Impact& impact, const FractureSettings& settings)
     : subject_(subject), impact_(impact), settings_(settings) {}
 
@@ -55,9 +71,9 @@ bool SolidForce::prepare(std::string& problem) {
     problem = model.fault;
     return false;
   }
-  mesh_ = &model.mesh;
-  skin_ = &model.skin;
-  system_ = model.system;
+  first_.mesh = &model.mesh;
+  first_.skin = &model.skin;
+  first_.system = model.system;
   const double least_radius =
       std::max(kSolidPatchShare * model.width, kSolidPatchElements * model.mean_edge_length);
   for (const ImpactLoad& load : impact_.loads) {
@@ -125,9 +141,10 @@ std::optional<SolidForce::Bound> SolidForce::harmless_bound() const {
 }
 
 void SolidForce::find_groups() {
-  groups_.clear();
-  for (const SolidPress& press : presses_)
-    groups_.push_back(find_solid_groups(*mesh_, *skin_, press.contact));
+  now_.groups.assign(presses_.size(), {});
+  core::parallel_for(presses_.size(), 1, [&](Size i) {
+    now_.groups[i] = find_solid_groups(*now_.mesh, *now_.skin, presses_[i].contact);
+  });
 }
 
 bool SolidForce::note(const stress::SolidSolution& solution, SolidDecision& decision,
@@ -138,20 +155,34 @@ bool SolidForce::note(const stress::SolidSolution& solution, SolidDecision& deci
   return solution.is_evaluated();
 }
 
-/// What a unit force of each of these loads meets, as the pieces under it share it.
-bool SolidForce::answer(const std::vector<Size>& wanted, SolidDecision& decision, std::string& problem) {
+/// What a unit force of each of these loads meets, as the pieces under it share it; and, if asked, what the
+/// rest does.
+bool SolidForce::answer(const SolidStage& stage, const std::vector<Size>& wanted, SolidDecision& decision,
+                        std::string& problem, bool wants_rest) {
   const auto start = core::Clock::now();
   std::vector<VecX> forces;
-  for (const Size i : wanted) forces.insert(forces.end(), groups_[i].forces.begin(), groups_[i].forces.end());
+  for (const Size i : wanted)
+    forces.insert(forces.end(), stage.groups[i].forces.begin(), stage.groups[i].forces.end());
+  if (wants_rest) {
+    rest_displacement_ = VecX();
+    if (VecX rest = find_rest(); rest.size() > 0)
+      forces.push_back(std::move(rest));
+    else
+      wants_rest = false;
+  }
   stress::SolidSolveSettings solving;
-  solving.screening = screening_;
+  solving.screening = stage.screening;
   solving.tolerance = settings_.solve_residual;
-  const std::vector<stress::SolidSolution> all = system_->solve(forces, solving);
+  const std::vector<stress::SolidSolution> all = stage.system->solve(forces, solving);
   decision.solve_ms += core::milliseconds_since(start);
+  if (wants_rest) {
+    if (!note(all.back(), decision, problem)) return false;
+    rest_displacement_ = all.back().displacement;
+  }
   auto next = all.begin();
   for (const Size i : wanted) {
     SolidPress& press = presses_[i];
-    const PressGroups& groups = groups_[i];
+    const PressGroups& groups = stage.groups[i];
     const std::vector<stress::SolidSolution> own(next,
                                                  next + static_cast<std::ptrdiff_t>(groups.forces.size()));
     next += static_cast<std::ptrdiff_t>(groups.forces.size());
@@ -159,14 +190,15 @@ bool SolidForce::answer(const std::vector<Size>& wanted, SolidDecision& decision
       if (!note(solution, decision, problem)) return false;
     const Eigen::MatrixXd flexibility = stress::compliance_matrix(groups.forces, own);
     const Eigen::VectorXd shares = share_force(groups, flexibility);
-    press.displacement = VecX::Zero(system_->dof_count());
+    press.shares.assign(shares.data(), shares.data() + shares.size());
+    press.displacement = VecX::Zero(stage.system->dof_count());
     for (Eigen::Index g = 0; g < shares.size(); ++g)
       if (shares[g] != 0.0) press.displacement += shares[g] * own[static_cast<Size>(g)].displacement;
     press.compliance = shares.dot(flexibility * shares);
-    press.elastic_compliance =
-        own.size() == 1
-            ? own.front().elastic_compliance
-            : press.displacement.dot(apply_stiffness(*subject_.model->stiffness, *mesh_, press.displacement));
+    press.elastic_compliance = own.size() == 1
+                                   ? own.front().elastic_compliance
+                                   : press.displacement.dot(apply_stiffness(*subject_.model->stiffness,
+                                                                            *stage.mesh, press.displacement));
   }
   return true;
 }
@@ -187,20 +219,20 @@ double SolidForce::duration_of(const SolidPress& press) const {
 /// displacement), not the body's first one, which may be of a motion that it does not; and costs nothing.
 bool SolidForce::settle_lead(Size lead, SolidDecision& decision, std::string& problem) {
   has_lead_ = true;
-  if (!answer({lead}, decision, problem)) return false;
+  if (!answer(now_, {lead}, decision, problem)) return false;
   duration_ = duration_of(presses_[lead]);
   stress::SolidSolution motion;
   motion.displacement = presses_[lead].displacement;
   motion.elastic_compliance = presses_[lead].elastic_compliance;
   exponent_ = stress::quantise_screening(1.0 / duration_);
-  if (!(duration_ < 0.5 * system_->trial_period(motion))) return true;
+  if (!(duration_ < 0.5 * now_.system->trial_period(motion))) return true;
   // A higher screening never makes the duration longer: the search climbs.
   std::vector<int> tried;
   while (static_cast<int>(tried.size()) < kMostSolidScreenings &&
          std::find(tried.begin(), tried.end(), exponent_) == tried.end()) {
     tried.push_back(exponent_);
-    screening_ = stress::screening_of(exponent_);
-    if (!answer({lead}, decision, problem)) return false;
+    now_.screening = stress::screening_of(exponent_);
+    if (!answer(now_, {lead}, decision, problem)) return false;
     duration_ = duration_of(presses_[lead]);
     exponent_ = stress::quantise_screening(1.0 / duration_);
   }
@@ -209,6 +241,7 @@ bool SolidForce::settle_lead(Size lead, SolidDecision& decision, std::string& pr
 }
 
 bool SolidForce::settle(SolidDecision& decision, std::string& problem) {
+  now_ = first_;
   find_groups();
   duration_ = impact_.contact_average;
   std::optional<Size> lead;
@@ -217,12 +250,39 @@ bool SolidForce::settle(SolidDecision& decision, std::string& problem) {
     if (!lead || presses_[i].load->impulse > presses_[*lead].load->impulse) lead = i;
   }
   if (lead && !settle_lead(*lead, decision, problem)) return false;
+  if (lead) settle_force(presses_[*lead]);
+  choose_minor();
   std::vector<Size> others;
   for (Size i = 0; i < presses_.size(); ++i)
-    if (i != lead) others.push_back(i);
-  if (!others.empty() && !answer(others, decision, problem)) return false;
+    if (i != lead && !presses_[i].is_minor) others.push_back(i);
+  if (!answer(now_, others, decision, problem, true)) return false;
   for (SolidPress& press : presses_) settle_force(press);
-  return sum_up(decision, problem);
+  first_ = now_;
+  sum_up();
+  return true;
+}
+
+/// Resting contact presses with a force that no solve has to tell. The least of it, of many pieces that lie
+/// on a body while it is hit, is not worth one solve each.
+void SolidForce::choose_minor() {
+  if (impact_.given_duration) return;
+  double greatest = 0.0;
+  std::vector<std::pair<double, Size>> resting;
+  for (Size i = 0; i < presses_.size(); ++i) {
+    SolidPress& press = presses_[i];
+    if (!is_collision(*press.load)) {
+      settle_force(press);
+      resting.push_back({press.first_force, i});
+    }
+    greatest = std::max(greatest, press.first_force);
+  }
+  std::sort(resting.begin(), resting.end());
+  double sum = 0.0;
+  for (const auto& [force, i] : resting) {
+    sum += force;
+    if (sum > kMinorForce * greatest) break;
+    presses_[i].is_minor = true;
+  }
 }
 
 void SolidForce::settle_force(SolidPress& press) {
@@ -243,7 +303,7 @@ void SolidForce::settle_force(SolidPress& press) {
 }
 
 VecX SolidForce::struck_displacement() const {
-  VecX sum = VecX::Zero(system_->dof_count());
+  VecX sum = VecX::Zero(now_.system->dof_count());
   for (const SolidPress& press : presses_)
     if (!press.load->is_resting) sum += press.force * press.displacement;
   return sum;
@@ -274,6 +334,7 @@ double SolidForce::lost_energy() const {
 
 void SolidForce::complete(SolidDecision& decision) {
   for (SolidPress& press : presses_) {
+    if (press.is_minor) continue;
     press.first_compliance = press.compliance;
     const double elastic =
         0.5 * press.force * press.force * (press.contact.hertz_compliance + press.elastic_compliance);
@@ -282,24 +343,83 @@ void SolidForce::complete(SolidDecision& decision) {
   }
 }
 
+/// m/N that the own inertia of a free body, as one rigid whole, adds to the compliance of the intact body, if
+/// that was solved without.
+double SolidForce::first_inertia(const SolidPress& press) const {
+  if (first_.screening > 0.0 || !subject_.clamped_vertices.empty()) return 0.0;
+  return rigid_mobility(subject_.model->mass, *press.load) / (now_.screening * now_.screening);
+}
+
 /// Later generations are screened. Below the first frequency that adds the body's own inertia, as one rigid
 /// whole.
 void SolidForce::prepare_cracked() {
   if (is_cracked_) return;
   is_cracked_ = true;
-  if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / system_->first_period());
-  const bool was_screened = screening_ > 0.0;
-  screening_ = stress::screening_of(exponent_);
-  if (was_screened || !subject_.clamped_vertices.empty()) return;
-  for (SolidPress& press : presses_)
-    press.first_compliance += rigid_mobility(subject_.model->mass, *press.load) / (screening_ * screening_);
+  if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / first_.system->first_period());
+  now_.screening = stress::screening_of(exponent_);
+  for (SolidPress& press : presses_) press.first_compliance += first_inertia(press);
+}
+
+/// The greatest force of a load that was solved for, by connected part, N.
+std::vector<double> SolidForce::part_forces() const {
+  std::vector<double> forces(at(now_.system->part_count()), 0.0);
+  for (Size i = 0; i < presses_.size(); ++i) {
+    if (presses_[i].is_minor) continue;
+    std::vector<double> own(forces.size(), 0.0);
+    for (Size g = 0; g < presses_[i].shares.size(); ++g)
+      if (const int part = now_.part_of(i, g); part >= 0)
+        own[at(part)] += presses_[i].force * presses_[i].shares[g];
+    for (Size p = 0; p < own.size(); ++p) forces[p] = std::max(forces[p], own[p]);
+  }
+  return forces;
+}
+
+/// Where the force of the others has fallen, or a part came off with resting contact alone, that counts: from
+/// now on it is solved for.
+bool SolidForce::promote_minor(SolidDecision& decision, std::string& problem) {
+  std::vector<std::pair<double, Size>> minor;
+  for (Size i = 0; i < presses_.size(); ++i)
+    if (presses_[i].is_minor) minor.push_back({presses_[i].first_force, i});
+  if (minor.empty()) return true;
+  std::sort(minor.begin(), minor.end());
+  const std::vector<double> greatest = part_forces();
+  std::vector<double> sums(greatest.size(), 0.0);
+  std::vector<Size> promoted;
+  for (const auto& [force, i] : minor) {
+    const int part = now_.groups[i].forces.empty() ? -1 : now_.part_of(i, now_.heaviest_group(i));
+    if (part < 0) continue;
+    sums[at(part)] += force;
+    if (sums[at(part)] > kMinorForce * greatest[at(part)]) promoted.push_back(i);
+  }
+  if (promoted.empty()) return true;
+  if (!answer(first_, promoted, decision, problem)) return false;
+  for (const Size i : promoted) {
+    SolidPress& press = presses_[i];
+    press.is_minor = false;
+    press.energy =
+        0.5 * press.force * press.force * (press.contact.hertz_compliance + press.elastic_compliance);
+    press.first_compliance = press.compliance + first_inertia(press);
+  }
+  if (!answer(now_, promoted, decision, problem, true)) return false;
+  for (const Size i : promoted) settle_cracked_force(presses_[i], decision);
+  return true;
+}
+
+void SolidForce::settle_cracked_force(SolidPress& press, const SolidDecision& decision) {
+  const double hertz = press.contact.hertz_compliance;
+  const double other = press.load->other_inverse_mass / (now_.screening * now_.screening);
+  const double left = share_left(press.energy, decision.fracture_energy);
+  press.force =
+      cracked_force(press.first_force, hertz, press.first_compliance, press.compliance, other, left);
+  // The springs cannot hold more than the energy that is left.
+  press.force = std::min(press.force, force_of_energy(press.energy * left, hertz + press.elastic_compliance));
 }
 
 bool SolidForce::settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin,
                               SolidDecision& decision, std::string& problem) {
   prepare_cracked();
-  mesh_ = &mesh;
-  skin_ = &skin;
+  now_.mesh = &mesh;
+  now_.skin = &skin;
   find_groups();
   const auto start = core::Clock::now();
   stress::SolidSystemOptions options;
@@ -310,39 +430,38 @@ bool SolidForce::settle_again(const geometry::SolidMesh& mesh, const stress::Sol
     problem = system.error();
     return false;
   }
-  system_ = system.value();
-  std::vector<Size> all(presses_.size());
-  std::iota(all.begin(), all.end(), Size{0});
-  if (!answer(all, decision, problem)) return false;
-  for (SolidPress& press : presses_) {
-    const double hertz = press.contact.hertz_compliance;
-    const double other = press.load->other_inverse_mass / (screening_ * screening_);
-    const double left = share_left(press.energy, decision.fracture_energy);
-    press.force =
-        cracked_force(press.first_force, hertz, press.first_compliance, press.compliance, other, left);
-    // The springs cannot hold more than the energy that is left.
-    press.force =
-        std::min(press.force, force_of_energy(press.energy * left, hertz + press.elastic_compliance));
-  }
-  return sum_up(decision, problem);
+  now_.system = system.value();
+  std::vector<Size> wanted;
+  for (Size i = 0; i < presses_.size(); ++i)
+    if (!presses_[i].is_minor) wanted.push_back(i);
+  if (!answer(now_, wanted, decision, problem, true)) return false;
+  for (const Size i : wanted) settle_cracked_force(presses_[i], decision);
+  if (!promote_minor(decision, problem)) return false;
+  sum_up();
+  return true;
 }
 
-/// The displacement under all forces and the spin at once: the answer is linear.
-bool SolidForce::sum_up(SolidDecision& decision, std::string& problem) {
-  displacement_ = VecX::Zero(system_->dof_count());
-  for (const SolidPress& press : presses_) displacement_ += press.force * press.displacement;
-  if (!is_spinning()) return true;
-  const auto start = core::Clock::now();
-  stress::SolidSolveSettings solving;
-  solving.screening = screening_;
-  solving.tolerance = settings_.solve_residual;
-  const stress::SolidSolution spun =
-      system_->solve(stress::centrifugal_load(*subject_.model->stiffness, *mesh_, impact_.spin_material,
-                                              subject_.model->mass.centre),
-                     solving);
-  decision.solve_ms += core::milliseconds_since(start);
-  displacement_ += spun.displacement;
-  return note(spun, decision, problem);
+/// What presses beside the loads that are solved for, N: the spin, and minor loads on the heaviest of their
+/// pieces. Empty: nothing does.
+VecX SolidForce::find_rest() const {
+  VecX rest;
+  if (is_spinning())
+    rest = stress::centrifugal_load(*subject_.model->stiffness, *now_.mesh, impact_.spin_material,
+                                    subject_.model->mass.centre);
+  for (Size i = 0; i < presses_.size(); ++i) {
+    if (!presses_[i].is_minor || now_.groups[i].forces.empty()) continue;
+    if (rest.size() == 0) rest = VecX::Zero(now_.system->dof_count());
+    rest += presses_[i].force * now_.groups[i].forces[now_.heaviest_group(i)];
+  }
+  return rest;
+}
+
+/// The displacement under all forces, the spin and minor loads at once: the answer is linear.
+void SolidForce::sum_up() {
+  displacement_ = VecX::Zero(now_.system->dof_count());
+  if (rest_displacement_.size() > 0) displacement_ += rest_displacement_;
+  for (const SolidPress& press : presses_)
+    if (!press.is_minor) displacement_ += press.force * press.displacement;
 }
 
 }  // namespace shatterbox::fracture

@@ -1,5 +1,5 @@
 // How hard and how long an impact presses on a solid: as impact_force.h for shells, by conjugate gradients in
-// place of factors.
+// place of factors. Resting contact that is next to nothing beside the impact is solved for all at once.
 #pragma once
 
 #include <optional>
@@ -24,6 +24,22 @@ struct SolidPress {
   VecX displacement;                // |dof|, m
   double compliance = 0.0;          // m/N
   double elastic_compliance = 0.0;  // m/N
+  std::vector<double> shares;       // of its groups in the force
+  /// Resting contact that was never solved for: it has no compliance and no energy.
+  bool is_minor = false;
+};
+
+/// A mesh to be pressed on, its system, and the pieces under each load.
+struct SolidStage {
+  const geometry::SolidMesh* mesh = nullptr;
+  const stress::SolidSkin* skin = nullptr;
+  std::shared_ptr<const stress::SolidSystem> system;
+  std::vector<PressGroups> groups;
+  double screening = 0.0;  // 1/s
+
+  /// The connected part that a group of a load is on.
+  int part_of(std::size_t press, std::size_t group) const;
+  std::size_t heaviest_group(std::size_t press) const;
 };
 
 /// All loads of one impact on one prepared subject. Both must outlive it.
@@ -69,27 +85,30 @@ class SolidForce {
   bool is_spinning() const;
   double felt_compliance(const SolidPress& press) const;
   double duration_of(const SolidPress& press) const;
-  bool answer(const std::vector<std::size_t>& wanted, SolidDecision& decision, std::string& problem);
+  bool answer(const SolidStage& stage, const std::vector<std::size_t>& wanted, SolidDecision& decision,
+              std::string& problem, bool wants_rest = false);
+  void choose_minor();
+  bool promote_minor(SolidDecision& decision, std::string& problem);
+  std::vector<double> part_forces() const;
+  void settle_cracked_force(SolidPress& press, const SolidDecision& decision);
+  double first_inertia(const SolidPress& press) const;
   bool settle_lead(std::size_t lead, SolidDecision& decision, std::string& problem);
   void find_groups();
   void settle_force(SolidPress& press);
   void prepare_cracked();
-  bool sum_up(SolidDecision& decision, std::string& problem);
+  VecX find_rest() const;
+  void sum_up();
   bool note(const stress::SolidSolution& solution, SolidDecision& decision, std::string& problem) const;
 
   const SolidSubject& subject_;
   const Impact& impact_;
   const FractureSettings& settings_;
   std::vector<SolidPress> presses_;
-  std::vector<PressGroups> groups_;  // of the mesh last solved
-  const geometry::SolidMesh* mesh_ = nullptr;
-  const stress::SolidSkin* skin_ = nullptr;
-  std::shared_ptr<const stress::SolidSystem> system_;
-  VecX displacement_;
+  SolidStage first_, now_;  // the intact body; the mesh last solved
+  VecX displacement_, rest_displacement_;
   std::size_t hardest_ = 0;
-  double duration_ = 0.0;   // s, of the lead; contact_average without one
-  double screening_ = 0.0;  // 1/s, of the solves
-  int exponent_ = 0;        // of the screening of the cracked body
+  double duration_ = 0.0;  // s, of the lead; contact_average without one
+  int exponent_ = 0;       // of the screening of the cracked body
   bool has_lead_ = false;
   bool is_cracked_ = false;
 };

@@ -21,15 +21,15 @@ using core::at;
 constexpr double kShareOfWidth = 0.25;  // of the material's width: the most that a vertex retreats
 constexpr int kHalvings = 24;           // rounds in which a kerf that is still too wide is halved
 
-/// Triangles, with boxes about them for one state of their vertices.
+/// Triangles, with boxes about them for one state of their vertices. The positions must outlive it.
 struct BoxedMesh {
-  std::vector<Vec3> positions;
+  const std::vector<Vec3>& positions;
   std::vector<Triangle> triangles;
   TriangleTree tree;
   std::vector<Box> boxes;
 
-  BoxedMesh(std::vector<Vec3> p, std::vector<Triangle> t)
-      : positions(std::move(p)), triangles(std::move(t)), tree(build_triangle_tree(positions, triangles)) {
+  BoxedMesh(const std::vector<Vec3>& p, std::vector<Triangle> t)
+      : positions(p), triangles(std::move(t)), tree(build_triangle_tree(positions, triangles)) {
     update();
   }
   void update() {
@@ -106,39 +106,58 @@ double way_to_face(const BoxedMesh& mesh, int vertex, const Vec3& way, double mo
   return nearest;
 }
 
+/// Those with a vertex that is marked.
+std::vector<int> triangles_at(const TriangleMesh& mesh, const std::vector<char>& is_marked) {
+  std::vector<int> found;
+  for (Size t = 0; t < mesh.triangles.size(); ++t)
+    if (std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
+                    [&](int v) { return is_marked[at(v)] != 0; }))
+      found.push_back(static_cast<int>(t));
+  return found;
+}
+
 /// Shortens shifts to a quarter of the material's width in their direction; then halves what leads a moved
-/// face through a crack face or another moved one. What cannot be helped so stays where it is.
+/// face through a crack face or another moved one. What cannot be helped so stays where it is. Each round
+/// looks at what the last one has changed: of all else it is known that it crosses nothing, or cannot be
+/// helped.
 void limit(const SolidSurface& surface, std::vector<Vec3>& shift) {
   const TriangleMesh& mesh = surface.mesh;
   const BoxedMesh still(mesh.positions, mesh.triangles);
   for (Size v = 0; v < shift.size(); ++v)
     if (!shift[v].isZero(0.0))
       shift[v] *= kShareOfWidth * way_to_face(still, static_cast<int>(v), shift[v], 1.0 / kShareOfWidth);
-  BoxedMesh moved(mesh.positions, mesh.triangles);
+  std::vector<Vec3> positions = mesh.positions;
+  BoxedMesh moved(positions, mesh.triangles);
+  std::vector<char> has_changed(shift.size(), 0);
+  for (Size v = 0; v < shift.size(); ++v) has_changed[v] = shift[v].isZero(0.0) ? 0 : 1;
   for (int round = 0; round < 2 * kHalvings; ++round) {
     core::stop_if_asked();
-    for (Size v = 0; v < shift.size(); ++v) moved.positions[v] = mesh.positions[v] + shift[v];
+    const std::vector<int> changed = triangles_at(mesh, has_changed);
+    if (changed.empty()) return;
+    for (Size v = 0; v < shift.size(); ++v) positions[v] = mesh.positions[v] + shift[v];
     moved.update();
+    std::vector<Triangle> corners;
+    for (const int t : changed) corners.push_back(mesh.triangles[at(t)]);
+    const BoxedMesh own(positions, std::move(corners));
     std::vector<char> is_marked(shift.size(), 0);
     const auto mark = [&](int triangle) {
       for (const int v : mesh.triangles[at(triangle)]) is_marked[at(v)] = 1;
     };
     for_crossing(
-        moved, still, [&](int, int b) { return !surface.is_crack_face[at(b)] || surface.is_old_face[at(b)]; },
-        [&](int a, int) { mark(a); });
+        own, still, [&](int, int b) { return !surface.is_crack_face[at(b)] || surface.is_old_face[at(b)]; },
+        [&](int a, int) { mark(changed[at(a)]); });
     for_crossing(
-        moved, moved, [](int a, int b) { return a >= b; },
+        own, moved, [&](int a, int b) { return changed[at(a)] == b; },
         [&](int a, int b) {
-          mark(a);
+          mark(changed[at(a)]);
           mark(b);
         });
-    bool is_fine = true;
+    has_changed.assign(shift.size(), 0);
     for (Size v = 0; v < shift.size(); ++v) {
       if (is_marked[v] == 0 || shift[v].isZero(0.0)) continue;
       shift[v] *= round < kHalvings ? 0.5 : 0.0;
-      is_fine = false;
+      has_changed[v] = 1;
     }
-    if (is_fine) return;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
@@ -231,9 +232,10 @@ std::vector<GradientResult> solve_by_gradients(const BlockSystem& system, std::s
   results.reserve(loads.size());
   for (Size first = 0; first < loads.size(); first += kMost) {
     const auto some = loads.subspan(first, std::min(kMost, loads.size() - first));
-    for (GradientResult& result :
-         some.size() == 1 ? Solver<1>(system, some).run(settings) : Solver<kMost>(system, some).run(settings))
-      results.push_back(std::move(result));
+    std::vector<GradientResult> own = some.size() == 1   ? Solver<1>(system, some).run(settings)
+                                      : some.size() == 2 ? Solver<2>(system, some).run(settings)
+                                                         : Solver<kMost>(system, some).run(settings);
+    std::move(own.begin(), own.end(), std::back_inserter(results));
   }
   return results;
 }

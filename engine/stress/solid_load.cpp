@@ -71,12 +71,22 @@ TriangleShare share_of_triangle(const std::array<Vec3, 3>& corners, const SolidP
   return share;
 }
 
+constexpr double kSurely = 1.0 + 1e-9;  // times a distance: beyond its rounding
+
+/// From a point to the box about a triangle: what is farther need not be looked at.
+double distance_to_box(const Vec3& point, const std::array<Vec3, 3>& corners) {
+  const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+  const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+  return (low - point).cwiseMax(point - high).cwiseMax(0.0).norm();
+}
+
 /// Triangles nearer than the radius to the centre and not turned away, that hang together with the first one;
 /// ascending.
 std::vector<int> flood_skin(const SolidSkin& skin, int first, const SolidPatch& patch) {
   std::vector<int> near;
   for (int t = 0; t < static_cast<int>(skin.cells.size()); ++t) {
     const auto corners = triangle_corners(skin, t);
+    if (t != first && distance_to_box(patch.centre, corners) > kSurely * patch.radius) continue;
     if (twice_area_vector(corners).dot(patch.normal) <= 0.0) continue;
     const auto nearest = geometry::closest_on_triangle(patch.centre, corners[0], corners[1], corners[2]);
     if (nearest.distance < patch.radius || t == first) near.push_back(t);
@@ -106,19 +116,6 @@ SolidSkin make_border_skin(const geometry::SolidMesh& mesh) {
       if (elements.topology.face_tetrahedra[at(face)][1] < 0) skin.cells.push_back(static_cast<int>(c));
   return skin;
 }
-
-namespace {
-
-constexpr double kSurely = 1.0 + 1e-9;  // times a distance: beyond its rounding
-
-/// From a point to the box about a triangle: what is farther need not be looked at.
-double distance_to_box(const Vec3& point, const std::array<Vec3, 3>& corners) {
-  const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
-  const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
-  return (low - point).cwiseMax(point - high).cwiseMax(0.0).norm();
-}
-
-}  // namespace
 
 SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& skin, const Vec3& point,
                            double radius) {
