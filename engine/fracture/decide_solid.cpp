@@ -107,14 +107,17 @@ class SolidDecider {
         here = std::max(here, tensions_[c]);
       }
       // Of an element that the surface or a crack goes through, only what lies in the cell counts.
-      const bool is_whole = cells_in[at(part.element)] == 1 && model().is_full(part);
+      const auto own_flaws = flaws.of_element(part.element);
+      const bool is_whole = !own_flaws.empty() && cells_in[at(part.element)] == 1 && model().is_full(part);
       bool has_flaw = false;
-      for (const SolidFlaw& flaw : flaws.of_element(part.element)) {
+      for (const SolidFlaw& flaw : own_flaws) {
         if (!is_whole && !cell_holds(complex, static_cast<int>(c), flaw.place)) continue;
         has_flaw = true;
         consider(candidates, c, flaw.place, flaw.strength, static_cast<int>(&flaw - flaws.flaws.data()));
       }
-      if (!has_flaw && part.volume > 0.0)
+      const bool counts =
+          tensions_[c] > flaws.greatest_strength * (is_first ? std::min(1.0, verdict.ratio) : 1.0);
+      if (!has_flaw && counts && part.volume > 0.0)
         consider(sound, c, cell_centre(complex, part), flaws.greatest_strength,
                  static_cast<int>(flaws.flaws.size() + c));
     }

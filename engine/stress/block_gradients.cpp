@@ -116,7 +116,7 @@ class Solver {
   /// z = inverse r, and what the clusters answer; returns r . z and r . r.
   std::array<Lane<kLanes>, 2> precondition() {
     const CoarseModes* const coarse = system_.coarse_factor ? system_.coarse : nullptr;
-    Eigen::MatrixXd amounts;
+    std::vector<double> amounts;
     if (coarse) amounts = coarse->answer(*system_.coarse_factor, r_, kLanes);
     return sum_chunks<2>([&](Size begin, Size end, std::array<Lane<kLanes>, 2>& sums) {
       for (Size row = begin; row < end; ++row) {
@@ -127,7 +127,7 @@ class Solver {
           for (Size l = 0; l < kLanes; ++l)
             z[a * kLanes + l] = (inverse[3 * a] * r[l] + inverse[3 * a + 1] * r[kLanes + l]) +
                                 inverse[3 * a + 2] * r[2 * kLanes + l];
-        if (coarse) coarse->add(amounts, row, kLanes, z);
+        if (coarse) coarse->add<kLanes>(amounts, row, z);
         for (Size i = 0; i < 3; ++i)
           for (Size l = 0; l < kLanes; ++l) {
             sums[0][l] += r[i * kLanes + l] * z[i * kLanes + l];

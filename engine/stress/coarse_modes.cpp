@@ -1,10 +1,13 @@
 #include "engine/stress/coarse_modes.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/stress/elimination_order.h"
+#include "engine/stress/front_solve.h"
 #include "engine/stress/vertex_clusters.h"
 
 namespace shatterbox::stress {
@@ -13,9 +16,17 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr Size kVerticesOfCluster = 96;
-constexpr Size kMostClusters = 64;
+constexpr Size kVerticesOfCluster = 48;
+constexpr Size kMostClusters = 384;
 constexpr double kHold = 1e-9;  // of the diagonal: rigid motions of the whole have no stiffness
+
+constexpr Size kPairUnknowns = 12;  // of two clusters
+using PairEntries = std::array<double, kPairUnknowns*(kPairUnknowns + 1) / 2>;
+
+/// Place in PairEntries of a row and a column of the lower triangle.
+constexpr Size entry_at(Size row, Size column) {
+  return column * kPairUnknowns - column * (column + 1) / 2 + row;
+}
 
 }  // namespace
 
@@ -25,8 +36,7 @@ CoarseModes::CoarseModes(const BlockRows& rows, const std::vector<Vec3>& positio
   const Size wanted = std::min(kMostClusters, rows.size() / kVerticesOfCluster);
   if (wanted < 2) return;
   cluster_ = cluster_vertices(rows, static_cast<int>(wanted));
-  count_ = *std::max_element(cluster_.begin(), cluster_.end()) + 1;
-  first_.assign(at(static_cast<int>(count_)) + 1, 0);
+  first_.assign(at(*std::max_element(cluster_.begin(), cluster_.end())) + 2, 0);
   for (const int c : cluster_)
     if (c >= 0) ++first_[at(c) + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -35,7 +45,7 @@ CoarseModes::CoarseModes(const BlockRows& rows, const std::vector<Vec3>& positio
   for (Size v = 0; v < cluster_.size(); ++v)
     if (cluster_[v] >= 0) vertices_[at(next[at(cluster_[v])]++)] = static_cast<int>(v);
   arms_.assign(positions.size(), Vec3::Zero());
-  for (Size c = 0; c + 1 < first_.size(); ++c) {
+  for (Size c = 0; c < count(); ++c) {
     const int* const begin = vertices_.data() + first_[c];
     const int* const end = vertices_.data() + first_[c + 1];
     if (begin == end) continue;
@@ -46,23 +56,19 @@ CoarseModes::CoarseModes(const BlockRows& rows, const std::vector<Vec3>& positio
     for (const int* v = begin; v != end; ++v) size = std::max(size, (positions[at(*v)] - middle).norm());
     for (const int* v = begin; v != end; ++v) arms_[at(*v)] = (positions[at(*v)] - middle) / size;
   }
-  stiffness_ = Eigen::MatrixXd::Zero(size(), size());
-  mass_ = stiffness_;
-  // By clusters, so that every entry has one writer.
-  core::parallel_for(first_.size() - 1, 1, [&](Size c) {
-    const auto own = static_cast<Eigen::Index>(6 * c);
+  is_free_.resize(allowed_.size());
+  for (Size v = 0; v < allowed_.size(); ++v) is_free_[v] = allowed_[v] == Mat3::Identity() ? 1 : 0;
+  couplings_.resize(count());
+  mass_.assign(count(), Block::Zero());
+  core::parallel_for(count(), 1, [&](Size c) {
+    couplings_[c] = couplings_of(static_cast<int>(c), rows);
     for (int i = first_[c]; i < first_[c + 1]; ++i) {
       const Size v = at(vertices_[at(i)]);
       const Motion here = motion_of(v);
-      mass_.block<6, 6>(own, own) += mass[v] * here.transpose() * here;
-      for (int b = rows.first[v]; b < rows.first[v + 1]; ++b) {
-        const Size w = at(rows.column[at(b)]);
-        Mat3 block;
-        for (int k = 0; k < 9; ++k) block(k / 3, k % 3) = rows.entries[9 * at(b) + at(k)];
-        stiffness_.block<6, 6>(own, 6 * cluster_[w]) += here.transpose() * (block * motion_of(w));
-      }
+      mass_[c] += mass[v] * here.transpose() * here;
     }
   });
+  build_tree();
 }
 
 /// Three translations and three turns about the cluster's middle.
@@ -73,43 +79,111 @@ CoarseModes::Motion CoarseModes::motion_of(Size vertex) const {
   return allowed_[vertex] * motion;
 }
 
-std::optional<CoarseModes::Factor> CoarseModes::factor(double shift) const {
-  if (count_ == 0) return std::nullopt;
-  Eigen::MatrixXd matrix = stiffness_ + shift * mass_;
-  const double hold = kHold * matrix.trace() / static_cast<double>(size());
-  matrix.diagonal().array() += hold;
-  Factor made(matrix);
-  if (made.info() != Eigen::Success) return std::nullopt;
-  return made;
+/// With itself and with those of lower numbers that it has blocks with, in the order in which they are found.
+std::vector<CoarseModes::Coupling> CoarseModes::couplings_of(int cluster, const BlockRows& rows) const {
+  std::vector<Coupling> found{{cluster, Block::Zero()}};
+  const auto of = [&](int other) -> Block& {
+    for (Coupling& coupling : found)
+      if (coupling.other == other) return coupling.stiffness;
+    found.push_back({other, Block::Zero()});
+    return found.back().stiffness;
+  };
+  for (int i = first_[at(cluster)]; i < first_[at(cluster) + 1]; ++i) {
+    const Size v = at(vertices_[at(i)]);
+    const Motion here = motion_of(v);
+    for (int b = rows.first[v]; b < rows.first[v + 1]; ++b) {
+      const Size w = at(rows.column[at(b)]);
+      if (cluster_[w] < 0 || cluster_[w] > cluster) continue;
+      Mat3 block;
+      for (int k = 0; k < 9; ++k) block(k / 3, k % 3) = rows.entries[9 * at(b) + at(k)];
+      of(cluster_[w]) += here.transpose() * (block * motion_of(w));
+    }
+  }
+  return found;
 }
 
-Eigen::MatrixXd CoarseModes::answer(const Factor& factor, const std::vector<double>& r, Size lanes) const {
-  Eigen::MatrixXd sums(size(), static_cast<Eigen::Index>(lanes));
-  core::parallel_for(first_.size() - 1, 8, [&](Size c) {
-    for (Size l = 0; l < lanes; ++l) {
-      Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
-      for (int i = first_[c]; i < first_[c + 1]; ++i) {
-        const Size v = at(vertices_[at(i)]);
-        const double* const u = &r[3 * v * lanes + l];
-        const Vec3 force = allowed_[v] * Vec3(u[0], u[lanes], u[2 * lanes]);
-        sum.head<3>() += force;
-        sum.tail<3>() += arms_[v].cross(force);
+/// An element for each cluster by itself and one for each pair that is coupled.
+void CoarseModes::build_tree() {
+  NodeGraph graph;
+  graph.element_unknowns = {3, 3, 3, 3, 0, 0};
+  graph.node_size.assign(2 * count(), 3);
+  std::vector<std::array<int, 2>> pairs;
+  for (Size c = 0; c < count(); ++c)
+    for (const Coupling& coupling : couplings_[c]) {
+      const int own = static_cast<int>(2 * c), other = 2 * coupling.other;
+      if (other == own) {
+        graph.elements.push_back({own, own + 1, -1, -1, -1, -1});
+      } else {
+        graph.elements.push_back({other, other + 1, own, own + 1, -1, -1});
+        pairs.push_back({coupling.other, static_cast<int>(c)});
       }
-      sums.block<6, 1>(static_cast<Eigen::Index>(6 * c), static_cast<Eigen::Index>(l)) = sum;
+    }
+  std::sort(pairs.begin(), pairs.end());
+  const std::vector<int> rank = rank_vertices(count(), pairs);
+  std::vector<int> order(2 * count());
+  for (Size c = 0; c < count(); ++c)
+    for (Size k = 0; k < 2; ++k) order[2 * at(rank[c]) + k] = static_cast<int>(2 * c + k);
+  tree_ = std::make_shared<const FrontTree>(build_front_tree(graph, order));
+}
+
+std::optional<CoarseModes::Factor> CoarseModes::factor(double shift) const {
+  if (count() == 0) return std::nullopt;
+  std::vector<PairEntries> entries;
+  double trace = 0.0;
+  for (Size c = 0; c < count(); ++c)
+    for (const Coupling& coupling : couplings_[c]) {
+      PairEntries& own = entries.emplace_back();
+      own.fill(0.0);
+      if (at(coupling.other) == c) {
+        const Block block = coupling.stiffness + shift * mass_[c];
+        trace += block.trace();
+        for (Size j = 0; j < 6; ++j)
+          for (Size i = j; i < 6; ++i)
+            own[entry_at(i, j)] = block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      } else {
+        for (Size j = 0; j < 6; ++j)
+          for (Size i = 0; i < 6; ++i)
+            own[entry_at(6 + i, j)] =
+                coupling.stiffness(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      }
+    }
+  const double hold = kHold * trace / (6.0 * static_cast<double>(count()));
+  return FrontFactor::make(*tree_, std::vector<double>(at(tree_->unknowns), hold), [&](int e) {
+    return ElementEntries{entries[at(e)].data(), 1.0};
+  });
+}
+
+std::vector<double> CoarseModes::answer(const Factor& factor, const std::vector<double>& r,
+                                        Size lanes) const {
+  SolveLanes x(*tree_, lanes);
+  const Size stride = at(x.lanes);
+  core::parallel_for(count(), 8, [&](Size c) {
+    std::array<double*, 6> sums{};
+    for (Size k = 0; k < 6; ++k)
+      sums[k] = &x.values[stride * at(tree_->node_place[2 * c + k / 3])] + stride * (k % 3);
+    for (int i = first_[c]; i < first_[c + 1]; ++i) {
+      const Size v = at(vertices_[at(i)]);
+      for (Size l = 0; l < lanes; ++l) {
+        const double* const u = &r[3 * v * lanes + l];
+        Vec3 force(u[0], u[lanes], u[2 * lanes]);
+        if (is_free_[v] == 0) force = (allowed_[v] * force).eval();
+        const Vec3 turn = arms_[v].cross(force);
+        for (Size k = 0; k < 3; ++k) {
+          sums[k][l] += force(static_cast<Eigen::Index>(k));
+          sums[3 + k][l] += turn(static_cast<Eigen::Index>(k));
+        }
+      }
     }
   });
-  return factor.solve(sums);
-}
-
-void CoarseModes::add(const Eigen::MatrixXd& amounts, Size vertex, Size lanes, double* z) const {
-  if (cluster_[vertex] < 0) return;
-  const Eigen::Index own = 6 * cluster_[vertex];
-  for (Size l = 0; l < lanes; ++l) {
-    const auto lane = static_cast<Eigen::Index>(l);
-    const Vec3 move = amounts.block<3, 1>(own, lane), turn = amounts.block<3, 1>(own + 3, lane);
-    const Vec3 all = allowed_[vertex] * Vec3(move + turn.cross(arms_[vertex]));
-    for (Size a = 0; a < 3; ++a) z[a * lanes + l] += all(static_cast<Eigen::Index>(a));
-  }
+  solve_forward(*tree_, factor, x);
+  solve_backward(*tree_, factor, x);
+  std::vector<double> amounts(6 * count() * lanes);
+  for (Size c = 0; c < count(); ++c)
+    for (Size k = 0; k < 6; ++k)
+      for (Size l = 0; l < lanes; ++l)
+        amounts[(6 * c + k) * lanes + l] =
+            x.values[stride * (at(tree_->node_place[2 * c + k / 3]) + k % 3) + l];
+  return amounts;
 }
 
 }  // namespace shatterbox::stress

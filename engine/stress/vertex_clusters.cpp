@@ -1,16 +1,14 @@
 #include "engine/stress/vertex_clusters.h"
 
-#include <metis.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
-#include "engine/stress/metis_lock.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -18,11 +16,9 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kWeights = 1000.0;  // of the stiffest coupling, as METIS takes whole numbers
-
-constexpr double kOffTies = 0.382;  // so that rounding tips no coupling that is a simple fraction
-constexpr double kWeak = 0.03;      // share of both ends' stiffness below which an edge joins nothing
-constexpr int kLeastVertices = 4;   // of a cluster
+constexpr double kOfTies = 1.0 - 1e-9;  // a pull that is greater by less than rounding is not greater
+constexpr double kWeak = 0.03;          // share of both ends' stiffness below which an edge joins nothing
+constexpr int kLeastVertices = 4;       // of a cluster
 constexpr int kRoundsOfJoining = 8;
 
 double block_trace(const BlockRows& rows, int block) {
@@ -37,36 +33,111 @@ double coupling(const BlockRows& rows, Size v, int block) {
   return both > 0.0 ? block_trace(rows, block) / both : 0.0;
 }
 
-/// By METIS.
-std::vector<int> partition(const BlockRows& rows, int count) {
-  std::vector<int> number(rows.size(), -1), cluster(rows.size(), -1);
-  idx_t vertex_count = 0;
+/// Clusters and what couples them.
+struct ClusterGraph {
+  std::vector<int> size;          // vertices of each
+  std::vector<int> first, other;  // neighbours of cluster c: [first[c], first[c + 1])
+  std::vector<double> weight;     // likewise: sum of the couplings
+
+  int count() const { return static_cast<int>(size.size()); }
+};
+
+/// Every vertex with stiffness by itself; `cluster` (|V|) says which it is.
+ClusterGraph single_vertices(const BlockRows& rows, std::vector<int>& cluster) {
+  ClusterGraph graph;
+  cluster.assign(rows.size(), -1);
   for (Size v = 0; v < rows.size(); ++v)
-    if (rows.first[v] < rows.first[v + 1]) number[v] = static_cast<int>(vertex_count++);
-  std::vector<idx_t> first{0}, neighbours, weights;
-  for (Size v = 0; v < rows.size(); ++v) {
-    if (number[v] < 0) continue;
-    for (int b = rows.first[v] + 1; b < rows.first[v + 1]; ++b) {
-      neighbours.push_back(number[at(rows.column[at(b)])]);
-      weights.push_back(1 + static_cast<idx_t>(kWeights * coupling(rows, v, b) + kOffTies));
+    if (rows.first[v] < rows.first[v + 1]) {
+      cluster[v] = graph.count();
+      graph.size.push_back(1);
     }
-    first.push_back(static_cast<idx_t>(neighbours.size()));
+  graph.first.push_back(0);
+  for (Size v = 0; v < rows.size(); ++v) {
+    if (cluster[v] < 0) continue;
+    for (int b = rows.first[v] + 1; b < rows.first[v + 1]; ++b) {
+      graph.other.push_back(cluster[at(rows.column[at(b)])]);
+      graph.weight.push_back(coupling(rows, v, b));
+    }
+    graph.first.push_back(static_cast<int>(graph.other.size()));
   }
-  std::vector<idx_t> part(at(static_cast<int>(vertex_count)), 0);
-  if (count > 1 && vertex_count > count && !neighbours.empty()) {
-    std::array<idx_t, METIS_NOPTIONS> options{};
-    idx_t constraints = 1, parts = count, cut = 0;
-    const std::lock_guard lock(metis_lock());
-    METIS_SetDefaultOptions(options.data());
-    options[METIS_OPTION_SEED] = 1;
-    options[METIS_OPTION_NUMBERING] = 0;
-    const int status =
-        METIS_PartGraphKway(&vertex_count, &constraints, first.data(), neighbours.data(), nullptr, nullptr,
-                            weights.data(), &parts, nullptr, nullptr, options.data(), &cut, part.data());
-    if (status != METIS_OK) std::fill(part.begin(), part.end(), 0);
+  return graph;
+}
+
+/// Who joins whom: each cluster, the small ones first, takes the neighbour that it is coupled to most for its
+/// size, if that is still alone and both together are not above `most` vertices. The new number of each.
+std::vector<int> match(const ClusterGraph& graph, int most, int& count) {
+  std::vector<int> order(graph.size.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return graph.size[at(a)] < graph.size[at(b)]; });
+  std::vector<int> number(graph.size.size(), -1);
+  count = 0;
+  for (const int c : order) {
+    if (number[at(c)] >= 0) continue;
+    int best = -1;
+    double greatest = 0.0;
+    for (int k = graph.first[at(c)]; k < graph.first[at(c) + 1]; ++k) {
+      const int other = graph.other[at(k)];
+      if (number[at(other)] >= 0 || graph.size[at(c)] + graph.size[at(other)] > most) continue;
+      const double size = graph.size[at(other)];
+      const double pull = graph.weight[at(k)] / (size * size);  // small ones first: fewest iterations
+      if (pull * kOfTies > greatest) {
+        best = other;
+        greatest = pull;
+      }
+    }
+    number[at(c)] = count;
+    if (best >= 0) number[at(best)] = count;
+    ++count;
   }
-  for (Size v = 0; v < rows.size(); ++v)
-    if (number[v] >= 0) cluster[v] = static_cast<int>(part[at(number[v])]);
+  return number;
+}
+
+ClusterGraph joined(const ClusterGraph& graph, const std::vector<int>& number, int count) {
+  std::vector<std::array<int, 2>> members(at(count), {-1, -1});
+  for (int c = 0; c < graph.count(); ++c) {
+    auto& own = members[at(number[at(c)])];
+    own[own[0] < 0 ? 0 : 1] = c;
+  }
+  ClusterGraph result;
+  result.first.push_back(0);
+  std::vector<int> place(at(count), -1);  // of a neighbour among those of the present cluster
+  for (int c = 0; c < count; ++c) {
+    const int begin = result.first.back();
+    int size = 0;
+    for (const int member : members[at(c)]) {
+      if (member < 0) continue;
+      size += graph.size[at(member)];
+      for (int k = graph.first[at(member)]; k < graph.first[at(member) + 1]; ++k) {
+        const int other = number[at(graph.other[at(k)])];
+        if (other == c) continue;
+        if (place[at(other)] < begin) {
+          place[at(other)] = static_cast<int>(result.other.size());
+          result.other.push_back(other);
+          result.weight.push_back(0.0);
+        }
+        result.weight[at(place[at(other)])] += graph.weight[at(k)];
+      }
+    }
+    result.size.push_back(size);
+    result.first.push_back(static_cast<int>(result.other.size()));
+  }
+  return result;
+}
+
+/// Pairs of what is coupled most join, then pairs of those, until there are about `count`.
+std::vector<int> partition(const BlockRows& rows, int count) {
+  std::vector<int> cluster;
+  ClusterGraph graph = single_vertices(rows, cluster);
+  const int most = 2 * graph.count() / std::max(count, 1) + 1;
+  while (graph.count() > count) {
+    int left = 0;
+    const std::vector<int> number = match(graph, most, left);
+    if (left == graph.count()) break;
+    graph = joined(graph, number, left);
+    for (int& c : cluster)
+      if (c >= 0) c = number[at(c)];
+  }
   return cluster;
 }
 
