@@ -221,7 +221,8 @@ Grown grow(const geometry::SolidComplex& complex, const Vec3& place,
     for (const int v : mesh.tetrahedra[at(e)]) middle += 0.25 * mesh.positions[at(v)];
     elements.push_back({e, complex.cells[at(e)].volume, guide_conduction(normal(middle), 1.0)});
   }
-  const CrackGuide guide(mesh, std::move(elements));
+  const stress::SolidVertexRank rank;
+  const CrackGuide guide(mesh, std::move(elements), rank.of(*complex.elements));
   int first = 0;
   while (!cell_holds(complex, first, place)) ++first;
   CrackField field(complex);
@@ -294,15 +295,14 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   const auto contacts = find_solid_contacts(complex);
   const geometry::SolidMesh mesh = make_solid_mesh(complex, contacts);
   const VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
-  const PathNoise noise(0.1, 0.0, 1);
+  const CrackTurns turns(complex.elements->mesh.tetrahedra.size());
+  const stress::SolidVertexRank rank;
   const std::vector<stress::SolidStress> stresses(complex.cells.size(), stress);
   const std::vector<int> pieces(complex.cells.size(), 0);
   SolidTracerSetup setup;
-  setup.stresses = &stresses;
-  setup.pieces = &pieces;
+  setup.guides = {&stresses, &pieces, &turns, &rank.of(*complex.elements), glass.strength};
   setup.material = &glass;
   setup.solved = {&mesh, &displacement};
-  setup.noise_a = setup.noise_b = &noise;
   setup.centres = {{Vec3(0.0, 0.0, 0.5), 0.1}};
   setup.energy_budget = budget;
   setup.first_id = id;

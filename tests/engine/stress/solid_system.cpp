@@ -210,6 +210,57 @@ TEST_CASE("a solid cut in two: each part is balanced by itself, and only the loa
   CHECK(found == Approx(expected).epsilon(0.01));
 }
 
+TEST_CASE("a part of a solid that fell apart has the bits of a solid that is that part alone") {
+  const Solids solids = lattice_box(Vec3(1.0, 0.4, 0.4), 0.1);
+  const CutSolid cut = cut_by_plane(make_solid_mesh(solids), Vec3(1.0, 0.2, 0.1), 0.2013);
+  const auto stiffness = make_solid_stiffness(solids, solid_properties());
+  const auto system = make_solid_system(stiffness, cut.mesh);
+  const std::vector<int>& part_of = system->part_of_vertex();
+  geometry::SolidMesh alone;
+  alone.elements = cut.mesh.elements;
+  std::vector<int> number(part_of.size(), -1), vertices;
+  for (size_t v = 0; v < part_of.size(); ++v)
+    if (part_of[v] == 1) {
+      number[v] = static_cast<int>(vertices.size());
+      vertices.push_back(static_cast<int>(v));
+      alone.vertex_source.push_back(cut.mesh.vertex_source[v]);
+    }
+  for (geometry::SolidCell cell : cut.mesh.cells) {
+    if (part_of[at(cell.vertices[0])] != 1) continue;
+    for (int& v : cell.vertices) v = number[at(v)];
+    alone.cells.push_back(cell);
+  }
+  const auto other = make_solid_system(stiffness, alone);
+  REQUIRE(other->part_count() == 1);
+  // One load on each part and one on both.
+  std::vector<VecX> loads(3, VecX::Zero(cut.mesh.degree_of_freedom_count()));
+  std::vector<VecX> own(3, VecX::Zero(alone.degree_of_freedom_count()));
+  for (size_t v = 0; v < part_of.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double force = static_cast<double>((7 * v + 3 * static_cast<size_t>(axis)) % 11) - 5.0;
+      for (int l = 0; l < 3; ++l)
+        if (l == 2 || part_of[v] == l) loads[at(l)](3 * static_cast<int>(v) + axis) = force;
+      if (part_of[v] == 1) own[1](3 * number[v] + axis) = own[2](3 * number[v] + axis) = force;
+    }
+  for (const double screening : {0.0, 3e3}) {
+    SolidSolveSettings settings;
+    settings.screening = screening;
+    const auto both = system->solve(loads, settings);
+    const auto single = other->solve(std::vector<VecX>{own[1], own[2]}, settings);
+    for (const int l : {1, 2}) {
+      REQUIRE(both[at(l)].is_evaluated());
+      for (size_t k = 0; k < vertices.size(); ++k)
+        CHECK(both[at(l)].displacement.segment<3>(3 * vertices[k]) ==
+              single[at(l - 1)].displacement.segment<3>(3 * static_cast<int>(k)));
+    }
+    CHECK(both[1].compliance == single[0].compliance);
+    CHECK(both[2].compliance == Approx(both[0].compliance + both[1].compliance).epsilon(1e-12));
+    for (size_t v = 0; v < part_of.size(); ++v)
+      if (part_of[v] == 1)
+        CHECK(both[0].displacement.segment<3>(3 * static_cast<int>(v)) == Vec3(Vec3::Zero()));
+  }
+}
+
 TEST_CASE("a half cut of a solid is a hinge: softer, and still an answer") {
   // Cells on both sides of the plane x = 0.0123, joined below z = 0: virtual nodes of the copies are merged
   // there.
