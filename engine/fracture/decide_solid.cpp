@@ -44,7 +44,7 @@ class SolidDecider {
     if (!force_.settle(decision_, verdict.reason)) return std::move(decision_);
     verdict.duration = force_.duration();
     verdict.force = force_.hardest().first_force;
-    solve_stresses(model().mesh, model().contacts);
+    solve_stresses(model().mesh, model().contacts, true);
     std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
     const bool is_holed = find_hole();
     find_dent(is_holed);
@@ -66,14 +66,26 @@ class SolidDecider {
   }
   const SolidModel& model() const { return *subject_.model; }
 
-  /// Stress at the pulse's peak under all loads together, averaged once, and its principal axes.
-  void solve_stresses(const geometry::SolidMesh& mesh, const std::vector<geometry::SolidContact>& contacts) {
+  /// The least stress that an element bears, Pa: its weakest flaw's, or that of sound material.
+  double weakest_of(int element) const {
+    const SolidFlawField& flaws = *subject_.flaws;
+    const auto own = flaws.of_element(element);  // the weakest comes first
+    return own.empty() ? flaws.greatest_strength : std::min(own.front().strength, flaws.greatest_strength);
+  }
+
+  /// Stress at the pulse's peak under all loads together, averaged once, and its first principal values: of
+  /// later generations a bound of them where that is borne.
+  void solve_stresses(const geometry::SolidMesh& mesh, const std::vector<geometry::SolidContact>& contacts,
+                      bool is_first) {
     ++decision_.generations;
     stresses_ = stress::average_stresses(
         mesh, contacts, stress::cell_stresses(*model().stiffness, mesh, force_.displacement()));
     tensions_.resize(stresses_.size());
-    core::parallel_for(stresses_.size(), 1024,
-                       [&](Size c) { tensions_[c] = stress::principal_axes(stresses_[c]).values(0); });
+    core::parallel_for(stresses_.size(), 1024, [&](Size c) {
+      tensions_[c] = stress::most_tension(stresses_[c]);
+      if (is_first || tensions_[c] > weakest_of(mesh.cells[c].element))
+        tensions_[c] = stress::principal_axes(stresses_[c]).values(0);
+    });
     core::DisjointSets pieces(mesh.cells.size());
     for (const geometry::SolidContact& contact : contacts) pieces.unite(contact.cell_a, contact.cell_b);
     pieces_.resize(mesh.cells.size());
@@ -106,6 +118,8 @@ class SolidDecider {
         double& here = decision_.element_stress[at(part.element)];
         here = std::max(here, tensions_[c]);
       }
+      if (!(tensions_[c] > weakest_of(part.element) * (is_first ? std::min(1.0, verdict.ratio) : 1.0)))
+        continue;
       // Of an element that the surface or a crack goes through, only what lies in the cell counts.
       const auto own_flaws = flaws.of_element(part.element);
       const bool is_whole = !own_flaws.empty() && cells_in[at(part.element)] == 1 && model().is_full(part);
@@ -217,7 +231,7 @@ class SolidDecider {
         const std::vector<geometry::SolidContact> contacts = find_solid_contacts(*complex);
         mesh = make_solid_mesh(*complex, contacts);
         if (!force_.settle_again(mesh, make_skin(*complex), decision_, decision_.verdict.reason)) break;
-        solve_stresses(mesh, contacts);
+        solve_stresses(mesh, contacts, false);
         candidates = find_candidates(*complex, false);
       }
       const auto start = core::Clock::now();

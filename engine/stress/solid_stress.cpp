@@ -73,6 +73,12 @@ double von_mises(const SolidStress& s) {
   return core::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3.0 * (s(3) * s(3) + s(4) * s(4) + s(5) * s(5)));
 }
 
+double most_tension(const SolidStress& s) {
+  constexpr double kAboveRounding = 1.0 + 1e-12;
+  const double mean = (s(0) + s(1) + s(2)) / 3.0;
+  return mean + kAboveRounding * (2.0 / 3.0 * von_mises(s) + 1e-12 * std::abs(mean));
+}
+
 double stress_norm(const SolidStress& s) {
   return core::sqrt(s(0) * s(0) + s(1) * s(1) + s(2) * s(2) +
                     2.0 * (s(3) * s(3) + s(4) * s(4) + s(5) * s(5)));

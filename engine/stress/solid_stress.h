@@ -17,6 +17,8 @@ using SolidStress = Eigen::Matrix<double, 6, 1>;
 
 Mat3 stress_tensor(const SolidStress& stress);
 PrincipalAxes principal_axes(const SolidStress& stress);
+/// At least the first principal value, and no more than a third of von Mises' stress above it, Pa.
+double most_tension(const SolidStress& stress);
 double von_mises(const SolidStress& stress);
 /// Frobenius norm of the tensor: no principal stress is above it.
 double stress_norm(const SolidStress& stress);

@@ -14,30 +14,70 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-/// A connected part of the mesh by itself.
-struct Part {
-  std::vector<int> vertices;  // of the whole mesh, ascending: which its own are
-  geometry::SolidMesh mesh;
-  SolidSystemOptions options;
-  std::unique_ptr<const PartSystem> system;
+}  // namespace
 
-  VecX gather(const VecX& whole) const {
-    VecX own(static_cast<Eigen::Index>(3 * vertices.size()));
-    for (Size v = 0; v < vertices.size(); ++v)
-      own.segment<3>(static_cast<Eigen::Index>(3 * v)) = whole.segment<3>(3 * vertices[v]);
-    return own;
-  }
-  void scatter(const VecX& own, VecX& whole) const {
-    for (Size v = 0; v < vertices.size(); ++v)
-      whole.segment<3>(3 * vertices[v]) = own.segment<3>(static_cast<Eigen::Index>(3 * v));
-  }
+struct SolidSystem::State {
+  /// A connected part of the mesh by itself.
+  struct Part {
+    std::vector<int> vertices;  // of the whole mesh, ascending: which its own are
+    geometry::SolidMesh mesh;
+    SolidSystemOptions options;
+    std::unique_ptr<const PartSystem> system;
+
+    VecX gather(const VecX& whole) const {
+      VecX own(static_cast<Eigen::Index>(3 * vertices.size()));
+      for (Size v = 0; v < vertices.size(); ++v)
+        own.segment<3>(static_cast<Eigen::Index>(3 * v)) = whole.segment<3>(3 * vertices[v]);
+      return own;
+    }
+    void scatter(const VecX& own, VecX& whole) const {
+      for (Size v = 0; v < vertices.size(); ++v)
+        whole.segment<3>(3 * vertices[v]) = own.segment<3>(static_cast<Eigen::Index>(3 * v));
+    }
+  };
+
+  std::shared_ptr<const SolidStiffness> stiffness;
+  std::vector<int> part_of;  // |V|, -1 for vertices in no cell
+  std::vector<Part> parts;
+  mutable std::once_flag has_period;
+  mutable double period = 0.0;
+
+  void divide(const geometry::SolidMesh& mesh, const SolidSystemOptions& options);
+  VecX zero() const { return VecX::Zero(static_cast<Eigen::Index>(3 * part_of.size())); }
+  std::vector<std::vector<Size>> loads_of_parts(const std::vector<VecX>& loads) const;
+  void add(const Part& part, const SolidSolution& own, SolidSolution& whole) const;
 };
 
+SolidSystem::SolidSystem(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SolidSystem::~SolidSystem() = default;
+
+core::Result<std::shared_ptr<const SolidSystem>> SolidSystem::make(
+    std::shared_ptr<const SolidStiffness> stiffness, const geometry::SolidMesh& mesh,
+    const SolidSystemOptions& options) {
+  if (mesh.cells.empty()) return core::Error{"a solid without cells has no stress"};
+  for (const geometry::SolidCell& cell : mesh.cells)
+    if (!(stiffness->solids[at(cell.element)].volume > 0.0))
+      return core::Error{"an element of the solid has no volume"};
+  auto state = std::make_unique<State>();
+  const std::vector<int> part_of_dof = part_of_dofs(mesh);
+  for (Size dof = 0; dof < part_of_dof.size(); dof += 3) state->part_of.push_back(part_of_dof[dof]);
+  state->divide(mesh, options);
+  core::parallel_for(state->parts.size(), 1, [&](Size p) {
+    State::Part& part = state->parts[p];
+    part.system = std::make_unique<PartSystem>(stiffness, part.mesh, part.options);
+    part.mesh = {};
+  });
+  if (std::none_of(state->parts.begin(), state->parts.end(),
+                   [](const State::Part& part) { return part.system->can_move(); }))
+    return core::Error{"the support clamps the whole solid"};
+  state->stiffness = std::move(stiffness);
+  return std::shared_ptr<const SolidSystem>(new SolidSystem(std::move(state)));
+}
+
 /// The connected parts of a mesh with what of its support and anchors is theirs, by their first vertices.
-std::vector<Part> divide(const geometry::SolidMesh& mesh, const std::vector<int>& part_of,
-                         const SolidSystemOptions& options) {
+void SolidSystem::State::divide(const geometry::SolidMesh& mesh, const SolidSystemOptions& options) {
   const int count = part_of.empty() ? 0 : *std::max_element(part_of.begin(), part_of.end()) + 1;
-  std::vector<Part> parts(at(count));
+  parts = std::vector<Part>(at(count));
   std::vector<int> number(part_of.size(), -1);
   for (Size v = 0; v < part_of.size(); ++v) {
     if (part_of[v] < 0) continue;
@@ -61,47 +101,6 @@ std::vector<Part> divide(const geometry::SolidMesh& mesh, const std::vector<int>
   for (const auto& [x1, x2, x3] : options.anchors)
     if (part_of[at(x1)] >= 0)
       parts[at(part_of[at(x1)])].options.anchors.push_back({number[at(x1)], number[at(x2)], number[at(x3)]});
-  return parts;
-}
-
-}  // namespace
-
-struct SolidSystem::State {
-  std::shared_ptr<const SolidStiffness> stiffness;
-  std::vector<int> part_of;  // |V|, -1 for vertices in no cell
-  std::vector<Part> parts;
-  mutable std::once_flag has_period;
-  mutable double period = 0.0;
-
-  VecX zero() const { return VecX::Zero(static_cast<Eigen::Index>(3 * part_of.size())); }
-  std::vector<std::vector<Size>> loads_of_parts(const std::vector<VecX>& loads) const;
-  void add(const Part& part, const SolidSolution& own, SolidSolution& whole) const;
-};
-
-SolidSystem::SolidSystem(std::unique_ptr<State> state) : state_(std::move(state)) {}
-SolidSystem::~SolidSystem() = default;
-
-core::Result<std::shared_ptr<const SolidSystem>> SolidSystem::make(
-    std::shared_ptr<const SolidStiffness> stiffness, const geometry::SolidMesh& mesh,
-    const SolidSystemOptions& options) {
-  if (mesh.cells.empty()) return core::Error{"a solid without cells has no stress"};
-  for (const geometry::SolidCell& cell : mesh.cells)
-    if (!(stiffness->solids[at(cell.element)].volume > 0.0))
-      return core::Error{"an element of the solid has no volume"};
-  auto state = std::make_unique<State>();
-  const std::vector<int> part_of_dof = part_of_dofs(mesh);
-  for (Size dof = 0; dof < part_of_dof.size(); dof += 3) state->part_of.push_back(part_of_dof[dof]);
-  state->parts = divide(mesh, state->part_of, options);
-  core::parallel_for(state->parts.size(), 1, [&](Size p) {
-    Part& part = state->parts[p];
-    part.system = std::make_unique<PartSystem>(stiffness, part.mesh, part.options);
-    part.mesh = {};
-  });
-  if (std::none_of(state->parts.begin(), state->parts.end(),
-                   [](const Part& part) { return part.system->can_move(); }))
-    return core::Error{"the support clamps the whole solid"};
-  state->stiffness = std::move(stiffness);
-  return std::shared_ptr<const SolidSystem>(new SolidSystem(std::move(state)));
 }
 
 /// Which loads are on each part.
@@ -156,13 +155,14 @@ SolidSolution SolidSystem::solve(const VecX& load, const SolidSolveSettings& set
 
 VecX SolidSystem::balance(const VecX& load) const {
   VecX balanced = state_->zero();
-  for (const Part& part : state_->parts) part.scatter(part.system->balance(part.gather(load)), balanced);
+  for (const State::Part& part : state_->parts)
+    part.scatter(part.system->balance(part.gather(load)), balanced);
   return balanced;
 }
 
 double SolidSystem::first_period() const {
   std::call_once(state_->has_period, [this] {
-    for (const Part& part : state_->parts)
+    for (const State::Part& part : state_->parts)
       state_->period = std::max(state_->period, part.system->first_period());
   });
   return state_->period;
@@ -171,7 +171,7 @@ double SolidSystem::first_period() const {
 double SolidSystem::trial_period(const SolidSolution& solution) const {
   const State& state = *state_;
   double vibrating = 0.0;
-  for (const Part& part : state.parts)
+  for (const State::Part& part : state.parts)
     vibrating += part.system->vibrating_moment(part.gather(solution.displacement));
   const double elastic =
       solution.elastic_compliance / (state.stiffness->force_unit() * state.stiffness->length);
@@ -190,7 +190,7 @@ const std::vector<int>& SolidSystem::part_of_vertex() const {
 }
 int SolidSystem::rigid_mode_count() const {
   int count = 0;
-  for (const Part& part : state_->parts) count += part.system->rigid.mode_count();
+  for (const State::Part& part : state_->parts) count += part.system->rigid.mode_count();
   return count;
 }
 const SolidStiffness& SolidSystem::stiffness() const {
@@ -198,7 +198,7 @@ const SolidStiffness& SolidSystem::stiffness() const {
 }
 double SolidSystem::block_count() const {
   double count = 0.0;
-  for (const Part& part : state_->parts) count += static_cast<double>(part.system->rows.column.size());
+  for (const State::Part& part : state_->parts) count += static_cast<double>(part.system->rows.column.size());
   return count;
 }
 

@@ -76,6 +76,8 @@ TEST_CASE("a solid's stress: tensor, norm, von Mises") {
     const SolidStress stress = random_stress(random);
     CHECK(principal_axes(stress).values.cwiseAbs().maxCoeff() <= stress_norm(stress) * (1.0 + 1e-15));
     const Vec3 s = principal_axes(stress).values;
+    CHECK(most_tension(stress) >= s(0));
+    CHECK(most_tension(stress) <= s(0) + 0.334 * von_mises(stress));
     CHECK(von_mises(stress) ==
           Approx(core::sqrt(0.5 * ((s(0) - s(1)) * (s(0) - s(1)) + (s(1) - s(2)) * (s(1) - s(2)) +
                                    (s(2) - s(0)) * (s(2) - s(0))))));
