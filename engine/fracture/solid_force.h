@@ -11,6 +11,9 @@
 
 namespace shatterbox::fracture {
 
+/// Resting contact that all together presses less than that, of the greatest force on its part, is one load.
+inline constexpr double kMinorForce = 0.01;
+
 /// A load on the way to its force.
 struct SolidPress {
   const ImpactLoad* load = nullptr;
