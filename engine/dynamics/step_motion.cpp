@@ -36,7 +36,8 @@ void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body:
     if (c.closing_speed > c.threshold && !c.was_loaded) pair_collides[at(c.pair)] = 1;
   }
   for (const SolverContact& c : work.contacts) {
-    if (c.total.squaredNorm() == 0.0) continue;
+    // Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
+    if (!(c.impulse_a.squaredNorm() > 0.0) || !(c.impulse_b.squaredNorm() > 0.0)) continue;
     body::LoggedImpulse entry;
     entry.kind = pair_collides[at(c.pair)] && !c.was_loaded ? ImpulseKind::collision : ImpulseKind::contact;
     entry.body_a = bodies[at(c.a)].id;

@@ -78,8 +78,10 @@ struct FirstTouch {
 
 FirstTouch find_first_touch(const body::ImpulseLog& log, body::BodyId struck, body::BodyId striker) {
   FirstTouch touch;
+  // Who was turned away by others before he touched has a closing speed, but gave nothing.
   const auto is_of = [](const body::LoggedImpulse& entry, body::BodyId id) {
-    return entry.kind == body::ImpulseKind::collision && (entry.body_a == id || entry.body_b == id);
+    return entry.kind == body::ImpulseKind::collision && (entry.body_a == id || entry.body_b == id) &&
+           entry.impulse_a.squaredNorm() > 0.0 && entry.impulse_b.squaredNorm() > 0.0;
   };
   const auto is_before = [](const body::LoggedImpulse& entry, const body::LoggedImpulse& other) {
     if (entry.time != other.time) return entry.time < other.time;

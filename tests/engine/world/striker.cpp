@@ -34,6 +34,7 @@ fracture::Striker seen(
   hit.body_b = w.add_body(other).value();
   hit.point_a = Vec3(0.1, 0.01, 0.0);
   hit.impulse_a = Vec3(0, -1, 0);
+  hit.impulse_b = turn.conjugate() * Vec3(0, 1, 0);
   hit.point_b = turn.conjugate() * Vec3(0.0, -0.05, 0.0);
   hit.closing_speed = -velocity.y();
   hit.time = 0.1;
@@ -41,6 +42,7 @@ fracture::Striker seen(
   body::LoggedImpulse later = hit;
   later.point_a = Vec3(0.3, 0.01, 0.0);
   later.impulse_a = Vec3(1, 0, 0);
+  later.impulse_b = turn.conjugate() * Vec3(-1, 0, 0);
   later.time = 0.11;
   const std::vector<body::Body> bodies(w.bodies().begin(), w.bodies().end());
   const auto striker = world::find_striker({bodies, 0.45, 0.4}, {later, hit}, struck, hit.body_b);
@@ -48,6 +50,18 @@ fracture::Striker seen(
   CHECK((striker->centre - Vec3(0.1, 0.06, 0.0)).norm() < 1e-12);
   CHECK(striker->time == Approx(0.5));
   CHECK(world::find_striker({bodies, 0.45, 0.4}, {}, struck, hit.body_b) == nullptr);
+  // Who was turned away before he touched had not come yet, at this body or at a third one.
+  body::LoggedImpulse missed = hit;
+  missed.impulse_a = missed.impulse_b = Vec3::Zero();
+  missed.time = 0.02;
+  CHECK(world::find_striker({bodies, 0.45, 0.4}, {missed}, struck, hit.body_b) == nullptr);
+  body::LoggedImpulse missed_third = missed;
+  missed_third.body_a = hit.body_b + 1;
+  const auto same =
+      world::find_striker({bodies, 0.45, 0.4}, {missed, later, missed_third, hit}, struck, hit.body_b);
+  REQUIRE(same);
+  CHECK(same->time == striker->time);
+  CHECK((same->speed * same->direction - striker->speed * striker->direction).norm() < 1e-12);
   // Who has met a third one before comes as fast as he closed, along the normal.
   body::LoggedImpulse third = hit;
   third.body_a = hit.body_b + 1;
