@@ -270,7 +270,7 @@ void SolidForce::choose_minor() {
     SolidPress& press = presses_[i];
     if (!is_collision(*press.load)) {
       settle_force(press);
-      resting.push_back({press.first_force, i});
+      if (press.load->is_resting) resting.push_back({press.first_force, i});
     }
     greatest = std::max(greatest, press.first_force);
   }
