@@ -208,9 +208,10 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   const double slack = settings.search_slack * pair.size;
   pair.is_fast = predicted > slack;
   const double needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
-  pair.needs_search = !pair.is_fast && !pair.is_apart &&
-                      (!settings.has_caches || !memory.search ||
-                       memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start) < needed);
+  pair.needs_search =
+      !pair.is_fast && !pair.is_apart &&
+      (!settings.has_caches || !memory.search ||
+       memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start, needed) < needed);
 }
 
 // Sleepers that something hits, with its momentum, or touches and could move.

@@ -12,6 +12,57 @@ bool is_same(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
 }
 
+// How far the material of a body was moved: by `way` + `turn` (x - centre) from x.
+struct Displacement {
+  Vec3 centre, way;
+  Mat3 turn;
+};
+
+Displacement displacement(const Pose& from, const Pose& to) {
+  const Mat3 before = from.rotation.toRotationMatrix();
+  return {from.translation, to.translation - from.translation,
+          (to.rotation.toRotationMatrix() - before) * before.transpose()};
+}
+
+// Less `s` times another from the same pose.
+Displacement operator-(Displacement x, const Displacement& y) {
+  x.way -= y.way;
+  x.turn -= y.turn;
+  return x;
+}
+
+Displacement operator*(double s, Displacement x) {
+  x.way *= s;
+  x.turn *= s;
+  return x;
+}
+
+// Points of a and b that were within `near` of each other at these poses were moved against each other by no
+// more than this: what is common to both motions does not count, nor what is far from the other body.
+double relative_bound(const WorkBody& a, const Pose& pose_a, const Displacement& moved_a, const WorkBody& b,
+                      const Pose& pose_b, const Displacement& moved_b, double near) {
+  if (a.collider->radius > 0.0 || b.collider->radius > 0.0) return 1e300;
+  // Where in the space of a they are.
+  const geometry::Box &box_a = a.collider->box, &box_b = b.collider->box;
+  const Mat3 axes_a = pose_a.rotation.toRotationMatrix(), axes_b = pose_b.rotation.toRotationMatrix();
+  const Mat3 from_b = axes_a.transpose() * axes_b;
+  const Vec3 between = axes_a.transpose() * (pose_b.translation - pose_a.translation);
+  const Vec3 centre = between + from_b * (0.5 * (box_b.low + box_b.high));
+  const Vec3 grown = from_b.cwiseAbs() * (0.5 * (box_b.high - box_b.low)) + Vec3::Constant(near);
+  const Vec3 low = box_a.low.cwiseMax(centre - grown), high = box_a.high.cwiseMin(centre + grown);
+  if ((low.array() > high.array()).any()) return 0.0;
+  const Mat3 change = (moved_a.turn - moved_b.turn) * axes_a;
+  const Vec3 middle = moved_a.way - moved_b.way - moved_b.turn * (pose_a.translation - pose_b.translation) +
+                      change * (0.5 * (low + high));
+  const Mat3 sides = change * (0.5 * (high - low)).asDiagonal();
+  double most_squared = 0.0;  // greatest at a corner of that box
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0})
+      for (const double z : {-1.0, 1.0})
+        most_squared = std::max(most_squared, (middle + sides * Vec3(x, y, z)).squaredNorm());
+  return (std::sqrt(most_squared) + moved_b.turn.norm() * near) * (1.0 + 1e-9);
+}
+
 // Paths are matched at the share `s` of the way that was looked at: x(t) against the path at s t.
 double strays_at(double s, const FeatureSearch& f, const WorkBody& a, const Pose& end_a, const WorkBody& b,
                  const Pose& end_b) {
@@ -30,6 +81,22 @@ double strays_at(double s, const FeatureSearch& f, const WorkBody& a, const Pose
   return way.norm() + turn(a, end_a, f.end_a) + turn(b, end_b, f.end_b);
 }
 
+// The same of what comes within `near` on the way.
+double strays_near(double s, const FeatureSearch& f, const WorkBody& a, const Pose& end_a, const WorkBody& b,
+                   const Pose& end_b, double near) {
+  return relative_bound(a, a.start, displacement(a.start, end_a) - s * displacement(a.start, f.end_a), b,
+                        b.start, displacement(b.start, end_b) - s * displacement(b.start, f.end_b),
+                        near + motion_bound(a, end_a, b, end_b));
+}
+
+double moved_at_most(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
+                     const Pose& pose_b) {
+  const Vec3 way =
+      (pose_a.translation - search.start_a.translation) - (pose_b.translation - search.start_b.translation);
+  return way.norm() + turn_bound(search.start_a.rotation, pose_a.rotation, a.reach) +
+         turn_bound(search.start_b.rotation, pose_b.rotation, b.reach);
+}
+
 }  // namespace
 
 double turn_bound(const Quat& from, const Quat& to, double reach) {
@@ -40,18 +107,22 @@ double turn_bound(const Quat& from, const Quat& to, double reach) {
 }
 
 double moved_since(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
-                   const Pose& pose_b) {
-  const Vec3 way =
-      (pose_a.translation - search.start_a.translation) - (pose_b.translation - search.start_b.translation);
-  return way.norm() + turn_bound(search.start_a.rotation, pose_a.rotation, a.reach) +
-         turn_bound(search.start_b.rotation, pose_b.rotation, b.reach);
+                   const Pose& pose_b, double near) {
+  const double most = moved_at_most(search, a, pose_a, b, pose_b);
+  if (most + near <= search.margin) return most;
+  return std::min(most, relative_bound(a, search.start_a, displacement(search.start_a, pose_a), b,
+                                       search.start_b, displacement(search.start_b, pose_b), near + most));
 }
 
 double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& end_a, const WorkBody& b,
-                   const Pose& end_b) {
+                   const Pose& end_b, double near) {
   if (!search.is_swept) {
     // The way of a vertex along a straight path is convex: it is greatest at an end.
-    return std::max(moved_since(search, a, a.start, b, b.start), moved_since(search, a, end_a, b, end_b));
+    const double then = moved_at_most(search, a, a.start, b, b.start),
+                 at_end = moved_at_most(search, a, end_a, b, end_b), most = std::max(then, at_end);
+    if (most + near <= search.margin) return most;
+    return std::max(moved_since(search, a, a.start, b, b.start, near + most),
+                    moved_since(search, a, end_a, b, end_b, near + most));
   }
   if (!is_same(search.start_a, a.start) || !is_same(search.start_b, b.start)) return 1e300;
   const Vec3 looked = (search.end_a.translation - search.start_a.translation) -
@@ -60,7 +131,10 @@ double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& e
   const double length_squared = looked.squaredNorm();
   const double share = length_squared > 0.0 ? std::clamp(way.dot(looked) / length_squared, 0.0, 1.0) : 1.0;
   const auto at = [&](double s) { return strays_at(s, search, a, end_a, b, end_b); };
-  return std::min({at(share), at(1.0), at(0.0)});
+  const double most = std::min({at(share), at(1.0), at(0.0)});
+  if (most + near <= search.margin) return most;
+  return std::min({most, strays_near(1.0, search, a, end_a, b, end_b, near),
+                   strays_near(share, search, a, end_a, b, end_b, near)});
 }
 
 }  // namespace shatterbox::dynamics

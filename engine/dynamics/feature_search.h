@@ -21,13 +21,14 @@ struct FeatureSearch {
 /// m.
 double turn_bound(const Quat& from, const Quat& to, double reach);
 
-/// How much closer two bodies may be at these poses than where the search began, m.
+/// How much closer features may be at these poses than where the search began, m, of those that are within
+/// `near` (m) of each other now.
 double moved_since(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
-                   const Pose& pose_b);
+                   const Pose& pose_b, double near);
 
-/// Paths from the bodies' starts to these ends stay within this of what was looked at, m: with a margin above
-/// it, the search holds all that they can touch.
+/// Paths from the bodies' starts to these ends stay within this of what was looked at, m, where they come
+/// within `near` (m): with a margin so much above that, the search holds all that they can touch.
 double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& end_a, const WorkBody& b,
-                   const Pose& end_b);
+                   const Pose& end_b, double near);
 
 }  // namespace shatterbox::dynamics

@@ -121,6 +121,8 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
     pair.is_free_certified = true;
     return;
   }
+  const double usual_gap = settings.kept_gap * pair.size;
+  const double reach = std::max(pair.margin, pair.motion + usual_gap);
   double moved = 0.0;
   if (pair.is_fast) {
     pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack);
@@ -128,13 +130,11 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   } else {
     if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack, !pair.is_first_seen);
     pair.search = memory.search;
-    moved = moved_since(*pair.search, a, a.start, b, b.start);
+    moved = moved_since(*pair.search, a, a.start, b, b.start, reach);
   }
-  const double usual_gap = settings.kept_gap * pair.size;
   std::optional<Foresight> foresight;
   if (pair.is_fast && !pair.search->features.empty()) foresight.emplace(a, b, usual_gap);
   pair.is_free_certified = !turns_far;
-  const double reach = std::max(pair.margin, pair.motion + usual_gap);
   pair.least_gap = reach;
   pair.gaps.reserve(pair.search->features.size());
   for (const auto& features : pair.search->features) {

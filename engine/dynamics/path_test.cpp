@@ -20,7 +20,9 @@ constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr std::size_t kMostHits = 6;
 constexpr double kStrayed = 0.1;  // of the slack of searches
 constexpr double kClear = 1.3;    // times the least separation: where a start does not lower it
-constexpr double kAmple = 20.0;   // times the kept gap: more room than rounds take
+// times the kept gap: what is looked at, with what is spare and what later rounds move
+constexpr double kLooked = 3.0;
+constexpr double kAmple = 20.0;  // times the kept gap: more room than rounds take
 
 void keep_first(std::vector<PathHit>& hits, double size) {
   std::sort(hits.begin(), hits.end(), [](const PathHit& x, const PathHit& y) {
@@ -71,7 +73,8 @@ PathTest::Look PathTest::look_at(const WorkPair& pair, double& clear) const {
   if (clear > pair.kept_gap) return Look::apart;
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   const bool is_known =
-      pair.search && strays_from(*pair.search, a, a.end, b, b.end) + pair.kept_gap <= pair.search->margin;
+      pair.search && strays_from(*pair.search, a, a.end, b, b.end, kLooked * pair.kept_gap) + pair.kept_gap <=
+                         pair.search->margin;
   return is_known ? Look::listed : Look::searched;
 }
 
@@ -273,10 +276,11 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
   const double safe = kSafe * pair.kept_gap;
   const double reach = motion_bound(a, a.end, b, b.end) + safe;
   // What is beyond the search is at least so far from all that it may stray.
-  const double strays = strays_from(search, a, a.end, b, b.end);
+  const double strays = strays_from(search, a, a.end, b, b.end, kLooked * pair.kept_gap);
   spare = std::min(search.margin - strays - safe, pair.kept_gap);
   const double listed =
-      spare + (search.is_swept ? safe + strays : reach + moved_since(search, a, a.start, b, b.start));
+      spare +
+      (search.is_swept ? safe + strays : reach + moved_since(search, a, a.start, b, b.start, reach + spare));
   const auto &ends_a = paths_[at(pair.a)].end, &ends_b = paths_[at(pair.b)].end;
   std::vector<PathHit> hits;
   pair.free_until.resize(search.features.size(), -1.0);

@@ -1,0 +1,152 @@
+// For which motions a list of features is good, against sampled points of both bodies.
+#include "engine/dynamics/feature_search.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "engine/core/random.h"
+#include "engine/dynamics/motion_work.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+Vec3 any_vector(core::Random& random, double most) {
+  const double x = random.uniform(-most, most), y = random.uniform(-most, most);
+  return {x, y, random.uniform(-most, most)};
+}
+
+Pose moved_a_little(core::Random& random, const Pose& pose, double shift, double turn) {
+  const Vec3 axis = any_vector(random, turn);
+  const Quat change = Quat(1.0, axis.x(), axis.y(), axis.z()).normalized();
+  return {(change * pose.rotation).normalized(), pose.translation + any_vector(random, shift)};
+}
+
+// Two boxes that pass into each other, full of points.
+struct Pair {
+  collision::Collider colliders[2];
+  WorkBody a, b;
+  std::vector<Vec3> points_a, points_b;  // in body space
+
+  explicit Pair(core::Random& random) {
+    a = fill(random, colliders[0], points_a);
+    b = fill(random, colliders[1], points_b);
+    a.start = moved_a_little(random, Pose(), 0.1, 1.0);
+    b.start = moved_a_little(random, Pose(), 0.8, 1.0);
+  }
+
+  static WorkBody fill(core::Random& random, collision::Collider& collider, std::vector<Vec3>& points) {
+    const Vec3 half = 0.5 * (any_vector(random, 1.0).cwiseAbs() + Vec3::Constant(0.05));
+    collider.box.include(half);
+    collider.box.include(Vec3(-half));
+    WorkBody w;
+    w.collider = &collider;
+    w.is_active = true;
+    w.reach = half.norm();
+    for (const double x : {-1.0, -0.4, 0.4, 1.0})
+      for (const double y : {-1.0, -0.4, 0.4, 1.0})
+        for (const double z : {-1.0, -0.4, 0.4, 1.0}) points.push_back(half.cwiseProduct(Vec3(x, y, z)));
+    return w;
+  }
+
+  template <class Visit>
+  void for_each_pair(const Visit& visit) const {
+    for (const Vec3& p : points_a)
+      for (const Vec3& q : points_b) visit(p, q);
+  }
+};
+
+Vec3 on_way(const Pose& from, const Pose& to, const Vec3& point, double time) {
+  return (1.0 - time) * from.apply(point) + time * to.apply(point);
+}
+
+double sum_of_ways(const Pose& from_a, const Pose& to_a, const WorkBody& a, const Pose& from_b,
+                   const Pose& to_b, const WorkBody& b) {
+  const Vec3 way = (to_a.translation - from_a.translation) - (to_b.translation - from_b.translation);
+  return way.norm() + turn_bound(from_a.rotation, to_a.rotation, a.reach) +
+         turn_bound(from_b.rotation, to_b.rotation, b.reach);
+}
+
+constexpr double kNear = 0.1;
+
+}  // namespace
+
+TEST_CASE("what is near now was no farther than is said when the search began") {
+  core::Random random(5);
+  long looked_at = 0;
+  double said_less = 0.0;
+  for (int n = 0; n < 500; ++n) {
+    const Pair pair(random);
+    FeatureSearch search;
+    search.start_a = pair.a.start;
+    search.start_b = pair.b.start;
+    const Pose now_a = moved_a_little(random, pair.a.start, 0.03, 0.1);
+    const Pose now_b = moved_a_little(random, pair.b.start, 0.03, 0.1);
+    const double said = moved_since(search, pair.a, now_a, pair.b, now_b, kNear);
+    const double all = sum_of_ways(pair.a.start, now_a, pair.a, pair.b.start, now_b, pair.b);
+    said_less += said / all / 500.0;
+    pair.for_each_pair([&](const Vec3& p, const Vec3& q) {
+      const double now = (now_a.apply(p) - now_b.apply(q)).norm();
+      if (now > kNear) return;
+      ++looked_at;
+      const double then = (pair.a.start.apply(p) - pair.b.start.apply(q)).norm();
+      if (then > now + said + 1e-12) FAIL("pair " << n << ": " << then << " m then, " << now << " m now");
+    });
+  }
+  CHECK(looked_at > 1000);
+  CHECK(said_less < 0.9);
+}
+
+TEST_CASE("what comes near on the way was as near on the way that was looked at but for what is said") {
+  core::Random random(6);
+  long looked_at = 0;
+  for (int n = 0; n < 200; ++n) {
+    const Pair pair(random);
+    FeatureSearch search;
+    search.is_swept = n % 3 != 0;
+    search.start_a = pair.a.start;
+    search.start_b = pair.b.start;
+    search.end_a = moved_a_little(random, pair.a.start, 0.2, 0.1);
+    search.end_b = moved_a_little(random, pair.b.start, 0.2, 0.1);
+    const Pose end_a = moved_a_little(random, search.end_a, 0.05, 0.05);
+    const Pose end_b = moved_a_little(random, search.end_b, 0.05, 0.05);
+    const double said = strays_from(search, pair.a, end_a, pair.b, end_b, kNear);
+    pair.for_each_pair([&](const Vec3& p, const Vec3& q) {
+      double looked = (pair.a.start.apply(p) - pair.b.start.apply(q)).norm();
+      for (int k = 1; search.is_swept && k <= 64; ++k) {
+        const Vec3 on_a = on_way(pair.a.start, search.end_a, p, k / 64.0);
+        looked = std::min(looked, (on_a - on_way(pair.b.start, search.end_b, q, k / 64.0)).norm());
+      }
+      for (int k = 0; k <= 4; ++k) {
+        const Vec3 on_a = on_way(pair.a.start, end_a, p, k / 4.0);
+        const double now = (on_a - on_way(pair.b.start, end_b, q, k / 4.0)).norm();
+        if (now > kNear) continue;
+        ++looked_at;
+        // The way that was looked at is sampled at 1/64 of some .4 m.
+        const double sampled = search.is_swept ? 0.005 : 1e-12;
+        if (looked > now + said + sampled) FAIL("pair " << n << ": " << looked << " m, " << now << " m now");
+      }
+    });
+  }
+  CHECK(looked_at > 1000);
+}
+
+TEST_CASE("what two bodies do together does not count") {
+  core::Random random(7);
+  const Pair pair(random);
+  FeatureSearch search;
+  search.start_a = pair.a.start;
+  search.start_b = pair.b.start;
+  const Pose common = moved_a_little(random, Pose(), 5.0, 0.3);
+  const auto together = [&](const Pose& pose) {
+    return Pose{(common.rotation * pose.rotation).normalized(), common.apply(pose.translation)};
+  };
+  const Pose now_a = together(pair.a.start), now_b = together(pair.b.start);
+  CHECK(sum_of_ways(pair.a.start, now_a, pair.a, pair.b.start, now_b, pair.b) > 0.1);
+  // What is apart by `near` goes on different ways by the turn times that.
+  const double turned = 2.0 * common.rotation.vec().norm();
+  CHECK(moved_since(search, pair.a, now_a, pair.b, now_b, 0.0) <
+        2.0 * turned * sum_of_ways(pair.a.start, now_a, pair.a, pair.b.start, now_b, pair.b));
+}
+
+}  // namespace shatterbox::dynamics
