@@ -184,7 +184,8 @@ void solve_islands(const std::vector<Body>& bodies, const ContactSettings& setti
   const auto solve = [&](std::size_t number) {
     const Island& island = work.islands[number];
     solve_island(settings, island, work);
-    for (const int b : island.bodies) end_in_contact(work.bodies[at(b)]);
+    core::parallel_for(island.bodies.size(), 128,
+                       [&](std::size_t k) { end_in_contact(work.bodies[at(island.bodies[k])]); });
   };
   if (work.has_scripted) {
     const auto rides = [&](std::size_t number) {
