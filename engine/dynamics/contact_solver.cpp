@@ -49,9 +49,9 @@ void IslandSolver::run() {
       take_part(i + 1);
       gone = step_ < substep_ - gone ? gone + step_ : substep_;
     }
-    for_each_body([](WorkBody& b) {
-      if (b.shape->kind != body::ShapeKind::sphere) b.substep_rotations.push_back(b.rotation);
-    });
+    for (const int k : island_.bodies)
+      if (body(k).shape->kind != body::ShapeKind::sphere)
+        body(k).substep_rotations.push_back(body(k).rotation);
   }
   set_step(substep_);
 }
@@ -170,7 +170,8 @@ void IslandSolver::kick() {
 }
 
 void IslandSolver::drift() {
-  for_each_body([&](WorkBody& b) {
+  for (const int i : island_.bodies) {
+    WorkBody& b = body(i);
     b.way += b.velocity * step_;
     const bool is_fast = b.spin.squaredNorm() * step_ * step_ > kFastSpin * kFastSpin;
     advance_spin(b.inertia, step_, is_fast ? SpinOrder::fourth : SpinOrder::second, b.rotation, b.spin);
@@ -182,14 +183,15 @@ void IslandSolver::drift() {
     if (b.shape->kind != body::ShapeKind::sphere) {
       b.turn_angle += b.spin.norm() * step_;
     }
-  });
+  }
 }
 
 // Arms, gap and response at the present pose. Both bodies feel the impulse at one and the same point:
 // angular momentum is kept to rounding.
 void IslandSolver::prepare(int substeps) {
   joints_.place(substeps);
-  for_each_contact([&](SolverContact& c) {
+  for (const int i : island_.contacts) {
+    SolverContact& c = work_.contacts[at(i)];
     const WorkBody &a = body(c.a), &b = body(c.b);
     const Moved ma = moved(a, substeps), mb = moved(b, substeps);
     const Vec3 turned_a = turned(a, ma, c.arm_a_start, -c.normal),
@@ -220,7 +222,7 @@ void IslandSolver::prepare(int substeps) {
       }
       c.weights[k] = 1.0 / c.response(k, k);
     }
-  });
+  }
 }
 
 // An impact's impulse says nothing about the next substep: the bodies in it start that one from what was
@@ -235,13 +237,14 @@ void IslandSolver::book() {
       if (body(k).inverse_mass > 0.0) body(k).is_struck = true;
     }
   }
-  for_each_contact([&](SolverContact& c) {
+  for (const int i : island_.contacts) {
+    SolverContact& c = work_.contacts[at(i)];
     const bool was_impact = body(c.a).is_struck || body(c.b).is_struck;
     if (!was_impact) c.warm = c.impulse;
     if (!c.can_creep || was_impact || c.impulse.tail<2>().norm() >= kSliding * c.friction * c.impulse[0])
       c.held_from = c.change;
     keep_impulse(c);
-  });
+  }
 }
 
 void IslandSolver::keep_impulse(SolverContact& c) {

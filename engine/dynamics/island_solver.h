@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/core/index.h"
-#include "engine/core/parallel.h"
 #include "engine/dynamics/contact_friction.h"
 #include "engine/dynamics/contact_solver.h"
 #include "engine/dynamics/joint_solver.h"
@@ -76,16 +75,6 @@ class IslandSolver {
   static void place_inertia(WorkBody& b) {
     const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
     b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
-  }
-
-  // What is each one's own is done at once where the island is large.
-  template <class Visit>
-  void for_each_body(const Visit& visit) {
-    core::parallel_for(island_.bodies.size(), kGrain, [&](std::size_t k) { visit(body(island_.bodies[k])); });
-  }
-  template <class Visit>
-  void for_each_contact(const Visit& visit) {
-    core::parallel_for(island_.contacts.size(), kGrain, [&](std::size_t k) { visit(contact(k)); });
   }
 
   WorkBody& body(int i) { return work_.bodies[core::at(i)]; }
@@ -180,7 +169,6 @@ class IslandSolver {
     return b.inverse_mass > 0.0 ? b.rotation : b.start.rotation;
   }
 
-  static constexpr std::size_t kGrain = 128;
   static constexpr double kTouching = 0.05;  // of the kept gap
   static constexpr double kLanding = 1e-3;  // of it: how little what ends a part is stopped before it bounces
   static constexpr double kSliding = 0.999;    // of the friction that there can be

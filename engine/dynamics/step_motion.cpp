@@ -184,8 +184,7 @@ void solve_islands(const std::vector<Body>& bodies, const ContactSettings& setti
   const auto solve = [&](std::size_t number) {
     const Island& island = work.islands[number];
     solve_island(settings, island, work);
-    core::parallel_for(island.bodies.size(), 128,
-                       [&](std::size_t k) { end_in_contact(work.bodies[at(island.bodies[k])]); });
+    for (const int b : island.bodies) end_in_contact(work.bodies[at(b)]);
   };
   if (work.has_scripted) {
     const auto rides = [&](std::size_t number) {
