@@ -12,19 +12,18 @@ bool is_same(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
 }
 
-// How far the material of a body was moved: by `way` + `turn` (x - centre) from x.
+// How far the material of a body was moved: by `way` + `turn` (x - the centre) from x.
 struct Displacement {
-  Vec3 centre, way;
+  Vec3 way;
   Mat3 turn;
 };
 
 Displacement displacement(const Pose& from, const Pose& to) {
   const Mat3 before = from.rotation.toRotationMatrix();
-  return {from.translation, to.translation - from.translation,
-          (to.rotation.toRotationMatrix() - before) * before.transpose()};
+  return {to.translation - from.translation, (to.rotation.toRotationMatrix() - before) * before.transpose()};
 }
 
-// Less `s` times another from the same pose.
+// Less another from the same pose.
 Displacement operator-(Displacement x, const Displacement& y) {
   x.way -= y.way;
   x.turn -= y.turn;
@@ -63,30 +62,10 @@ double relative_bound(const WorkBody& a, const Pose& pose_a, const Displacement&
   return (std::sqrt(most_squared) + moved_b.turn.norm() * near) * (1.0 + 1e-9);
 }
 
-// Paths are matched at the share `s` of the way that was looked at: x(t) against the path at s t.
-double strays_at(double s, const FeatureSearch& f, const WorkBody& a, const Pose& end_a, const WorkBody& b,
-                 const Pose& end_b) {
-  const auto relative = [](const Pose& start_a, const Pose& to_a, const Pose& start_b, const Pose& to_b) {
-    return Vec3((to_a.translation - start_a.translation) - (to_b.translation - start_b.translation));
-  };
-  const Vec3 way =
-      relative(a.start, end_a, b.start, end_b) - s * relative(f.start_a, f.end_a, f.start_b, f.end_b);
-  const auto turn = [s](const WorkBody& w, const Pose& end, const Pose& looked) {
-    if (w.reach == 0.0 || (!w.is_active && is_same(end, looked))) return 0.0;
-    const Mat3 from = w.start.rotation.toRotationMatrix();
-    const Mat3 change =
-        (end.rotation.toRotationMatrix() - from) - s * (looked.rotation.toRotationMatrix() - from);
-    return change.norm() * w.reach;
-  };
-  return way.norm() + turn(a, end_a, f.end_a) + turn(b, end_b, f.end_b);
-}
-
-// The same of what comes within `near` on the way.
-double strays_near(double s, const FeatureSearch& f, const WorkBody& a, const Pose& end_a, const WorkBody& b,
-                   const Pose& end_b, double near) {
-  return relative_bound(a, a.start, displacement(a.start, end_a) - s * displacement(a.start, f.end_a), b,
-                        b.start, displacement(b.start, end_b) - s * displacement(b.start, f.end_b),
-                        near + motion_bound(a, end_a, b, end_b));
+// No two points of a and b were moved against each other by more than this.
+double relative_bound(const WorkBody& a, const Displacement& moved_a, const WorkBody& b,
+                      const Displacement& moved_b) {
+  return (moved_a.way - moved_b.way).norm() + moved_a.turn.norm() * a.reach + moved_b.turn.norm() * b.reach;
 }
 
 double moved_at_most(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
@@ -95,6 +74,13 @@ double moved_at_most(const FeatureSearch& search, const WorkBody& a, const Pose&
       (pose_a.translation - search.start_a.translation) - (pose_b.translation - search.start_b.translation);
   return way.norm() + turn_bound(search.start_a.rotation, pose_a.rotation, a.reach) +
          turn_bound(search.start_b.rotation, pose_b.rotation, b.reach);
+}
+
+// The same of points that were within `near` of each other.
+double moved_where_near(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
+                        const Pose& pose_b, double near) {
+  return relative_bound(a, search.start_a, displacement(search.start_a, pose_a), b, search.start_b,
+                        displacement(search.start_b, pose_b), near);
 }
 
 }  // namespace
@@ -110,31 +96,37 @@ double moved_since(const FeatureSearch& search, const WorkBody& a, const Pose& p
                    const Pose& pose_b, double near) {
   const double most = moved_at_most(search, a, pose_a, b, pose_b);
   if (most + near <= search.margin) return most;
-  return std::min(most, relative_bound(a, search.start_a, displacement(search.start_a, pose_a), b,
-                                       search.start_b, displacement(search.start_b, pose_b), near + most));
+  return std::min(most, moved_where_near(search, a, pose_a, b, pose_b, near + most));
 }
 
 double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& end_a, const WorkBody& b,
                    const Pose& end_b, double near) {
   if (!search.is_swept) {
     // The way of a vertex along a straight path is convex: it is greatest at an end.
-    const double then = moved_at_most(search, a, a.start, b, b.start),
-                 at_end = moved_at_most(search, a, end_a, b, end_b), most = std::max(then, at_end);
+    const double most =
+        std::max(moved_at_most(search, a, a.start, b, b.start), moved_at_most(search, a, end_a, b, end_b));
     if (most + near <= search.margin) return most;
-    return std::max(moved_since(search, a, a.start, b, b.start, near + most),
-                    moved_since(search, a, end_a, b, end_b, near + most));
+    return std::min(most, std::max(moved_where_near(search, a, a.start, b, b.start, near + most),
+                                   moved_where_near(search, a, end_a, b, end_b, near + most)));
   }
   if (!is_same(search.start_a, a.start) || !is_same(search.start_b, b.start)) return 1e300;
-  const Vec3 looked = (search.end_a.translation - search.start_a.translation) -
-                      (search.end_b.translation - search.start_b.translation);
-  const Vec3 way = (end_a.translation - a.start.translation) - (end_b.translation - b.start.translation);
+  const Displacement gone_a = displacement(a.start, end_a), gone_b = displacement(b.start, end_b),
+                     looked_a = displacement(a.start, search.end_a),
+                     looked_b = displacement(b.start, search.end_b);
+  const Vec3 looked = looked_a.way - looked_b.way, way = gone_a.way - gone_b.way;
   const double length_squared = looked.squaredNorm();
   const double share = length_squared > 0.0 ? std::clamp(way.dot(looked) / length_squared, 0.0, 1.0) : 1.0;
-  const auto at = [&](double s) { return strays_at(s, search, a, end_a, b, end_b); };
+  // Paths are matched at a share `s` of the way that was looked at: x(t) against the path at s t.
+  const auto at = [&](double s) {
+    return relative_bound(a, gone_a - s * looked_a, b, gone_b - s * looked_b);
+  };
   const double most = std::min({at(share), at(1.0), at(0.0)});
   if (most + near <= search.margin) return most;
-  return std::min({most, strays_near(1.0, search, a, end_a, b, end_b, near),
-                   strays_near(share, search, a, end_a, b, end_b, near)});
+  const double reach = near + motion_bound(a, end_a, b, end_b);
+  const auto where_near = [&](double s) {
+    return relative_bound(a, a.start, gone_a - s * looked_a, b, b.start, gone_b - s * looked_b, reach);
+  };
+  return std::min({most, where_near(1.0), where_near(share)});
 }
 
 }  // namespace shatterbox::dynamics

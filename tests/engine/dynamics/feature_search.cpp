@@ -5,21 +5,15 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "engine/core/random.h"
 #include "engine/dynamics/motion_work.h"
+#include "tests/engine/dynamics/draw.h"
 
 namespace shatterbox::dynamics {
 namespace {
 
-Vec3 any_vector(core::Random& random, double most) {
-  const double x = random.uniform(-most, most), y = random.uniform(-most, most);
-  return {x, y, random.uniform(-most, most)};
-}
-
 Pose moved_a_little(core::Random& random, const Pose& pose, double shift, double turn) {
-  const Vec3 axis = any_vector(random, turn);
-  const Quat change = Quat(1.0, axis.x(), axis.y(), axis.z()).normalized();
-  return {(change * pose.rotation).normalized(), pose.translation + any_vector(random, shift)};
+  const Quat change = test::draw_turn(random, turn);
+  return {(change * pose.rotation).normalized(), pose.translation + shift * test::draw_vector(random)};
 }
 
 // Two boxes that pass into each other, full of points.
@@ -36,7 +30,7 @@ struct Pair {
   }
 
   static WorkBody fill(core::Random& random, collision::Collider& collider, std::vector<Vec3>& points) {
-    const Vec3 half = 0.5 * (any_vector(random, 1.0).cwiseAbs() + Vec3::Constant(0.05));
+    const Vec3 half = 0.5 * (test::draw_vector(random).cwiseAbs() + Vec3::Constant(0.05));
     collider.box.include(half);
     collider.box.include(Vec3(-half));
     WorkBody w;

@@ -5,20 +5,13 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "engine/core/random.h"
+#include "tests/engine/dynamics/draw.h"
 
 namespace shatterbox::dynamics {
 namespace {
 
-Vec3 draw(core::Random& random) {
-  const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
-  return {x, y, z};
-}
-
-Quat draw_turn(core::Random& random, double most) {
-  const Vec3 axis = most * draw(random);
-  return Quat(1.0, axis.x(), axis.y(), axis.z()).normalized();
-}
+using test::draw_turn;
+using test::draw_vector;
 
 // Points all over the box, at this time of a straight way.
 std::vector<Vec3> points_at(const geometry::Box& box, const Pose& start, const Pose& end, double time) {
@@ -46,14 +39,15 @@ TEST_CASE("boxes on their ways stay as far apart as is said") {
   for (int n = 0; n < 200; ++n) {
     geometry::Box box_a, box_b;
     for (geometry::Box* box : {&box_a, &box_b}) {
-      box->low = -0.5 * (draw(random).cwiseAbs() + Vec3::Constant(0.05));
-      box->high = 0.5 * (draw(random).cwiseAbs() + Vec3::Constant(0.05));
+      box->low = -0.5 * (draw_vector(random).cwiseAbs() + Vec3::Constant(0.05));
+      box->high = 0.5 * (draw_vector(random).cwiseAbs() + Vec3::Constant(0.05));
     }
-    Pose start_a{draw_turn(random, 1.0), Vec3::Zero()}, start_b{draw_turn(random, 1.0), 2.5 * draw(random)};
+    Pose start_a{draw_turn(random, 1.0), Vec3::Zero()},
+        start_b{draw_turn(random, 1.0), 2.5 * draw_vector(random)};
     Pose end_a = start_a, end_b = start_b;
     end_a.rotation = draw_turn(random, 0.15) * end_a.rotation;
     end_b.rotation = draw_turn(random, 0.15) * end_b.rotation;
-    end_b.translation += 0.8 * draw(random);
+    end_b.translation += 0.8 * draw_vector(random);
     const double said = clearance(turn_box(box_a, start_a, end_a), turn_box(box_b, start_b, end_b), 1e300);
     double least = 1e300;
     for (int k = 0; k <= 8; ++k) {
