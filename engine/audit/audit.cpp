@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "engine/audit/pair_audit.h"
 #include "engine/core/index.h"
@@ -49,7 +50,7 @@ struct Audit::Actor {
   double radius = 0.0;  // of a sphere, m
   Pose start, end;
   std::shared_ptr<const Surface> surface;
-  std::vector<double> times;                // shares of the step, from 0 to 1
+  std::vector<double> times;                // shares of the step, from 0 to 1 unless it came to be or broke
   std::vector<Pose> poses;                  // at these times
   std::vector<std::vector<Vec3>> stations;  // vertices, or the sphere's centre, at these times
   std::vector<MovingSurface> legs;          // between them; none if it goes straight, which `moving` tells
@@ -68,7 +69,7 @@ struct Audit::Actor {
 
   /// Its straight way from one time to another between which it has no station.
   const MovingSurface& leg(double from, double to, MovingSurface& scratch) const {
-    if (from == 0.0 && to == 1.0) return moving;
+    if (from == times.front() && to == times.back()) return moving;
     const auto place =
         static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), from) - times.begin());
     if (times[place] == from && place + 1 < times.size() && times[place + 1] == to) return legs[place];
@@ -78,15 +79,19 @@ struct Audit::Actor {
   }
 };
 
-/// Calls visit(leg of a, leg of b, whether it is the last) for the straight legs that both go together.
+/// Calls visit(leg of a, leg of b, whether it is the step's last) for the straight legs that both go together
+/// while both are there.
 template <class Actor, class Visit>
 void follow(const Actor& a, const Actor& b, const Visit& visit) {
   std::vector<double> times;
   std::set_union(a.times.begin(), a.times.end(), b.times.begin(), b.times.end(), std::back_inserter(times));
+  const double begin = std::max(a.times.front(), b.times.front());
+  const double end = std::min(a.times.back(), b.times.back());
+  std::erase_if(times, [&](double time) { return time < begin || time > end; });
   MovingSurface scratch_a, scratch_b;
   for (std::size_t k = 0; k + 1 < times.size(); ++k)
     visit(a.leg(times[k], times[k + 1], scratch_a), b.leg(times[k], times[k + 1], scratch_b),
-          k + 2 == times.size());
+          times[k + 1] == 1.0);
 }
 
 struct Audit::PairResult {
@@ -126,35 +131,46 @@ std::shared_ptr<const Surface> Audit::surface_of(const std::shared_ptr<const bod
   return surface;
 }
 
+Audit::Actor Audit::make_actor(const body::Body& body, const body::Way* way, std::span<const Birth> births) {
+  Actor actor;
+  actor.id = body.id;
+  actor.is_dynamic = body.is_dynamic();
+  actor.group = body.group;
+  actor.family = body.family;
+  actor.kind = body.shape->kind;
+  actor.radius = actor.kind == ShapeKind::sphere ? body.shape->radius : 0.0;
+  if (!way || way->begin <= 0.0) {
+    actor.times.push_back(0.0);
+    actor.poses.push_back(start_of(body, births).pose);
+  }
+  for (const body::Waypoint& point : way ? way->points : std::vector<body::Waypoint>{}) {
+    actor.times.push_back(point.time);
+    actor.poses.push_back(point.pose);
+  }
+  if (!way || way->end >= 1.0) {
+    actor.times.push_back(1.0);
+    actor.poses.push_back(body.pose);
+  }
+  actor.start = actor.poses.front();
+  actor.end = actor.poses.back();
+  actor.is_moving = actor.times.size() > 2 || !is_same(actor.start, actor.end);
+  const auto known = known_.find(body.id);
+  actor.is_new = known == known_.end() || known->second != body.shape;
+  actor.surface = surface_of(body.shape);
+  return actor;
+}
+
 std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
                                              std::span<const Birth> births, std::span<const body::Way> ways) {
-  std::vector<Actor> actors(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const body::Body& body = bodies[i];
-    Actor& actor = actors[i];
-    actor.id = body.id;
-    actor.is_dynamic = body.is_dynamic();
-    actor.group = body.group;
-    actor.family = body.family;
-    actor.kind = body.shape->kind;
-    actor.radius = actor.kind == ShapeKind::sphere ? body.shape->radius : 0.0;
-    actor.start = start_of(body, births).pose;
-    actor.end = body.pose;
-    actor.times = {0.0, 1.0};
-    actor.poses = {actor.start, actor.end};
-    const auto way = std::lower_bound(ways.begin(), ways.end(), body.id,
+  std::vector<Actor> actors;
+  const auto ended = std::find_if(ways.begin(), ways.end(), [](const body::Way& w) { return w.end < 1.0; });
+  for (const body::Body& body : bodies) {
+    const auto way = std::lower_bound(ways.begin(), ended, body.id,
                                       [](const body::Way& w, BodyId id) { return w.id < id; });
-    if (way != ways.end() && way->id == body.id) {
-      for (const body::Waypoint& point : way->points) {
-        actor.times.insert(actor.times.end() - 1, point.time);
-        actor.poses.insert(actor.poses.end() - 1, point.pose);
-      }
-    }
-    actor.is_moving = actor.times.size() > 2 || !is_same(actor.start, actor.end);
-    const auto known = known_.find(body.id);
-    actor.is_new = known == known_.end() || known->second != body.shape;
-    actor.surface = surface_of(body.shape);
+    actors.push_back(make_actor(body, way != ended && way->id == body.id ? &*way : nullptr, births));
   }
+  for (auto way = ended; way != ways.end(); ++way) actors.push_back(make_actor(*way->former, &*way, births));
+  std::stable_sort(actors.begin(), actors.end(), [](const Actor& x, const Actor& y) { return x.id < y.id; });
   core::parallel_for(actors.size(), 4, [&](std::size_t i) {
     Actor& actor = actors[i];
     if (actor.kind == ShapeKind::plane) return;
@@ -232,7 +248,7 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
     };
     const bool is_flipped = rank(*a) > rank(*b);
     if (is_flipped) std::swap(a, b);
-    const bool is_new = a->is_new || b->is_new;
+    bool is_new = a->is_new || b->is_new;
     PairResult& result = results[i];
     if (a->group >= 0 && a->group == b->group && (a->family == 0 || a->family != b->family)) {
       result.is_one_group = true;
@@ -248,23 +264,23 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
       const auto ball = [](const Actor& actor, const MovingSurface& leg) {
         return MovingBall{{leg.start.front(), leg.end.front()}, actor.radius};
       };
-      if (is_new) result.crossed_at_start = do_balls_cross_at_start(ball(*a, a->moving), ball(*b, b->moving));
       follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+        if (std::exchange(is_new, false))
+          result.crossed_at_start = do_balls_cross_at_start(ball(*a, leg_a), ball(*b, leg_b));
         audit_balls(ball(*a, leg_a), ball(*b, leg_b), is_end, result.findings);
       });
     } else if (b->kind == ShapeKind::sphere) {
-      if (is_new)
-        result.crossed_at_start =
-            crosses_sphere_at_start(*a->surface, a->moving, b->start.translation, b->radius);
       follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+        if (std::exchange(is_new, false))
+          result.crossed_at_start =
+              crosses_sphere_at_start(*a->surface, leg_a, leg_b.start.front(), b->radius);
         audit_sphere(*a->surface, leg_a, leg_b.start.front(), leg_b.end.front(), b->radius, is_end,
                      result.findings);
       });
     } else {
-      if (is_new)
-        result.crossed_at_start =
-            do_cross(*a->surface, a->moving, *b->surface, b->moving, &MovingSurface::start);
       follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+        if (std::exchange(is_new, false))
+          result.crossed_at_start = do_cross(*a->surface, leg_a, *b->surface, leg_b, &MovingSurface::start);
         audit_surfaces(*a->surface, leg_a, *b->surface, leg_b, is_end, result.findings);
       });
     }

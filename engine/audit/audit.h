@@ -67,7 +67,9 @@ class Audit {
   void begin_step(std::span<const body::Body> bodies);
 
   /// Checks the step that has ended at `time` (s). Bodies that were not there when it began start where their
-  /// parents in `births` did, or else where they are now. `ways` (ascending id) tell who did not go straight.
+  /// parents in `births` did, or else where they are now. `ways` tell who did not go straight, came to be in
+  /// the midst of the step, or (behind the others, which ascend by id) broke there: each is looked at with
+  /// the surface that it had at the time.
   void end_step(std::span<const body::Body> bodies, std::span<const Birth> births,
                 std::span<const body::Way> ways, double time);
 
@@ -84,6 +86,7 @@ class Audit {
   std::vector<Actor> make_actors(std::span<const body::Body> bodies, std::span<const Birth> births,
                                  std::span<const body::Way> ways);
   Start start_of(const body::Body& body, std::span<const Birth> births) const;
+  Actor make_actor(const body::Body& body, const body::Way* way, std::span<const Birth> births);
   std::shared_ptr<const Surface> surface_of(const std::shared_ptr<const body::Shape>& shape);
   std::vector<std::pair<int, int>> find_pairs(const std::vector<Actor>& actors) const;
   void book(std::vector<Finding>& found, bool is_exempt, double time);

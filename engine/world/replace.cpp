@@ -188,20 +188,29 @@ long count_overlaps(const BreakRow& row) {
   return geometry::count_crossing_pairs(meshes);
 }
 
-void inherit_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,
-                  const std::vector<body::Body>& bodies, std::vector<body::Way>& ways) {
+void divide_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,
+                 const std::vector<body::Body>& bodies, double time, std::vector<body::Way>& ways,
+                 std::vector<body::Way>& ended) {
+  if (time <= 0.0) return;
   for (const BreakRow& row : breaks) {
-    const auto known = std::lower_bound(ways.begin(), ways.end(), row.id,
-                                        [](const body::Way& way, body::BodyId id) { return way.id < id; });
-    if (known == ways.end() || known->id != row.id) continue;
-    const std::vector<body::Waypoint> points = known->points;
-    const Vec3 parent_origin = body::find_body(before, row.id)->shape->material_from_body;
+    const body::Body* broken = body::find_body(before, row.id);
+    if (!broken) continue;
+    const auto known =
+        std::find_if(ways.begin(), ways.end(), [&](const body::Way& way) { return way.id == row.id; });
+    body::Way way{row.id, {{time, broken->pose}}, 0.0, time, nullptr};
+    if (known != ways.end()) {
+      way.begin = known->begin;
+      way.points = std::move(known->points);
+      ways.erase(known);
+    }
+    way.former = std::make_shared<body::Body>(*broken);
+    if (way.begin < time) ended.push_back(std::move(way));
     for (const body::BodyId id : row.born) {
-      if (id == row.id) continue;
-      const Vec3 offset = body::find_body(bodies, id)->shape->material_from_body - parent_origin;
-      body::Way way{id, points};
-      for (body::Waypoint& point : way.points) point.pose.translation = point.pose.apply(offset);
-      ways.push_back(std::move(way));
+      const body::Body* piece = body::find_body(bodies, id);
+      if (!piece) continue;
+      const auto place = std::lower_bound(ways.begin(), ways.end(), id,
+                                          [](const body::Way& w, body::BodyId i) { return w.id < i; });
+      ways.insert(place, {id, {{time, piece->pose}}, time, 1.0, nullptr});
     }
   }
 }

@@ -23,9 +23,10 @@ double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double
 BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double time,
                       std::map<body::BodyId, Ancestry>& ancestry);
 
-/// Pieces that are born within a step have gone, before that, where their parents in `before` went: adds
-/// their ways. Pieces have higher ids than all bodies before them.
-void inherit_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,
-                  const std::vector<body::Body>& bodies, std::vector<body::Way>& ways);
+/// Where bodies of `before` broke, after the share `time` of the step, their ways end and go to `ended`, and
+/// those of their pieces begin. Pieces have higher ids than all bodies before them.
+void divide_ways(const std::vector<body::Body>& before, std::span<const BreakRow> breaks,
+                 const std::vector<body::Body>& bodies, double time, std::vector<body::Way>& ways,
+                 std::vector<body::Way>& ended);
 
 }  // namespace shatterbox::world

@@ -66,7 +66,8 @@ struct World::State {
   std::vector<dynamics::Blast> blasts;  // of the coming step
   std::vector<dynamics::Hand> hands;    // by their numbers
   int next_hand = 1;
-  std::vector<body::Way> ways;  // of the last step
+  std::vector<body::Way> ways;        // of the last step
+  std::vector<body::Way> ended_ways;  // of this one, of bodies that broke
   std::map<body::BodyId, Ancestry> ancestry;
   ElementStress element_stress;
   WorldReport report;

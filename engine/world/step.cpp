@@ -130,6 +130,7 @@ bool World::step() {
   s.begin = note_begin();
   s.borne.clear();
   s.log.clear();
+  s.ended_ways.clear();
   dynamics::ContactReport contact;
   MovingState snapshot;
   try {
@@ -144,6 +145,7 @@ bool World::step() {
   s.blasts.clear();
   for (dynamics::Hand& hand : s.hands) hand.velocity.setZero();
   s.ways = std::move(contact.ways);
+  s.ways.insert(s.ways.end(), s.ended_ways.begin(), s.ended_ways.end());
   book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
   book_scripted(s.moving.bodies, s.report.scripted);
   s.factors.clear_out(s.moving.fragiles, s.ancestry);
@@ -196,7 +198,9 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
       tell_watcher("fracture", part, pass);
       if (goes_back) {
         ++pass;
-        inherit_ways(before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies, contact.ways);
+        if (s.contact_settings.has_ways)
+          divide_ways(before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies,
+                      static_cast<double>(part.number) / part.count, contact.ways, s.ended_ways);
         if (part.number == 0) part.count = std::max(part.count, count_parts());
         continue;
       }

@@ -113,8 +113,8 @@ class World {
   Ancestry ancestry(body::BodyId id) const;
   StressPicture stress_picture(body::BodyId id) const;
   const WorldReport& report() const;
-  /// Of bodies that did not go straight through the last step, ascending by id; none unless `keep_ways` was
-  /// called.
+  /// Of bodies that did not go straight through the last step, ascending by id, and behind them of those that
+  /// broke in the midst of it; none unless `keep_ways` was called.
   std::span<const body::Way> ways() const;
   /// Impulses of the last step, of the pass that was kept.
   const body::ImpulseLog& impulse_log() const;

@@ -196,6 +196,46 @@ TEST_CASE("audit: a body is followed along its way, not only from where it was t
   CHECK(go(ball, {above, Vec3(0, 0.2, 0), above}).passages > 0);
 }
 
+TEST_CASE("audit: who breaks in the midst of a step has until then the surface that it had") {
+  // A shard goes down, turns aside and on. It meets the plate's middle before the middle of the step, and
+  // what the plate leaves of itself, far off, after it.
+  const Vec3 off(5, 0, 0);
+  const Body whole = test::make_plate(1, kPlate);
+  Body piece = test::make_plate(3, {kPlate[0] + off, kPlate[1] + off, kPlate[2] + off});
+  const Body shard = test::make_plate(2, {Vec3(0, 0, 0), Vec3(0.5, 1, 0), Vec3(0, 1, 1)});
+  const auto go = [&](const std::vector<Vec3>& stations, bool is_told) {
+    Audit audit;
+    std::vector<Body> bodies{whole, shard};
+    bodies[1].pose.translation = stations.front();
+    audit.begin_step(bodies);
+    audit.end_step(bodies, {}, {}, 0.1);
+    audit.begin_step(bodies);
+    bodies = {shard, piece};
+    bodies[0].pose.translation = stations.back();
+    std::vector<body::Way> ways{{2, {}}};
+    for (std::size_t k = 1; k + 1 < stations.size(); ++k) {
+      const double time = static_cast<double>(k) / static_cast<double>(stations.size() - 1);
+      ways[0].points.push_back({time, {Quat::Identity(), stations[k]}});
+    }
+    if (is_told) {
+      ways.push_back({3, {{0.5, piece.pose}}, 0.5, 1.0, nullptr});
+      ways.push_back({1, {{0.5, whole.pose}}, 0.0, 0.5, std::make_shared<Body>(whole)});
+    }
+    audit.end_step(bodies, std::vector<Birth>{{3, 1}}, ways, 0.2);
+    return audit.report();
+  };
+  const Vec3 above(0, 2, 0), below(0, -2, 0), over_piece = above + off, under_piece = below + off;
+  const auto through_whole = go({above, below, below, below, below}, true);
+  CHECK(through_whole.passages > 0);
+  CHECK(go({above, above, above, below, below}, true).passages == 0);
+  const auto through_piece = go({over_piece, over_piece, over_piece, under_piece, under_piece}, true);
+  CHECK(through_piece.passages > 0);
+  CHECK(through_piece.exempt_pairs == 0);
+  // Where the piece is now, there was nothing before.
+  CHECK(go({over_piece, under_piece, under_piece, under_piece, under_piece}, true).passages == 0);
+  CHECK(go({over_piece, under_piece, under_piece, under_piece, under_piece}, false).passages > 0);
+}
+
 TEST_CASE("audit: a crossing that does not move is counted in every step") {
   Audit audit;
   std::vector<Body> bodies{test::make_plate(1, kPlate),

@@ -72,3 +72,44 @@ TEST_CASE("cracks cannot take more than there is, and nothing from bodies that p
   CHECK(before - energy(moving) == Approx(paid));
   CHECK(world::pay_for_cracks(moving, make_impact(), 1.0, log) == Approx(0.0).margin(1e-12));
 }
+
+TEST_CASE("ways of bodies end where they break, and those of their pieces begin there") {
+  const std::vector<body::Body> before{make_ball(1, 1.0), make_ball(2, 1.0)};
+  std::vector<body::Body> after{make_ball(2, 1.0), make_ball(3, 0.5), make_ball(4, 0.5)};
+  after[1].pose.translation = Vec3(1, 2, 3);
+  std::vector<world::BreakRow> breaks(1);
+  breaks[0].id = 1;
+  breaks[0].born = {3, 4};
+  std::vector<body::Way> ways{{1, {{0.25, {}}, {0.5, {}}}}, {2, {{0.5, {}}}}}, ended;
+  world::divide_ways(before, breaks, after, 0.0, ways, ended);  // at the step's start there is no way yet
+  CHECK(ended.empty());
+  world::divide_ways(before, breaks, after, 0.5, ways, ended);
+  REQUIRE(ended.size() == 1);
+  CHECK(ended[0].id == 1);
+  CHECK(ended[0].begin == 0.0);
+  CHECK(ended[0].end == 0.5);
+  CHECK(ended[0].points.size() == 2);
+  CHECK(ended[0].former->shape == before[0].shape);
+  REQUIRE(ways.size() == 3);
+  CHECK(ways[0].id == 2);
+  CHECK(ways[1].id == 3);
+  CHECK(ways[1].begin == 0.5);
+  REQUIRE(ways[1].points.size() == 1);
+  CHECK(ways[1].points[0].pose.translation == Vec3(1, 2, 3));
+
+  // What is born and breaks at one and the same time has no way.
+  breaks[0].id = 3;
+  breaks[0].born = {5};
+  world::divide_ways(after, breaks, {make_ball(5, 0.5)}, 0.5, ways, ended);
+  CHECK(ended.size() == 1);
+  REQUIRE(ways.size() == 3);
+  CHECK(ways[2].id == 5);
+
+  // Who stood still until it broke has one all the same.
+  breaks[0].id = 1;
+  breaks[0].born = {6};
+  world::divide_ways(before, breaks, {make_ball(6, 1.0)}, 0.75, ways, ended);
+  REQUIRE(ended.size() == 2);
+  CHECK(ended[1].end == 0.75);
+  CHECK(ended[1].points.size() == 1);
+}
