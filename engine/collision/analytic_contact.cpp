@@ -20,6 +20,7 @@ void add_sphere_sphere(const Shape& a, const Pose& pose_a, const Shape& b, const
   c.gap = distance - a.radius - b.radius;
   c.on_a = pose_a.translation - a.radius * c.normal;
   c.on_b = pose_b.translation + b.radius * c.normal;
+  c.normal_of = NormalOf::ball;
 }
 
 // The sphere is a.
@@ -30,6 +31,7 @@ void add_sphere_box(const Shape& a, const Pose& pose_a, const Shape& b, const Po
   c.on_b = pose_b.apply(nearest.closest);
   c.on_a = pose_a.translation - a.radius * c.normal;
   c.lean = 1.0;
+  c.normal_of = NormalOf::ball;
 }
 
 struct Axis {
@@ -117,6 +119,7 @@ void add_face_contacts(const PlacedBox& reference, int axis, const Vec3& outward
     const Vec3 on_reference = polygon[i] - gap * outward;
     c.gap = gap;
     c.normal = reference_is_a ? Vec3(-outward) : outward;
+    c.normal_of = reference_is_a ? NormalOf::face_a : NormalOf::face_b;
     c.on_a = reference_is_a ? on_reference : polygon[i];
     c.on_b = reference_is_a ? polygon[i] : on_reference;
     out.push_back(c);
@@ -146,6 +149,7 @@ void add_edge_contact(const PlacedBox& a, const PlacedBox& b, const Axis& axis, 
   c.on_b = nearest.on_q;
   c.normal = axis.normal;
   c.gap = axis.normal.dot(c.on_a - c.on_b);
+  set_crossing_edges(half_a, half_b, c);
   out.push_back(c);
 }
 
@@ -203,12 +207,7 @@ bool is_analytic_pair(ShapeKind a, ShapeKind b) {
   return is_solid(a) && is_solid(b);
 }
 
-void find_analytic_contacts(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
-                            double margin, std::vector<Contact>& out) {
-  if (a.kind == ShapeKind::box && b.kind == ShapeKind::box) {
-    add_box_box(a, pose_a, b, pose_b, margin, out);
-    return;
-  }
+Contact find_ball_contact(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
   Contact c;
   if (a.kind == ShapeKind::sphere && b.kind == ShapeKind::sphere) {
     add_sphere_sphere(a, pose_a, b, pose_b, c);
@@ -220,6 +219,16 @@ void find_analytic_contacts(const Shape& a, const Pose& pose_a, const Shape& b, 
     c.normal = -c.normal;
     c.lean = 0.0;
   }
+  return c;
+}
+
+void find_analytic_contacts(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                            double margin, std::vector<Contact>& out) {
+  if (a.kind == ShapeKind::box && b.kind == ShapeKind::box) {
+    add_box_box(a, pose_a, b, pose_b, margin, out);
+    return;
+  }
+  const Contact c = find_ball_contact(a, pose_a, b, pose_b);
   if (c.gap <= margin) out.push_back(c);
 }
 
@@ -230,10 +239,9 @@ double analytic_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
     normal = axis.normal;
     return axis.gap;
   }
-  std::vector<Contact> contacts;
-  find_analytic_contacts(a, pose_a, b, pose_b, 1e300, contacts);
-  normal = contacts.front().normal;
-  return contacts.front().gap;
+  const Contact c = find_ball_contact(a, pose_a, b, pose_b);
+  normal = c.normal;
+  return c.gap;
 }
 
 }  // namespace shatterbox::collision

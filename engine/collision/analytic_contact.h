@@ -24,6 +24,9 @@ bool is_analytic_pair(body::ShapeKind a, body::ShapeKind b);
 void find_analytic_contacts(const body::Shape& a, const Pose& pose_a, const body::Shape& b,
                             const Pose& pose_b, double margin, std::vector<Contact>& out);
 
+/// The one contact of a sphere with a sphere or a box, however far apart.
+Contact find_ball_contact(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b);
+
 /// A lower bound of the distance of such a pair, negative when they overlap; `normal` gets its direction (b
 /// to a).
 double analytic_gap(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b,

@@ -1,8 +1,39 @@
 #include "engine/collision/contact.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace shatterbox::collision {
+
+void set_crossing_edges(const Vec3& edge_a, const Vec3& edge_b, Contact& contact) {
+  constexpr double kLeastSine = 0.03, kAcross = 0.9999;
+  contact.edge_a = edge_a.normalized();
+  contact.edge_b = edge_b.normalized();
+  const Vec3 across = contact.edge_a.cross(contact.edge_b);
+  const double sine = across.norm();
+  if (sine > kLeastSine && std::abs(across.dot(contact.normal)) > kAcross * sine)
+    contact.normal_of = NormalOf::edges;
+}
+
+Vec3 turned_normal(const Contact& contact, const Mat3& turn_a, const Mat3& turn_b) {
+  switch (contact.normal_of) {
+    case NormalOf::place:
+    case NormalOf::ball:
+      return contact.normal;
+    case NormalOf::face_a:
+      return turn_a * contact.normal;
+    case NormalOf::face_b:
+      return turn_b * contact.normal;
+    case NormalOf::edges: {
+      const Vec3 across = (turn_a * contact.edge_a).cross(turn_b * contact.edge_b);
+      const double length = across.norm();
+      if (length < 1e-9) return contact.normal;  // turned until they are parallel
+      const bool is_flipped = contact.edge_a.cross(contact.edge_b).dot(contact.normal) < 0.0;
+      return across / (is_flipped ? -length : length);
+    }
+  }
+  return contact.normal;
+}
 
 void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint64_t>& loaded_keys,
                      double loaded_reach, double radius, std::size_t cap) {

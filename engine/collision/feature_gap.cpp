@@ -13,6 +13,12 @@ namespace {
 
 using core::at;
 
+// Where impulses of the pair act (Contact::lean): at the vertex, as it slides over the triangle.
+double lean(const FeaturePair& pair) {
+  if (pair.kind == FeatureKind::edge_edge) return 0.5;
+  return pair.kind == FeatureKind::vertex_triangle ? 1.0 : 0.0;
+}
+
 // No neighbour of `vertex` leads along `direction` by more than the slack.
 bool leads_away_at_vertex(const Collider& c, const std::vector<Vec3>& positions, int vertex,
                           const Vec3& direction, double slack) {
@@ -217,9 +223,20 @@ PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, do
   return result;
 }
 
-double lean(const FeaturePair& pair) {
-  if (pair.kind == FeatureKind::edge_edge) return 0.5;
-  return pair.kind == FeatureKind::vertex_triangle ? 1.0 : 0.0;
+Contact contact_here(const FeaturePair& features, const FeaturePoints& here, const FeatureGap& gap) {
+  Contact c;
+  c.key = features.key();
+  c.on_a = gap.on_a;
+  c.on_b = gap.on_b;
+  c.normal = gap.normal;
+  c.gap = gap.gap;
+  c.lean = lean(features);
+  if (here.is_edge_edge) {
+    set_crossing_edges(here.points[1] - here.points[0], here.points[3] - here.points[2], c);
+  } else if (gap.weights[1] > 0.0 && gap.weights[2] > 0.0 && gap.weights[3] > 0.0) {
+    c.normal_of = here.is_flipped ? NormalOf::face_a : NormalOf::face_b;
+  }
+  return c;
 }
 
 Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& start, const FeatureGap& hit) {

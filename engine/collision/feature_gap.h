@@ -63,8 +63,8 @@ struct PathResult {
 PathResult follow_paths(const FeaturePoints& start, const FeaturePoints& end, double least, const Vec3& hint,
                         const FeatureGap* start_gap = nullptr);
 
-/// Where impulses of the pair act (Contact::lean): at the vertex, as it slides over the triangle.
-double lean(const FeaturePair& pair);
+/// Features that are near as a contact: `here` are the pair's points, `gap` their gap.
+Contact contact_here(const FeaturePair& features, const FeaturePoints& here, const FeatureGap& gap);
 
 /// A hit on the path as a contact seen from the start: the material points of both bodies that will meet, and
 /// their distance along the direction in which they will. `start` are the pair's points there, `hit` its gap

@@ -4,6 +4,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/dynamics/contact_place.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -21,21 +22,18 @@ SolverContact make_solver_contact(const PairState& memory, const MotionWork& wor
   c.a = pair.a;
   c.b = pair.b;
   c.pair = pair_number;
-  c.key = found.key;
+  c.found = found;
   c.friction = pair.material.friction;
   c.restitution = pair.material.restitution;
   c.rolling = pair.material.rolling_friction;
   c.kept_gap = pair.kept_gap;
   c.threshold = pair.threshold;
-  c.normal = found.normal;
   int axis = 0;
-  c.normal.cwiseAbs().minCoeff(&axis);
-  c.tangent_u = c.normal.cross(Vec3::Unit(axis)).normalized();
-  c.tangent_v = c.normal.cross(c.tangent_u);
+  found.normal.cwiseAbs().minCoeff(&axis);
+  c.tangent_start = found.normal.cross(Vec3::Unit(axis)).normalized();
+  reset_axes(c);
   c.arm_a_start = found.on_a - a.start.translation;
   c.arm_b_start = found.on_b - b.start.translation;
-  c.gap_start = found.gap;
-  c.lean = found.lean;
   c.has_sides = pair.has_sides;
   c.is_close = pair.is_close;
   c.can_creep = a.is_quiet && b.is_quiet && !body::is_round(a.shape->kind) && !body::is_round(b.shape->kind);

@@ -74,14 +74,17 @@ void IslandSolver::strike() {
         if (c.slack > kStruck * c.kept_gap) continue;
         speed = -relative_velocity(c)[0];
         if (c.restitution * speed <= c.threshold) continue;
-        c.is_arriving = true;  // though it stays a contact, to those who judge what it bears
       }
-      keep_impulse(c);
-      c.impulse.setZero();
       c.target = c.restitution * speed;
       struck_.push_back(k);
     }
     if (struck_.empty()) return;
+    if (round > 0) leave_softer();
+    for (const std::size_t k : struck_) {
+      contact(k).is_arriving = true;  // though it stays a contact, to those who judge what it bears
+      keep_impulse(contact(k));
+      contact(k).impulse.setZero();
+    }
     hardest_first();
     bounce_together();
     for (const std::size_t k : struck_) {
@@ -90,6 +93,13 @@ void IslandSolver::strike() {
       contact(k).arrival_speed = 0.0;
     }
   }
+}
+
+// Balls of a row drift: in one round with the hit that runs through it they would share its blow.
+void IslandSolver::leave_softer() {
+  double most = 0.0;
+  for (const std::size_t k : struck_) most = std::max(most, contact(k).target);
+  std::erase_if(struck_, [&](std::size_t k) { return contact(k).target < kAlike * most; });
 }
 
 // Friction's answer depends on who is asked first: that must not be who has the lower number, nor rounding.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/index.h"
+#include "engine/dynamics/contact_place.h"
 #include "engine/dynamics/island_solver.h"
 
 namespace shatterbox::dynamics {
@@ -12,25 +13,12 @@ namespace {
 using core::at;
 
 // Bodies that no impulse moves are shared by islands: their motion is known after any substep.
-struct Moved {
-  Vec3 way;
-  Mat3 turn;
-};
-
 Moved moved(const WorkBody& body, int substeps) {
   if (body.inverse_mass > 0.0) return {body.way, body.turn};
   if (body.rides.empty() || substeps == 0) return {Vec3::Zero(), Mat3::Identity()};
   const WorkBody::Ride& ride = body.rides[at(substeps - 1)];
   if (body.shape->kind == body::ShapeKind::sphere) return {ride.way, Mat3::Identity()};
   return {ride.way, ride.turn.toRotationMatrix()};
-}
-
-// An arm of `w` whose contact lies in the direction `outwards`. What is radius of a capsule's does not turn:
-// it touches with whatever point is lowest.
-Vec3 turned(const WorkBody& w, const Moved& moved, const Vec3& arm, const Vec3& outwards) {
-  if (w.shape->kind != body::ShapeKind::capsule) return moved.turn * arm;
-  const Vec3 round = w.shape->radius * outwards;
-  return moved.turn * (arm - round) + round;
 }
 
 }  // namespace
@@ -131,6 +119,8 @@ void IslandSolver::begin() {
     c.warm = c.warm_start;
     c.held_from = -c.creep_before;
     c.arrival_speed = c.arrival_before;
+    c.impulse.setZero();
+    reset_axes(c);
     c.total.setZero();
     c.moment_point.setZero();
     c.moment_a.setZero();
@@ -194,15 +184,13 @@ void IslandSolver::prepare(int substeps) {
     SolverContact& c = work_.contacts[at(i)];
     const WorkBody &a = body(c.a), &b = body(c.b);
     const Moved ma = moved(a, substeps), mb = moved(b, substeps);
-    const Vec3 turned_a = turned(a, ma, c.arm_a_start, -c.normal),
-               turned_b = turned(b, mb, c.arm_b_start, c.normal);
-    const Vec3 change = (ma.way - mb.way) + (turned_a - c.arm_a_start) - (turned_b - c.arm_b_start);
-    c.change = change;
-    const double gap = c.gap_start + c.normal.dot(change);
-    c.slack = gap - c.kept_gap;
+    const PlacedContact now = place_contact(a, ma, b, mb, c.found);
+    turn_axes(c, now.normal);
+    c.change = (ma.way - mb.way) + (now.arm_a - c.arm_a_start) - (now.arm_b - c.arm_b_start);
+    c.slack = now.gap - c.kept_gap;
     // One point for both bodies, seen from both centres.
     const Vec3 centre_a = a.start.translation + ma.way, centre_b = b.start.translation + mb.way;
-    c.point = c.lean * (centre_a + turned_a) + (1.0 - c.lean) * (centre_b + turned_b);
+    c.point = c.found.lean * (centre_a + now.arm_a) + (1.0 - c.found.lean) * (centre_b + now.arm_b);
     c.arm_a = c.point - centre_a;
     c.arm_b = c.point - centre_b;
     const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};

@@ -269,7 +269,7 @@ class Guard {
     const PairState& memory = state_.pairs[at(work_.pairs[at(pair_number)].state)];
     const SolverContact fresh = make_solver_contact(memory, work_, pair_number, found);
     const auto same = std::find_if(work_.contacts.begin(), work_.contacts.end(), [&](const SolverContact& c) {
-      return c.pair == pair_number && c.key == found.key;
+      return c.pair == pair_number && c.found.key == found.key;
     });
     if (same != work_.contacts.end())
       *same = fresh;

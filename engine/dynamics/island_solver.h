@@ -64,6 +64,7 @@ class IslandSolver {
   void find_late_arrivals();
   void arrive(SolverContact& c, double speed, double time);
   void strike();
+  void leave_softer();
   void hardest_first();
   void bounce_together();
   void bounce();
@@ -192,8 +193,9 @@ class IslandSolver {
   static constexpr double kFastSpin = 0.005;    // rad a substep
   static constexpr double kStruck = 0.5;        // of the kept gap: what is so near is struck at once
   static constexpr int kMostStrikes = 64;       // one after the other, of one hit
-  static constexpr double kRanks = 1e6;         // speeds that differ by less are alike
-  static constexpr int kMostCuts = 8;           // of a substep
+  static constexpr double kAlike = 0.1;  // of the hardest of a round: what is softer waits for the next
+  static constexpr double kRanks = 1e6;  // speeds that differ by less are alike
+  static constexpr int kMostCuts = 8;    // of a substep
   static constexpr double kLeastPart = 1.0 / 1024.0;  // of a substep
   static constexpr int kJointSweeps = 8;              // of an island with joints in which nothing arrives
 

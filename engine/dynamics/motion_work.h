@@ -83,19 +83,18 @@ inline constexpr double kNoDistance = 1e-9;
 struct SolverContact {
   int a = 0, b = 0;  // numbers of the bodies
   int pair = 0;
-  std::uint64_t key = 0;
   double friction = 0.0, restitution = 0.0, rolling = 0.0;
   double kept_gap = 0.0;    // m
   double threshold = 0.0;   // m/s: slower closing does not bounce
   bool was_loaded = false;  // in the last step
 
-  Vec3 normal = Vec3::UnitY();
-  Vec3 tangent_u = Vec3::UnitX(), tangent_v = Vec3::UnitZ();
+  collision::Contact found;                                     // at the start of the step
+  Vec3 tangent_start = Vec3::UnitX();                           // unit, across `found.normal`
   Vec3 arm_a_start = Vec3::Zero(), arm_b_start = Vec3::Zero();  // m
-  double gap_start = 0.0;                                       // m
-  double lean = 0.5;                                            // as Contact::lean
 
   // At the present pose.
+  Vec3 normal = Vec3::UnitY();
+  Vec3 tangent_u = Vec3::UnitX(), tangent_v = Vec3::UnitZ();
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero(), point = Vec3::Zero();
   Mat3 response = Mat3::Zero();   // relative velocity by impulse, in (normal, tangents), 1/kg
   Vec3 weights = Vec3::Zero();    // 1 / diagonal of it, kg

@@ -5,6 +5,7 @@
 
 #include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
+#include "engine/dynamics/contact_place.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -38,6 +39,12 @@ void give(MotionWork& work, const Opening& o, double size, double closing, body:
   work.continuous_log.push_back(entry);
 }
 
+Moved moved_to(const WorkBody& w, const Pose& pose) {
+  const Vec3 way = pose.translation - w.start.translation;
+  if (w.shape->kind == body::ShapeKind::sphere) return {way, Mat3::Identity()};
+  return {way, pose.rotation.toRotationMatrix() * w.start.rotation.toRotationMatrix().transpose()};
+}
+
 struct PlaceOnWay {
   Vec3 centre_a, centre_b, on_a, on_b, normal;
   double gap = 0.0;  // m
@@ -56,10 +63,9 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
     const collision::FeatureGap found = collision::measure(points, contact.normal);
     return {pose_a.translation, pose_b.translation, found.on_a, found.on_b, found.normal, found.gap};
   }
-  PlaceOnWay meeting{pose_a.translation, pose_b.translation, carry(a, contact.on_a, a.start, pose_a),
-                     carry(b, contact.on_b, b.start, pose_b), contact.normal};
-  meeting.gap = contact.normal.dot(meeting.on_a - meeting.on_b);
-  return meeting;
+  const PlacedContact there = place_contact(a, moved_to(a, pose_a), b, moved_to(b, pose_b), contact);
+  const Vec3 on_a = pose_a.translation + there.arm_a, on_b = pose_b.translation + there.arm_b;
+  return {pose_a.translation, pose_b.translation, on_a, on_b, there.normal, there.gap};
 }
 
 }  // namespace

@@ -33,17 +33,6 @@ constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks l
 constexpr double kClose = 0.5;         // of the usual gap: there is hardly room for what sweeps leave
 constexpr double kImpactWindow = 0.1;  // share of the step after the first hit in which others count
 
-Contact make_contact(const collision::FeaturePair& features, const collision::FeatureGap& gap) {
-  Contact c;
-  c.key = features.key();
-  c.on_a = gap.on_a;
-  c.on_b = gap.on_b;
-  c.normal = gap.normal;
-  c.gap = gap.gap;
-  c.lean = collision::lean(features);
-  return c;
-}
-
 struct Hit {
   double time;
   Contact contact;
@@ -153,7 +142,7 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
       if (gap.gap <= kAlwaysNear * usual_gap ||
           collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
                                       kLocalSlack)) {
-        pair.contacts.push_back(make_contact(features, gap));
+        pair.contacts.push_back(collision::contact_here(features, start, gap));
         pair.is_free_certified = false;
         continue;
       }

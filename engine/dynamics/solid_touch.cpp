@@ -87,6 +87,7 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
         c.on_b = carry(b.body, c.on_b, pose_b, b.body.start);
         c.gap = c.normal.dot(c.on_a - c.on_b);
         c.is_time_of_impact = true;
+        c.normal_of = collision::NormalOf::place;
       }
       result.has_touched = true;
       result.time = time;

@@ -30,14 +30,18 @@ constexpr int kCrowdParts = 2;  // of one after which, of so many awake bodies, 
 constexpr int kCrowdHits = 5;   // and at least so many in all
 constexpr int kLeastHits = 50;
 
+// Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
+bool has_impulse(const SolverContact& c) {
+  return c.impulse_a.squaredNorm() > 0.0 && c.impulse_b.squaredNorm() > 0.0;
+}
+
 void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body::ImpulseLog& log) {
   std::vector<char> pair_collides(work.pairs.size(), 0);
   for (const SolverContact& c : work.contacts) {
     if (c.closing_speed > c.threshold && !c.was_loaded) pair_collides[at(c.pair)] = 1;
   }
   for (const SolverContact& c : work.contacts) {
-    // Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
-    if (!(c.impulse_a.squaredNorm() > 0.0) || !(c.impulse_b.squaredNorm() > 0.0)) continue;
+    if (!has_impulse(c)) continue;
     body::LoggedImpulse entry;
     entry.kind = pair_collides[at(c.pair)] && !c.was_loaded ? ImpulseKind::collision : ImpulseKind::contact;
     entry.body_a = bodies[at(c.a)].id;
@@ -82,10 +86,10 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
   }
   for (const SolverContact& c : work.contacts) {
     PairState& memory = state.pairs[at(work.pairs[at(c.pair)].state)];
-    const bool is_loaded = c.total.squaredNorm() > 0.0;
+    const bool is_loaded = has_impulse(c);
     memory.is_touching = memory.is_touching || is_loaded || c.slack <= c.kept_gap;
     const Vec3 crept = is_loaded ? Vec3(c.change - c.held_from) : Vec3::Zero();
-    memory.contacts.push_back({c.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v,
+    memory.contacts.push_back({c.found.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v,
                                crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded});
   }
   for (const WorkPair& pair : work.pairs) {

@@ -47,6 +47,22 @@ TEST_CASE("as many balls leave an elastic row as hit it, whether they touch or n
       }
 }
 
+TEST_CASE("a hit runs through a row whose balls drift") {
+  // What drifts towards another by a fraction of a millimetre a second must not share the blow.
+  for (const int rate : {60, 240, 960})
+    for (const double drift : {2e-4, 1e-3, 1e-2})
+      for (const int drifter : {2, 3, 4}) {
+        test::Scene scene = row_scene(5, 1, 1e-5, 1.0, rate);
+        // They meet just when the hit comes.
+        for (int k = drifter; k <= 5; ++k)
+          scene.bodies[static_cast<std::size_t>(k)].pose.translation.x() += 0.1037 * drift;
+        for (int k = drifter; k <= 5; ++k) scene.bodies[static_cast<std::size_t>(k)].velocity.x() = -drift;
+        for (int i = 0; i < rate / 2; ++i) scene.step();
+        INFO(rate << " steps a second, ball " << drifter << " and those behind it drift at " << drift);
+        CHECK(scene.bodies.back().velocity.x() == Approx(1.0).margin(2e-3 + 2.0 * drift));
+      }
+}
+
 TEST_CASE("of a row that is not elastic the last ball has what ball by ball is handed on") {
   for (const int rate : {60, 240})
     for (const double restitution : {0.5, 0.9}) {
