@@ -40,18 +40,18 @@ std::array<Vec3, 4> shape_gradients(const geometry::TetMesh& mesh, int element) 
 }  // namespace
 
 struct CrackGuide::Factor {
-  stress::FrontTree tree;
+  std::shared_ptr<const stress::FrontTree> tree;
   std::optional<stress::FrontFactor> factor;
 
   /// |nodes|: unknown, -1 for none.
-  const std::vector<int>& number() const { return tree.node_place; }
+  const std::vector<int>& number() const { return tree->node_place; }
 
   /// Solves in place, by unknown.
   std::vector<double> solve(std::vector<double> load) const {
-    stress::SolveLanes x(tree, 1);
+    stress::SolveLanes x(*tree, 1);
     x.values = std::move(load);
-    solve_forward(tree, *factor, x);
-    solve_backward(tree, *factor, x);
+    solve_forward(*tree, *factor, x);
+    solve_backward(*tree, *factor, x);
     return std::move(x.values);
   }
 };
@@ -74,19 +74,32 @@ void settle_near_nodes(const geometry::TetMesh& mesh, const std::vector<double>&
       field[v] = std::max(kOnNode * change[v], 1e-300);
 }
 
-CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements,
-                       const std::vector<int>& vertex_rank)
-    : mesh_(mesh), elements_(std::move(elements)), factor_(std::make_unique<Factor>()) {
+GuideTrees::GuideTrees(const std::vector<int>& vertex_rank) : order_(vertex_rank.size()) {
+  for (Size v = 0; v < order_.size(); ++v) order_[at(vertex_rank[v])] = static_cast<int>(v);
+}
+
+std::shared_ptr<const stress::FrontTree> GuideTrees::of(const geometry::TetMesh& mesh,
+                                                        const std::vector<GuideElement>& elements) {
+  if (last_ && std::equal(elements.begin(), elements.end(), elements_of_last_.begin(),
+                          elements_of_last_.end(),
+                          [](const GuideElement& own, int other) { return own.element == other; }))
+    return last_;
   stress::NodeGraph graph;
   graph.element_unknowns = {1, 1, 1, 1, 0, 0};
-  graph.node_size.assign(mesh_.positions.size(), 1);
-  for (const GuideElement& e : elements_) {
-    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
+  graph.node_size.assign(mesh.positions.size(), 1);
+  elements_of_last_.clear();
+  for (const GuideElement& e : elements) {
+    const geometry::Tetrahedron& t = mesh.tetrahedra[at(e.element)];
     graph.elements.push_back({t[0], t[1], t[2], t[3], -1, -1});
+    elements_of_last_.push_back(e.element);
   }
-  std::vector<int> order(vertex_rank.size());
-  for (Size v = 0; v < order.size(); ++v) order[at(vertex_rank[v])] = static_cast<int>(v);
-  factor_->tree = build_front_tree(graph, order);
+  last_ = std::make_shared<const stress::FrontTree>(build_front_tree(graph, order_));
+  return last_;
+}
+
+CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements, GuideTrees& trees)
+    : mesh_(mesh), elements_(std::move(elements)), factor_(std::make_unique<Factor>()) {
+  factor_->tree = trees.of(mesh_, elements_);
 
   using Entries = std::array<double, 10>;  // of an element: lower triangle, column after column
   std::vector<Entries> entries(elements_.size());
@@ -103,8 +116,8 @@ CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> 
   });
   double trace = 0.0;
   for (const Entries& e : entries) trace += (e[0] + e[4]) + (e[7] + e[9]);
-  const std::vector<double> hold(at(factor_->tree.unknowns), kHold * trace / factor_->tree.unknowns);
-  factor_->factor = stress::FrontFactor::make(factor_->tree, hold, [&](int e) {
+  const std::vector<double> hold(at(factor_->tree->unknowns), kHold * trace / factor_->tree->unknowns);
+  factor_->factor = stress::FrontFactor::make(*factor_->tree, hold, [&](int e) {
     return stress::ElementEntries{entries[at(e)].data(), 1.0};
   });
 }
@@ -117,7 +130,7 @@ std::vector<double> CrackGuide::potential(int element, const Vec3& place, const 
   const geometry::Tetrahedron& start = mesh_.tetrahedra[at(element)];
   if (!factor_->factor) return std::vector<double>(mesh_.positions.size(), 0.0);
   const std::vector<int>& number = factor_->number();
-  std::vector<double> source(at(factor_->tree.unknowns), 0.0);
+  std::vector<double> source(at(factor_->tree->unknowns), 0.0);
   for (const GuideElement& e : elements_) {
     const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
     const bool is_near = std::any_of(

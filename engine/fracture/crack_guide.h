@@ -13,6 +13,10 @@
 #include "engine/core/vec.h"
 #include "engine/geometry/tet_mesh.h"
 
+namespace shatterbox::stress {
+struct FrontTree;
+}
+
 namespace shatterbox::fracture {
 
 /// An element of the piece, and how it conducts.
@@ -22,12 +26,26 @@ struct GuideElement {
   Mat3 conduction = Mat3::Identity();  // symmetric, positive definite
 };
 
+/// Elimination trees of guides: of pieces of the same elements they are the same, one generation after the
+/// other.
+class GuideTrees {
+ public:
+  /// `vertex_rank` (|nodes of the mesh|): a good order of elimination (stress/elimination_order.h).
+  explicit GuideTrees(const std::vector<int>& vertex_rank);
+
+  std::shared_ptr<const stress::FrontTree> of(const geometry::TetMesh& mesh,
+                                              const std::vector<GuideElement>& elements);
+
+ private:
+  std::vector<int> order_;  // |nodes|, first eliminated first
+  std::shared_ptr<const stress::FrontTree> last_;
+  std::vector<int> elements_of_last_;
+};
+
 class CrackGuide {
  public:
-  /// `elements` hang together by faces and come ascending; `vertex_rank` (|nodes of the mesh|): a good order
-  /// of elimination (stress/elimination_order.h).
-  CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements,
-             const std::vector<int>& vertex_rank);
+  /// `elements` hang together by faces and come ascending; `trees` are those of the mesh.
+  CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> elements, GuideTrees& trees);
   ~CrackGuide();
   CrackGuide(CrackGuide&&) noexcept;
 

@@ -186,13 +186,14 @@ class SolidDecider {
     decision_.verdict.reason = "it is dented, and not gone through";
   }
 
-  SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) const {
+  SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) {
     SolidTracerSetup setup;
     setup.solved = {&mesh, &force_.displacement()};
     setup.guides.stresses = &stresses_;
     setup.guides.pieces = &pieces_;
     setup.guides.turns = &turns_;
-    setup.guides.vertex_rank = &model().stiffness->vertex_rank.of(*model().mesh.elements);
+    if (!trees_) trees_.emplace(model().stiffness->vertex_rank.of(*model().mesh.elements));
+    setup.guides.trees = &*trees_;
     setup.guides.strength = subject_.material.strength;
     setup.material = &subject_.material;
     setup.grains = subject_.grains.get();
@@ -267,6 +268,7 @@ class SolidDecider {
   SolidForce force_;
   SolidDecision decision_;
   CrackTurns turns_;
+  std::optional<GuideTrees> trees_;
   std::vector<stress::SolidStress> stresses_;  // of this generation, per cell
   std::vector<double> tensions_;               // their first principal values
   std::vector<int> pieces_;                    // that its cells are in

@@ -57,7 +57,7 @@ const CrackGuide& SolidGuides::of(int piece) {
     if (elements[e].volume > 0.0)
       elements[e].conduction = conduction(elements[e].element, stresses[e] / elements[e].volume);
   });
-  return guides_.try_emplace(piece, mesh_, std::move(elements), *setup_.vertex_rank).first->second;
+  return guides_.try_emplace(piece, mesh_, std::move(elements), *setup_.trees).first->second;
 }
 
 }  // namespace shatterbox::fracture

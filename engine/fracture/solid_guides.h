@@ -21,7 +21,7 @@ struct SolidGuideSetup {
   const std::vector<stress::SolidStress>* stresses = nullptr;  // |cells|, Pa
   const std::vector<int>* pieces = nullptr;                    // |cells|: that each is in
   const CrackTurns* turns = nullptr;                           // |elements|
-  const std::vector<int>* vertex_rank = nullptr;               // |nodes|: stress/elimination_order.h
+  GuideTrees* trees = nullptr;                                 // of the elements' mesh
   double strength = 0.0;                                       // Pa: what a sure stress pulls with
 };
 

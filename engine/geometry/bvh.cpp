@@ -1,14 +1,26 @@
 #include "engine/geometry/bvh.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace shatterbox::geometry {
 namespace {
 
+/// A triangle's centre along the axis that is split, and the triangle.
+struct Place {
+  double along = 0.0;
+  int triangle = 0;
+
+  bool operator<(const Place& other) const {
+    return along < other.along || (along == other.along && triangle < other.triangle);
+  }
+};
+
 struct Builder {
   const std::vector<Vec3>& centres;
   TriangleTree& tree;
   int leaf_size;
+  std::vector<Place> places;  // |T|, scratch
 
   void build(int begin, int end) {
     const std::size_t index = tree.nodes.size();
@@ -22,12 +34,16 @@ struct Builder {
     for (int i = begin; i < end; ++i) box.include(centre(i));
     int axis = 0;
     (box.high - box.low).maxCoeff(&axis);
-    std::sort(tree.order.begin() + begin, tree.order.begin() + end, [&](int a, int b) {
-      const double xa = centres[static_cast<std::size_t>(a)][axis],
-                   xb = centres[static_cast<std::size_t>(b)][axis];
-      return xa < xb || (xa == xb && a < b);
-    });
+    for (int i = begin; i < end; ++i)
+      places[static_cast<std::size_t>(i)] = {centre(i)[axis], tree.order[static_cast<std::size_t>(i)]};
     const int middle = begin + (end - begin) / 2;
+    const auto first = places.begin() + begin, half = places.begin() + middle, last = places.begin() + end;
+    std::nth_element(first, half, last);
+    // What is no leaf is put in order by its own axis.
+    if (middle - begin <= leaf_size) std::sort(first, half);
+    if (end - middle <= leaf_size) std::sort(half, last);
+    for (int i = begin; i < end; ++i)
+      tree.order[static_cast<std::size_t>(i)] = places[static_cast<std::size_t>(i)].triangle;
     build(begin, middle);
     tree.nodes[index].right = static_cast<int>(tree.nodes.size());
     build(middle, end);
@@ -54,7 +70,8 @@ TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::
   tree.order.resize(triangles.size());
   std::iota(tree.order.begin(), tree.order.end(), 0);
   tree.nodes.reserve(2 * triangles.size() / static_cast<std::size_t>(leaf_size) + 2);
-  Builder{centres, tree, leaf_size}.build(0, static_cast<int>(triangles.size()));
+  Builder{centres, tree, leaf_size, std::vector<Place>(triangles.size())}
+      .build(0, static_cast<int>(triangles.size()));
   return tree;
 }
 

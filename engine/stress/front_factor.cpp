@@ -20,6 +20,8 @@ using core::at;
 constexpr double kLeastPivot = 1e-15;
 /// From so many multiplications on a front's rest matrix is worth several tasks.
 constexpr double kParallelWork = 2e6;
+/// Entries to a block of memory: of one far larger no allocator keeps what is freed for the next factor.
+constexpr Size kBlockEntries = Size{1} << 20;
 
 using NodeNumbers = std::array<int, NodeGraph::kElementNodes>;
 constexpr int kMostElementUnknowns = 12;
@@ -62,13 +64,11 @@ class FrontView {
 class Factorisation {
  public:
   Factorisation(const FrontTree& tree, const std::vector<double>& diagonal,
-                const std::function<ElementEntries(int)>& element, const std::vector<Size>& first,
-                double* entries)
+                const std::function<ElementEntries(int)>& element, const std::vector<double*>& panels)
       : tree_(tree),
         diagonal_(diagonal),
         element_(element),
-        first_(first),
-        entries_(entries),
+        panels_(panels),
         rests_(tree.fronts.size()) {
     find_least_pivots();
   }
@@ -143,8 +143,8 @@ class Factorisation {
 
   void factor(int f, bool is_top) {
     const Front& front = tree_.fronts[at(f)];
-    double* const panel = entries_ + first_[at(f)];
-    std::fill(panel, entries_ + first_[at(f) + 1], 0.0);
+    double* const panel = panels_[at(f)];
+    std::fill_n(panel, tiles::panel_size(front.pivots, front.rows), 0.0);
     const Size rest_size = tiles::rest_size(front.rows);
     rests_[at(f)] = std::unique_ptr<double[]>(new double[std::max<Size>(rest_size, 1)]());
     double* const rest = rests_[at(f)].get();
@@ -237,8 +237,7 @@ class Factorisation {
   const FrontTree& tree_;
   const std::vector<double>& diagonal_;
   const std::function<ElementEntries(int)>& element_;
-  const std::vector<Size>& first_;
-  double* entries_;
+  const std::vector<double*>& panels_;
   std::vector<std::unique_ptr<double[]>> rests_;
   std::vector<double> least_pivots_;
   std::atomic<bool> has_failed_ = false;
@@ -249,11 +248,18 @@ class Factorisation {
 std::optional<FrontFactor> FrontFactor::make(const FrontTree& tree, const std::vector<double>& diagonal,
                                              const std::function<ElementEntries(int element)>& element) {
   FrontFactor factor;
-  factor.first_.resize(tree.fronts.size() + 1, 0);
-  for (Size f = 0; f < tree.fronts.size(); ++f)
-    factor.first_[f + 1] = factor.first_[f] + tiles::panel_size(tree.fronts[f].pivots, tree.fronts[f].rows);
-  factor.entries_.reset(new double[factor.first_.back()]);  // each front zeroes its own
-  Factorisation work(tree, diagonal, element, factor.first_, factor.entries_.get());
+  factor.panels_.resize(tree.fronts.size());
+  const auto size_of = [&](Size f) { return tiles::panel_size(tree.fronts[f].pivots, tree.fronts[f].rows); };
+  for (Size begin = 0, end = 0; begin < tree.fronts.size(); begin = end) {
+    Size size = size_of(end++);
+    while (end < tree.fronts.size() && size + size_of(end) <= kBlockEntries) size += size_of(end++);
+    double* next = factor.blocks_.emplace_back(new double[size]).get();  // each front zeroes its own
+    for (Size f = begin; f < end; ++f) {
+      factor.panels_[f] = next;
+      next += size_of(f);
+    }
+  }
+  Factorisation work(tree, diagonal, element, factor.panels_);
   if (!work.run()) return std::nullopt;
   return factor;
 }

@@ -30,11 +30,11 @@ class FrontFactor {
 
   /// A front's panel: strips of four rows, pivot rows then rows below (front_tiles.h); the diagonal is
   /// inverted.
-  const double* panel(std::size_t front) const { return entries_.get() + first_[front]; }
+  const double* panel(std::size_t front) const { return panels_[front]; }
 
  private:
-  std::vector<std::size_t> first_;     // begin of each front's panel in entries_
-  std::unique_ptr<double[]> entries_;  // panels
+  std::vector<double*> panels_;                     // begin of each front's, in blocks_
+  std::vector<std::unique_ptr<double[]>> blocks_;  // some panels each
 };
 
 }  // namespace shatterbox::stress

@@ -74,7 +74,8 @@ TEST_CASE("a crack guide's potential is the one of sources and sinks about its s
   const double greatest = flow.cwiseAbs().maxCoeff();
 
   const stress::SolidVertexRank rank;
-  const CrackGuide guide(mesh, elements, rank.of(*whole));
+  GuideTrees trees(rank.of(*whole));
+  const CrackGuide guide(mesh, elements, trees);
   const std::vector<double> found = guide.potential(start, place, normal);
   REQUIRE(found.size() == mesh.positions.size());
   int near = 0, known = 0;

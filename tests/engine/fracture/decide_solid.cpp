@@ -222,7 +222,8 @@ Grown grow(const geometry::SolidComplex& complex, const Vec3& place,
     elements.push_back({e, complex.cells[at(e)].volume, guide_conduction(normal(middle), 1.0)});
   }
   const stress::SolidVertexRank rank;
-  const CrackGuide guide(mesh, std::move(elements), rank.of(*complex.elements));
+  GuideTrees trees(rank.of(*complex.elements));
+  const CrackGuide guide(mesh, std::move(elements), trees);
   int first = 0;
   while (!cell_holds(complex, first, place)) ++first;
   CrackField field(complex);
