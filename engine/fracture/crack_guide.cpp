@@ -80,9 +80,9 @@ GuideTrees::GuideTrees(const std::vector<int>& vertex_rank) : order_(vertex_rank
 
 std::shared_ptr<const stress::FrontTree> GuideTrees::of(const geometry::TetMesh& mesh,
                                                         const std::vector<GuideElement>& elements) {
-  if (last_ && std::equal(elements.begin(), elements.end(), elements_of_last_.begin(),
-                          elements_of_last_.end(),
-                          [](const GuideElement& own, int other) { return own.element == other; }))
+  if (last_ &&
+      std::equal(elements.begin(), elements.end(), elements_of_last_.begin(), elements_of_last_.end(),
+                 [](const GuideElement& own, int other) { return own.element == other; }))
     return last_;
   stress::NodeGraph graph;
   graph.element_unknowns = {1, 1, 1, 1, 0, 0};

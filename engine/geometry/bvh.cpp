@@ -70,8 +70,8 @@ TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::
   tree.order.resize(triangles.size());
   std::iota(tree.order.begin(), tree.order.end(), 0);
   tree.nodes.reserve(2 * triangles.size() / static_cast<std::size_t>(leaf_size) + 2);
-  Builder{centres, tree, leaf_size, std::vector<Place>(triangles.size())}
-      .build(0, static_cast<int>(triangles.size()));
+  Builder{centres, tree, leaf_size, std::vector<Place>(triangles.size())}.build(
+      0, static_cast<int>(triangles.size()));
   return tree;
 }
 

@@ -25,7 +25,8 @@ struct VertexHold {
 /// What conjugate gradients ask of a matrix beside its rows.
 struct BlockSystem {
   const BlockRows* rows = nullptr;
-  std::vector<double> inertia;  // |V|: shift times mass, added on the diagonal; empty for none
+  const std::vector<float>* single = nullptr;  // entries of the rows in single precision; null: not made
+  std::vector<double> inertia;                 // |V|: shift times mass, added on the diagonal; empty for none
   std::vector<double> inverse;  // |V| x 9: of the blocks on the diagonal, within what holds allow
   std::vector<int> hold_of;     // |V|: into holds, -1 for free vertices
   std::vector<VertexHold> holds;
@@ -50,8 +51,12 @@ struct GradientResult {
   bool is_converged = false;
 };
 
-/// Answers to loads (|dof| each), each by itself; four share one pass over the matrix.
+/// Answers to loads (|dof| each), each by itself; four share one pass over the matrix. `guesses` (as many, or
+/// none; empty ones tell nothing): answers to loads alike, to begin with. Where the tolerance allows it the
+/// work is done in single precision, twice as fast; what that leaves is checked, and done again where it is
+/// too much.
 std::vector<GradientResult> solve_by_gradients(const BlockSystem& system, std::span<const VecX> loads,
-                                               const GradientSettings& settings);
+                                               const GradientSettings& settings,
+                                               std::span<const VecX> guesses = {});
 
 }  // namespace shatterbox::stress

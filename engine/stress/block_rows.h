@@ -23,17 +23,17 @@ inline constexpr std::size_t kRowGrain = 512;  // rows to a task; fixed, so that
 /// j) and (j, i) are each other's transpose to the bit.
 BlockRows assemble_stiffness(const SolidStiffness& stiffness, const geometry::SolidMesh& mesh);
 
-/// product = rows [begin, end) times x. Vectors of lanes: entry 3 v + axis of lane l is at (3 v + axis)
-/// kLanes + l.
-template <std::size_t kLanes>
-void multiply_rows(const BlockRows& rows, std::size_t begin, std::size_t end, const double* x,
-                   double* product) {
+/// product = rows [begin, end) times x; `entries` are those of the rows, maybe in single precision. Vectors
+/// of lanes: entry 3 v + axis of lane l is at (3 v + axis) kLanes + l.
+template <std::size_t kLanes, class Scalar>
+void multiply_rows(const BlockRows& rows, const Scalar* entries, std::size_t begin, std::size_t end,
+                   const Scalar* x, Scalar* product) {
   for (std::size_t row = begin; row < end; ++row) {
-    double sum[3][kLanes] = {};
+    Scalar sum[3][kLanes] = {};
     const auto last = static_cast<std::size_t>(rows.first[row + 1]);
     for (auto block = static_cast<std::size_t>(rows.first[row]); block < last; ++block) {
-      const double* const e = &rows.entries[9 * block];
-      const double* const u = x + 3 * kLanes * static_cast<std::size_t>(rows.column[block]);
+      const Scalar* const e = entries + 9 * block;
+      const Scalar* const u = x + 3 * kLanes * static_cast<std::size_t>(rows.column[block]);
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t l = 0; l < kLanes; ++l)
           sum[a][l] += (e[3 * a] * u[l] + e[3 * a + 1] * u[kLanes + l]) + e[3 * a + 2] * u[2 * kLanes + l];

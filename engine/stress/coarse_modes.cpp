@@ -153,7 +153,8 @@ std::optional<CoarseModes::Factor> CoarseModes::factor(double shift) const {
   });
 }
 
-std::vector<double> CoarseModes::answer(const Factor& factor, const std::vector<double>& r,
+template <class Scalar>
+std::vector<double> CoarseModes::answer(const Factor& factor, const std::vector<Scalar>& r,
                                         Size lanes) const {
   SolveLanes x(*tree_, lanes);
   const Size stride = at(x.lanes);
@@ -164,7 +165,7 @@ std::vector<double> CoarseModes::answer(const Factor& factor, const std::vector<
     for (int i = first_[c]; i < first_[c + 1]; ++i) {
       const Size v = at(vertices_[at(i)]);
       for (Size l = 0; l < lanes; ++l) {
-        const double* const u = &r[3 * v * lanes + l];
+        const Scalar* const u = &r[3 * v * lanes + l];
         Vec3 force(u[0], u[lanes], u[2 * lanes]);
         if (is_free_[v] == 0) force = (allowed_[v] * force).eval();
         const Vec3 turn = arms_[v].cross(force);
@@ -185,5 +186,8 @@ std::vector<double> CoarseModes::answer(const Factor& factor, const std::vector<
             x.values[stride * (at(tree_->node_place[2 * c + k / 3]) + k % 3) + l];
   return amounts;
 }
+
+template std::vector<double> CoarseModes::answer(const Factor&, const std::vector<double>&, Size) const;
+template std::vector<double> CoarseModes::answer(const Factor&, const std::vector<float>&, Size) const;
 
 }  // namespace shatterbox::stress

@@ -1,7 +1,7 @@
-// A second level for the conjugate gradients of solids: rigid motions of some hundreds of clusters of vertices,
-// answered exactly. What hangs by little, as parts between cracks do, and what is long and thin, costs block
-// Jacobi alone thousands of iterations, because its soft motions are nearly those. (Y. Saad, Iterative
-// Methods for Sparse Linear Systems, second edition, SIAM, 2003, ch. 14.)
+// A second level for the conjugate gradients of solids: rigid motions of some hundreds of clusters of
+// vertices, answered exactly. What hangs by little, as parts between cracks do, and what is long and thin,
+// costs block Jacobi alone thousands of iterations, because its soft motions are nearly those. (Y. Saad,
+// Iterative Methods for Sparse Linear Systems, second edition, SIAM, 2003, ch. 14.)
 #pragma once
 
 #include <memory>
@@ -30,10 +30,11 @@ class CoarseModes {
 
   /// (P (P^T (K + shift M) P)^-1 P^T r) for `lanes` vectors side by side (block_rows.h): first what the
   /// clusters are to do (six motions a cluster, lane by lane in each), ...
-  std::vector<double> answer(const Factor& factor, const std::vector<double>& r, std::size_t lanes) const;
+  template <class Scalar>
+  std::vector<double> answer(const Factor& factor, const std::vector<Scalar>& r, std::size_t lanes) const;
   /// ... then what that is at one vertex: adds it to `z` (three unknowns by lanes).
-  template <std::size_t kLanes>
-  void add(const std::vector<double>& amounts, std::size_t vertex, double* z) const {
+  template <std::size_t kLanes, class Scalar>
+  void add(const std::vector<double>& amounts, std::size_t vertex, Scalar* z) const {
     if (cluster_[vertex] < 0) return;
     const double* const move = &amounts[6 * kLanes * static_cast<std::size_t>(cluster_[vertex])];
     const double* const turn = move + 3 * kLanes;
@@ -46,14 +47,14 @@ class CoarseModes {
     }
     if (is_free_[vertex] != 0) {
       for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t l = 0; l < kLanes; ++l) z[a * kLanes + l] += all[a][l];
+        for (std::size_t l = 0; l < kLanes; ++l) z[a * kLanes + l] += static_cast<Scalar>(all[a][l]);
       return;
     }
     const Mat3& allowed = allowed_[vertex];
     for (int a = 0; a < 3; ++a)
       for (std::size_t l = 0; l < kLanes; ++l)
-        z[static_cast<std::size_t>(a) * kLanes + l] +=
-            (allowed(a, 0) * all[0][l] + allowed(a, 1) * all[1][l]) + allowed(a, 2) * all[2][l];
+        z[static_cast<std::size_t>(a) * kLanes + l] += static_cast<Scalar>(
+            (allowed(a, 0) * all[0][l] + allowed(a, 1) * all[1][l]) + allowed(a, 2) * all[2][l]);
   }
 
  private:

@@ -65,11 +65,7 @@ class Factorisation {
  public:
   Factorisation(const FrontTree& tree, const std::vector<double>& diagonal,
                 const std::function<ElementEntries(int)>& element, const std::vector<double*>& panels)
-      : tree_(tree),
-        diagonal_(diagonal),
-        element_(element),
-        panels_(panels),
-        rests_(tree.fronts.size()) {
+      : tree_(tree), diagonal_(diagonal), element_(element), panels_(panels), rests_(tree.fronts.size()) {
     find_least_pivots();
   }
 

@@ -33,7 +33,7 @@ class FrontFactor {
   const double* panel(std::size_t front) const { return panels_[front]; }
 
  private:
-  std::vector<double*> panels_;                     // begin of each front's, in blocks_
+  std::vector<double*> panels_;                    // begin of each front's, in blocks_
   std::vector<std::unique_ptr<double[]>> blocks_;  // some panels each
 };
 

@@ -58,7 +58,12 @@ PartSystem::PartSystem(std::shared_ptr<const SolidStiffness> of, const geometry:
   std::vector<char> is_clamped(at(mesh.degree_of_freedom_count()), 0);
   for (const int dof : options.support.dofs) is_clamped[at(dof)] = 1;
 
+  single.resize(rows.entries.size());
+  core::parallel_chunks(single.size(), Size{1} << 15, [&](Size begin, Size end) {
+    for (Size i = begin; i < end; ++i) single[i] = static_cast<float>(rows.entries[i]);
+  });
   system.rows = &rows;
+  system.single = &single;
   system.hold_of.assign(positions.size(), -1);
   for (Size v = 0; v < positions.size(); ++v) {
     const Vec3 free(is_clamped[3 * v] == 0, is_clamped[3 * v + 1] == 0, is_clamped[3 * v + 2] == 0);
@@ -163,6 +168,7 @@ std::vector<SolidSolution> PartSystem::solve(const std::vector<VecX>& loads,
   if (is_screened) {
     inertia = screening_squared * mass;
     screened.rows = system.rows;
+    screened.single = system.single;
     screened.hold_of = system.hold_of;
     screened.holds = system.holds;
     screened.inertia.resize(rows.size());

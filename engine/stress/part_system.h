@@ -16,7 +16,8 @@ namespace shatterbox::stress {
 struct PartSystem {
   std::shared_ptr<const SolidStiffness> stiffness;
   BlockRows rows;
-  VecX mass;  // |dof|
+  std::vector<float> single;  // its entries
+  VecX mass;                  // |dof|
   RigidModes rigid;
   CoarseModes coarse;
   BlockSystem system;  // without inertia

@@ -98,7 +98,7 @@ double lowest_frequency_squared(const BlockSystem& system, const VecX& mass, con
   int quiet = 0;
   for (int step = 1; step <= kMostSteps; ++step) {
     core::parallel_chunks(rows, kRowGrain, [&](Size begin, Size end) {
-      multiply_rows<1>(*system.rows, begin, end, current.data(), next.data());
+      multiply_rows<1>(*system.rows, system.rows->entries.data(), begin, end, current.data(), next.data());
     });
     restrict_and_divide(next, true);
     const double along = product(next, current);
