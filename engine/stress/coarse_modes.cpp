@@ -18,7 +18,7 @@ using core::at;
 
 constexpr Size kVerticesOfCluster = 48;
 constexpr Size kMostClusters = 384;
-constexpr double kHold = 1e-9;  // of the diagonal: rigid motions of the whole have no stiffness
+constexpr double kHold = 1e-7;  // of the diagonal: rigid motions of the whole have no stiffness
 
 constexpr Size kPairUnknowns = 12;  // of two clusters
 using PairEntries = std::array<double, kPairUnknowns*(kPairUnknowns + 1) / 2>;
