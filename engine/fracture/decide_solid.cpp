@@ -227,11 +227,15 @@ class SolidDecider {
     find_turns();
     auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
     geometry::SolidMesh mesh;
+    std::vector<int> origins;
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
         const std::vector<geometry::SolidContact> contacts = find_solid_contacts(*complex);
-        mesh = make_solid_mesh(*complex, contacts);
-        if (!force_.settle_again(mesh, make_skin(*complex), decision_, decision_.verdict.reason)) break;
+        geometry::SolidMesh cut = make_solid_mesh(*complex, contacts);
+        const stress::SolidSkin skin = make_skin(*complex);
+        if (!force_.settle_again(cut, skin, origins, decision_, decision_.verdict.reason)) break;
+        mesh = std::move(cut);
+        force_.stays_on(mesh);
         solve_stresses(mesh, contacts, false);
         candidates = find_candidates(*complex, false);
       }
@@ -243,6 +247,7 @@ class SolidDecider {
       decision_.energy_guard_active = decision_.energy_guard_active || tracer.is_out_of_energy();
       if (!(tracer.area() > 0.0)) break;
       settle(*complex);
+      origins = tracer.origins();
       decision_.cracks += tracer.crack_count();
       decision_.new_area += tracer.area();
       decision_.grain_area += tracer.grain_area();

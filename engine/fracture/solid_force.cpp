@@ -158,20 +158,27 @@ bool SolidForce::note(const stress::SolidSolution& solution, SolidDecision& deci
 bool SolidForce::answer(const SolidStage& stage, const std::vector<Size>& wanted, SolidDecision& decision,
                         std::string& problem, bool wants_rest) {
   const auto start = core::Clock::now();
-  std::vector<VecX> forces;
-  for (const Size i : wanted)
-    forces.insert(forces.end(), stage.groups[i].forces.begin(), stage.groups[i].forces.end());
+  std::vector<VecX> forces, begins;
+  for (const Size i : wanted) {
+    const std::vector<VecX>& own = stage.groups[i].forces;
+    forces.insert(forces.end(), own.begin(), own.end());
+    begins.resize(forces.size());
+    // Of pieces that share a force none moves as they do together.
+    if (own.size() == 1 && !stage.begins.empty()) begins.back() = stage.begins[i];
+  }
   if (wants_rest) {
     rest_displacement_ = VecX();
-    if (VecX rest = find_rest(); rest.size() > 0)
+    VecX rest = find_rest();
+    wants_rest = rest.size() > 0;
+    if (wants_rest) {
       forces.push_back(std::move(rest));
-    else
-      wants_rest = false;
+      begins.push_back(stage.begins.empty() ? VecX() : stage.begins.back());
+    }
   }
   stress::SolidSolveSettings solving;
   solving.screening = stage.screening;
   solving.tolerance = settings_.solve_residual;
-  const std::vector<stress::SolidSolution> all = stage.system->solve(forces, solving);
+  const std::vector<stress::SolidSolution> all = stage.system->solve(forces, solving, begins);
   decision.solve_ms += core::milliseconds_since(start);
   if (wants_rest) {
     if (!note(all.back(), decision, problem)) return false;
@@ -226,10 +233,12 @@ bool SolidForce::settle_lead(Size lead, SolidDecision& decision, std::string& pr
   if (!(duration_ < 0.5 * now_.system->trial_period(motion))) return true;
   // A higher screening never makes the duration longer: the search climbs.
   std::vector<int> tried;
+  now_.begins.resize(presses_.size() + 1);
   while (static_cast<int>(tried.size()) < kMostSolidScreenings &&
          std::find(tried.begin(), tried.end(), exponent_) == tried.end()) {
     tried.push_back(exponent_);
     now_.screening = stress::screening_of(exponent_);
+    now_.begins[lead] = presses_[lead].displacement;
     if (!answer(now_, {lead}, decision, problem)) return false;
     duration_ = duration_of(presses_[lead]);
     exponent_ = stress::quantise_screening(1.0 / duration_);
@@ -255,6 +264,7 @@ bool SolidForce::settle(SolidDecision& decision, std::string& problem) {
     if (i != lead && !presses_[i].is_minor) others.push_back(i);
   if (!answer(now_, others, decision, problem, true)) return false;
   for (SolidPress& press : presses_) settle_force(press);
+  now_.begins.clear();
   first_ = now_;
   sum_up();
   return true;

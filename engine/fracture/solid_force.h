@@ -39,6 +39,9 @@ struct SolidStage {
   std::shared_ptr<const stress::SolidSystem> system;
   std::vector<PressGroups> groups;
   double screening = 0.0;  // 1/s
+  /// |presses| + 1, of one unit force each, and of the rest: displacements (|dof|, m) that solves begin with;
+  /// empty ones, or none at all: at nothing.
+  std::vector<VecX> begins;
 
   /// The connected part that a group of a load is on.
   int part_of(std::size_t press, std::size_t group) const;
@@ -67,9 +70,13 @@ class SolidForce {
   /// Before the body cracks: books the elastic energy.
   void complete(SolidDecision& decision);
 
-  /// The cut body under the force that its compliance and the energy left allow.
-  bool settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin, SolidDecision& decision,
-                    std::string& problem);
+  /// The cut body under the force that its compliance and the energy left allow. `origins` (|cells|): which
+  /// cell of the mesh solved before each was, which is still there.
+  bool settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin,
+                    const std::vector<int>& origins, SolidDecision& decision, std::string& problem);
+
+  /// Where the mesh last solved has been moved to.
+  void stays_on(const geometry::SolidMesh& mesh) { now_.mesh = &mesh; }
 
   /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads and the spin together.
   const VecX& displacement() const { return displacement_; }
@@ -99,6 +106,7 @@ class SolidForce {
   void find_groups();
   void settle_force(SolidPress& press);
   void prepare_cracked();
+  void carry_over(const geometry::SolidMesh& mesh, const std::vector<int>& origins);
   VecX find_rest() const;
   void sum_up();
   bool note(const stress::SolidSolution& solution, SolidDecision& decision, std::string& problem) const;

@@ -88,9 +88,30 @@ void SolidForce::settle_cracked_force(SolidPress& press, const SolidDecision& de
   press.force = std::min(press.force, force_of_energy(press.energy * left, hertz + press.elastic_compliance));
 }
 
+/// What was solved before, on the mesh as it is now: most of it has hardly changed.
+void SolidForce::carry_over(const geometry::SolidMesh& mesh, const std::vector<int>& origins) {
+  std::vector<int> source(mesh.vertex_source.size(), -1);
+  for (Size c = 0; c < mesh.cells.size(); ++c)
+    for (Size k = 0; k < 4; ++k)
+      source[at(mesh.cells[c].vertices[k])] = now_.mesh->cells[at(origins[c])].vertices[k];
+  const auto carried = [&](const VecX& before) {
+    VecX now = VecX::Zero(static_cast<Eigen::Index>(3 * source.size()));
+    for (Size v = 0; v < source.size(); ++v)
+      if (source[v] >= 0) now.segment<3>(static_cast<Eigen::Index>(3 * v)) = before.segment<3>(3 * source[v]);
+    return now;
+  };
+  now_.begins.assign(presses_.size() + 1, {});
+  for (Size i = 0; i < presses_.size(); ++i)
+    if (!presses_[i].is_minor && presses_[i].displacement.size() > 0)
+      now_.begins[i] = carried(presses_[i].displacement);
+  if (rest_displacement_.size() > 0) now_.begins.back() = carried(rest_displacement_);
+}
+
 bool SolidForce::settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin,
-                              SolidDecision& decision, std::string& problem) {
+                              const std::vector<int>& origins, SolidDecision& decision,
+                              std::string& problem) {
   prepare_cracked();
+  carry_over(mesh, origins);
   now_.mesh = &mesh;
   now_.skin = &skin;
   find_groups();

@@ -66,6 +66,8 @@ class SolidTracer {
   /// They join `cracks`.
   void nucleate(std::vector<SolidCandidate> candidates, std::vector<OpenCrack>& cracks);
 
+  /// |cells| of the complex as it is now: which one each was when the generation began.
+  const std::vector<int>& origins() const { return origin_; }
   int crack_count() const { return crack_count_; }   // new ones
   double area() const { return area_; }              // m2, of the new cracks
   double grain_area() const { return grain_area_; }  // m2 of it, along grain boundaries

@@ -158,7 +158,8 @@ SolidSolution PartSystem::solution_of(const GradientResult& result, const VecX& 
 }
 
 std::vector<SolidSolution> PartSystem::solve(const std::vector<VecX>& loads,
-                                             const SolidSolveSettings& settings) const {
+                                             const SolidSolveSettings& settings,
+                                             const std::vector<VecX>& guesses) const {
   const double screening = settings.screening * seconds();
   const double screening_squared = screening * screening;
   const bool is_screened = screening_squared > 0.0;
@@ -179,10 +180,12 @@ std::vector<SolidSolution> PartSystem::solve(const std::vector<VecX>& loads,
   }
 
   // A screened load's rigid part is answered in closed form, R R^T / s^2: only what bends is left to iterate.
-  std::vector<VecX> work(loads.size()), rigid_parts(loads.size());
+  std::vector<VecX> work(loads.size()), rigid_parts(loads.size()), begins(loads.size());
   core::parallel_for(loads.size(), 1, [&](Size l) {
     work[l] = scaled(loads[l]);
+    if (l < guesses.size() && guesses[l].size() > 0) begins[l] = guesses[l] / stiffness->length;
     if (!is_relieved()) return;
+    if (begins[l].size() > 0) rigid.remove_motion(begins[l]);
     const VecX whole = work[l];
     rigid.balance(work[l]);
     if (is_screened) {
@@ -200,7 +203,7 @@ std::vector<SolidSolution> PartSystem::solve(const std::vector<VecX>& loads,
     gradients.most_iterations =
         1000 + static_cast<int>(40.0 * core::pow(static_cast<double>(rows.size()), 1.0 / 3.0));
   const std::vector<GradientResult> results =
-      solve_by_gradients(is_screened ? screened : system, work, gradients);
+      solve_by_gradients(is_screened ? screened : system, work, gradients, begins);
   std::vector<SolidSolution> solutions(loads.size());
   for (Size l = 0; l < loads.size(); ++l)
     solutions[l] = solution_of(results[l], loads[l], rigid_parts[l], inertia);

@@ -30,7 +30,8 @@ struct PartSystem {
   PartSystem& operator=(const PartSystem&) = delete;
 
   /// As SolidSystem's.
-  std::vector<SolidSolution> solve(const std::vector<VecX>& loads, const SolidSolveSettings& settings) const;
+  std::vector<SolidSolution> solve(const std::vector<VecX>& loads, const SolidSolveSettings& settings,
+                                   const std::vector<VecX>& guesses) const;
   VecX balance(const VecX& load) const;
   double first_period() const;
 

@@ -132,15 +132,20 @@ void SolidSystem::State::add(const Part& part, const SolidSolution& own, SolidSo
 }
 
 std::vector<SolidSolution> SolidSystem::solve(const std::vector<VecX>& loads,
-                                              const SolidSolveSettings& settings) const {
+                                              const SolidSolveSettings& settings,
+                                              const std::vector<VecX>& guesses) const {
   const State& state = *state_;
   const std::vector<std::vector<Size>> loads_on = state.loads_of_parts(loads);
   std::vector<std::vector<SolidSolution>> own(state.parts.size());
   core::parallel_for(state.parts.size(), 1, [&](Size p) {
     if (loads_on[p].empty()) return;
-    std::vector<VecX> own_loads;
-    for (const Size l : loads_on[p]) own_loads.push_back(state.parts[p].gather(loads[l]));
-    own[p] = state.parts[p].system->solve(own_loads, settings);
+    std::vector<VecX> own_loads, own_guesses;
+    for (const Size l : loads_on[p]) {
+      own_loads.push_back(state.parts[p].gather(loads[l]));
+      const bool has_guess = l < guesses.size() && guesses[l].size() > 0;
+      own_guesses.push_back(has_guess ? state.parts[p].gather(guesses[l]) : VecX());
+    }
+    own[p] = state.parts[p].system->solve(own_loads, settings, own_guesses);
   });
   std::vector<SolidSolution> solutions(loads.size());
   for (SolidSolution& solution : solutions) solution.displacement = state.zero();

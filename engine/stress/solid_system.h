@@ -60,9 +60,10 @@ class SolidSystem {
 
   /// Solves for each load (|dof|, N). With s = 0 every connected part is first relieved of the rigid motion
   /// that its load causes and that its support allows (not with the paper's null space). Same bits whatever
-  /// the number of loads or threads. Up to four loads cost little more than one.
-  std::vector<SolidSolution> solve(const std::vector<VecX>& loads,
-                                   const SolidSolveSettings& settings = {}) const;
+  /// the number of loads or threads. Up to four loads cost little more than one. `guesses` (m; as many as
+  /// loads, or none; empty ones tell nothing): displacements to begin with, of a body hardly another one.
+  std::vector<SolidSolution> solve(const std::vector<VecX>& loads, const SolidSolveSettings& settings = {},
+                                   const std::vector<VecX>& guesses = {}) const;
   SolidSolution solve(const VecX& load, const SolidSolveSettings& settings = {}) const;
   /// The load (|dof|, N) as the solve sees it with s = 0: b = J - M R R^T J.
   VecX balance(const VecX& load) const;
