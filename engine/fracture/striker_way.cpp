@@ -14,6 +14,7 @@ using core::at;
 constexpr double kPlugClearance = 0.02;  // of the section's diameter: by which the hole is wider, all around
 constexpr int kPunchSides = 24;          // of a round hole; at most so many of any
 constexpr double kLeastTurn = 1e-5;      // rad, between two sides
+constexpr double kLeastSection = 1e-9;   // of the square of its reach: what is less is a line
 constexpr int kSectionRings = 8;         // of places over a section, all of one area
 constexpr int kRimPlaces = 96;           // about, along its rim, and on each ring
 
@@ -108,6 +109,7 @@ SharedPlaces places_along(const std::vector<Vec2>& corners) {
   for (std::size_t i = 0; i < corners.size(); ++i)
     length += (corners[(i + 1) % corners.size()] - corners[i]).norm();
   SharedPlaces out;
+  if (!(length > 0.0)) return out;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec2 side = corners[(i + 1) % corners.size()] - corners[i];
     const double share = side.norm() / length;
@@ -127,6 +129,9 @@ SharedPlaces places_over(const std::vector<Vec2>& corners) {
   Vec2 middle = Vec2::Zero();
   for (const Vec2& corner : corners) middle += corner / static_cast<double>(corners.size());
   const double area = area_of(corners);
+  double reach = 0.0;
+  for (const Vec2& corner : corners) reach = std::max(reach, (corner - middle).squaredNorm());
+  if (!(area > kLeastSection * reach)) return out;  // clipped to a line
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec2 &a = corners[i], &b = corners[(i + 1) % corners.size()];
     const int count = std::max(1, static_cast<int>(area_of({middle, a, b}) / area * kRimPlaces + 0.5));

@@ -298,10 +298,11 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   const VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
   const CrackTurns turns(complex.elements->mesh.tetrahedra.size());
   const stress::SolidVertexRank rank;
+  GuideTrees trees(rank.of(*complex.elements));
   const std::vector<stress::SolidStress> stresses(complex.cells.size(), stress);
   const std::vector<int> pieces(complex.cells.size(), 0);
   SolidTracerSetup setup;
-  setup.guides = {&stresses, &pieces, &turns, &rank.of(*complex.elements), glass.strength};
+  setup.guides = {&stresses, &pieces, &turns, &trees, glass.strength};
   setup.material = &glass;
   setup.solved = {&mesh, &displacement};
   setup.centres = {{Vec3(0.0, 0.0, 0.5), 0.1}};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/fracture/perforation_law.h"
+#include "engine/fracture/striker_way.h"
 #include "engine/geometry/box_tets.h"
 #include "tests/engine/geometry/solids.h"
 
@@ -348,4 +349,27 @@ TEST_CASE("convex hulls go round once counter-clockwise") {
   square.radius = 0.5;
   CHECK(section_of(square).area == Approx(1.0 + 2.0 + kPi / 4));
   CHECK(section_of(square).perimeter == Approx(4.0 + kPi));
+}
+
+TEST_CASE("a stamp whose side lies in the side of a plate has nothing of it in its way") {
+  const geometry::SolidComplex plate = make_plate(0.02, 0.05);
+  std::vector<int> cells;
+  for (std::size_t c = 0; c < plate.cells.size(); ++c) cells.push_back(static_cast<int>(c));
+  constexpr double half = 0.03;
+  Striker striker =
+      make_striker(Vec3::UnitZ(), 100.0, {{-half, -half}, {half, -half}, {half, half}, {-half, half}}, 0.0);
+  for (const double across : {0.0, 0.15, 0.15 + half})  // the second: half of the side is beyond a corner
+    for (int digits = -64; digits <= 64; ++digits) {
+      striker.centre = Vec3((0.2 + half) * (1.0 + 1e-16 * digits), across, 0.0);
+      INFO(across << ", " << digits);
+      const WayMaterial way = find_way_material(plate, cells, striker);
+      CHECK(std::abs(way.thickness) < 1e-12);
+      double sum = 0.0, least = 0.0;
+      for (const ThicknessShare& share : way.section) {
+        sum += share.share;
+        least = std::min(least, share.share);
+      }
+      CHECK(sum < 1e-9);
+      CHECK(least == 0.0);
+    }
 }

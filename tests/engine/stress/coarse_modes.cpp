@@ -88,7 +88,7 @@ TEST_CASE("the clusters' motions of a solid are answered exactly, for one load a
   };
   const std::vector<double> x = motion_of(r);
   std::vector<double> image(3 * count);
-  multiply_rows<1>(box.rows, 0, count, x.data(), image.data());
+  multiply_rows<1>(box.rows, box.rows.entries.data(), 0, count, x.data(), image.data());
   for (size_t i = 0; i < image.size(); ++i) image[i] += shift * box.mass[i / 3] * x[i];
   const std::vector<double> again = motion_of(image);
   double error = 0.0, whole = 0.0;
