@@ -303,12 +303,11 @@ std::vector<GradientResult> solve_some(const BlockSystem& system, std::span<cons
   for (Size first = 0; first < loads.size(); first += kMost) {
     const auto some = loads.subspan(first, std::min(kMost, loads.size() - first));
     // In single precision four lanes are one register, and cost less than two.
-    std::vector<GradientResult> own;
-    if (std::is_same_v<Scalar, float> || some.size() > 2)
-      own = Solver<kMost, Scalar>(system, some).run(settings);
-    else if constexpr (std::is_same_v<Scalar, double>)
-      own = some.size() == 1 ? Solver<1, Scalar>(system, some).run(settings)
-                             : Solver<2, Scalar>(system, some).run(settings);
+    constexpr Size kFew = std::is_same_v<Scalar, float> ? kMost : 2;
+    std::vector<GradientResult> own = some.size() == 1 ? Solver<1, Scalar>(system, some).run(settings)
+                                      : some.size() <= kFew
+                                          ? Solver<kFew, Scalar>(system, some).run(settings)
+                                          : Solver<kMost, Scalar>(system, some).run(settings);
     std::move(own.begin(), own.end(), std::back_inserter(results));
   }
   return results;
