@@ -5,10 +5,8 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/disjoint_sets.h"
-#include "engine/core/hash.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
-#include "engine/fracture/path_noise.h"
 #include "engine/fracture/solid_force.h"
 #include "engine/fracture/solid_tracer.h"
 
@@ -18,8 +16,7 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kSolidWaveLength = 0.14;  // of the cracks' noise, share of the body's size
-constexpr double kToldSize = 1.5;          // of the elements, is the least that they can tell of a crack
+constexpr double kToldSize = 1.5;  // of the elements, is the least that they can tell of a crack
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
 
@@ -191,7 +188,7 @@ class SolidDecider {
     setup.solved = {&mesh, &force_.displacement()};
     setup.guides.stresses = &stresses_;
     setup.guides.pieces = &pieces_;
-    setup.guides.turns = &turns_;
+    setup.guides.turns = turns_.get();
     if (!trees_) trees_.emplace(model().stiffness->vertex_rank.of(*model().mesh.elements));
     setup.guides.trees = &*trees_;
     setup.guides.strength = subject_.material.strength;
@@ -207,24 +204,8 @@ class SolidDecider {
     return setup;
   }
 
-  /// Once for all generations: sums of waves are slow.
-  void find_turns() {
-    const PathNoise a(kSolidWaveLength * model().size, settings_.waviness, subject_.seed);
-    const PathNoise b(kSolidWaveLength * model().size, settings_.waviness, core::mix(subject_.seed + 1));
-    const geometry::TetMesh& mesh = model().mesh.elements->mesh;
-    std::vector<char> is_used(mesh.tetrahedra.size(), 0);
-    for (const geometry::SolidCell& cell : model().mesh.cells) is_used[at(cell.element)] = 1;
-    turns_.assign(is_used.size(), {});
-    core::parallel_for(is_used.size(), 512, [&](Size e) {
-      if (is_used[e] == 0) return;
-      Vec3 middle = Vec3::Zero();
-      for (const int v : mesh.tetrahedra[e]) middle += 0.25 * mesh.positions[at(v)];
-      turns_[e] = {a.at(middle), b.at(middle)};
-    });
-  }
-
   void run_generations(std::vector<SolidCandidate> candidates) {
-    find_turns();
+    turns_ = subject_.kept_turns->of(model().mesh.elements, model().size, settings_.waviness, subject_.seed);
     auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
     geometry::SolidMesh mesh;
     std::vector<int> origins;
@@ -272,7 +253,7 @@ class SolidDecider {
   const FractureSettings& settings_;
   SolidForce force_;
   SolidDecision decision_;
-  CrackTurns turns_;
+  std::shared_ptr<const CrackTurns> turns_;
   std::optional<GuideTrees> trees_;
   std::vector<stress::SolidStress> stresses_;  // of this generation, per cell
   std::vector<double> tensions_;               // their first principal values
@@ -296,6 +277,14 @@ void prepare_subject(SolidSubject& subject) {
   if (!subject.flaws)
     subject.flaws = std::make_shared<const SolidFlawField>(
         draw_solid_flaws(*subject.complex->elements, material, subject.seed));
+  if (!subject.kept_turns) subject.kept_turns = std::make_shared<KeptCrackTurns>();
+}
+
+void prepare_cracks(const SolidSubject& subject) {
+  SolidSubject whole = subject;
+  prepare_subject(whole);
+  whole.stiffness->vertex_rank.of(*whole.complex->elements);
+  whole.kept_turns->of(whole.complex->elements, whole.model->size, FractureSettings{}.waviness, whole.seed);
 }
 
 SolidDecision decide_solid(const SolidSubject& subject, const Impact& impact,

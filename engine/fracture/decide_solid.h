@@ -13,6 +13,7 @@
 #include "engine/fracture/perforation.h"
 #include "engine/fracture/solid_dent.h"
 #include "engine/fracture/solid_flaws.h"
+#include "engine/fracture/solid_guides.h"
 #include "engine/fracture/solid_model.h"
 #include "engine/fracture/space_grains.h"
 #include "engine/geometry/solid_complex.h"
@@ -24,11 +25,12 @@ namespace shatterbox::fracture {
 struct SolidSubject {
   std::shared_ptr<const geometry::SolidComplex> complex;  // settled
   /// What is kept between impacts and shared by copies; null: made for this decision and thrown away. The
-  /// stiffness and the flaws are the first parent's, for all its pieces.
+  /// stiffness, the flaws and the turns are the first parent's, for all its pieces.
   std::shared_ptr<const stress::SolidStiffness> stiffness;
   std::shared_ptr<const SolidModel> model;
   std::shared_ptr<KeptSolidModel> kept_model;  // where the model is kept that `model` is not yet; may be null
   std::shared_ptr<const SolidFlawField> flaws;
+  std::shared_ptr<KeptCrackTurns> kept_turns;
   std::shared_ptr<const SpaceGrains> grains;  // null: none
   material::Material material;
   std::vector<int> clamped_vertices;  // held, of the element mesh, ascending; empty: a free body
@@ -47,6 +49,8 @@ struct SolidDecision : DecisionFigures {
 
 /// Fills in what is kept between impacts where it is null.
 void prepare_subject(SolidSubject& subject);
+/// Finds what is kept for cracks, which the first one would otherwise wait for.
+void prepare_cracks(const SolidSubject& subject);
 
 /// The verdict, and the cut complex where it breaks. Of `settings`, waviness, the patch, the guard and the
 /// generations count.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "engine/core/hash.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/fracture/path_noise.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -11,7 +13,36 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
+constexpr double kSolidWaveLength = 0.14;  // of the cracks' noise, share of the body's size
+
 }  // namespace
+
+std::shared_ptr<const CrackTurns> KeptCrackTurns::of(
+    const std::shared_ptr<const geometry::SolidElements>& elements, double size, double waviness,
+    std::uint64_t seed) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (turns_ && elements_ == elements && size_ == size && waviness_ == waviness && seed_ == seed)
+      return turns_;
+  }
+  const PathNoise a(kSolidWaveLength * size, waviness, seed);
+  const PathNoise b(kSolidWaveLength * size, waviness, core::mix(seed + 1));
+  const geometry::TetMesh& mesh = elements->mesh;
+  auto turns = std::make_shared<CrackTurns>(mesh.tetrahedra.size());
+  core::parallel_for(turns->size(), 512, [&](Size e) {
+    Vec3 middle = Vec3::Zero();
+    for (const int v : mesh.tetrahedra[e]) middle += 0.25 * mesh.positions[at(v)];
+    (*turns)[e] = {a.at(middle), b.at(middle)};
+  });
+  // Not while they are made: a loop that waits may take up other work that asks for the same ones.
+  const std::lock_guard lock(mutex_);
+  elements_ = elements;
+  size_ = size;
+  waviness_ = waviness;
+  seed_ = seed;
+  turns_ = std::move(turns);
+  return turns_;
+}
 
 SolidGuides::SolidGuides(const geometry::SolidComplex& complex, const SolidGuideSetup& setup)
     : setup_(setup), mesh_(complex.elements->mesh) {

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "engine/core/vec.h"
@@ -15,6 +18,22 @@ namespace shatterbox::fracture {
 
 /// rad, by element: by how much cracks bend from the planes of the stress, about two axes.
 using CrackTurns = std::vector<std::array<double, 2>>;
+
+/// The turns of a body's elements, found when they are first asked for and kept for its pieces: sums of waves
+/// are slow.
+class KeptCrackTurns {
+ public:
+  /// Of noise of that `waviness` (rad) and of waves that are a share of `size` (m) long. Any thread.
+  std::shared_ptr<const CrackTurns> of(const std::shared_ptr<const geometry::SolidElements>& elements,
+                                       double size, double waviness, std::uint64_t seed);
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const geometry::SolidElements> elements_;
+  double size_ = 0.0, waviness_ = 0.0;
+  std::uint64_t seed_ = 0;
+  std::shared_ptr<const CrackTurns> turns_;
+};
 
 /// All that is pointed to must outlive the guides.
 struct SolidGuideSetup {

@@ -27,10 +27,11 @@ void KeptSolidModel::keep(std::shared_ptr<const SolidModel> model) {
 stress::SolidSkin make_skin(const geometry::SolidComplex& complex) {
   stress::SolidSkin skin;
   std::vector<int> number(complex.vertices.size(), -1);
+  std::vector<int> corners;
   for (const geometry::SolidFacet& facet : complex.facets) {
     if (facet.parts[0] >= 0 || (facet.cells[0] < 0) == (facet.cells[1] < 0)) continue;
     const bool is_backwards = facet.cells[0] < 0;
-    std::vector<int> corners;
+    corners.clear();
     for (int i = 0; i < facet.side_count; ++i) {
       const int vertex = complex.side_begin(complex.sides_of(facet)[i]);
       if (number[at(vertex)] < 0) {

@@ -45,6 +45,7 @@ void draw_flaws(Fragile& fragile, const material::Material& material, std::uint6
     solid->seed = seed;
     solid->flaws = std::make_shared<const fracture::SolidFlawField>(
         fracture::draw_solid_flaws(*solid->complex->elements, material, seed));
+    solid->kept_turns = std::make_shared<fracture::KeptCrackTurns>();
   }
 }
 

@@ -98,12 +98,15 @@ void World::prepare() {
 
   std::set<const stress::ShellSystemCache*> seen;
   std::vector<Trial> trials;
+  std::vector<const fracture::SolidSubject*> solids;
   for (const auto& [id, fragile] : s.moving.fragiles) {
+    if (const auto* solid = std::get_if<fracture::SolidSubject>(&fragile->subject)) solids.push_back(solid);
     // Solids keep no factors.
     const auto* shell = std::get_if<fracture::ShellSubject>(&fragile->subject);
     if (!shell || !seen.insert(shell->systems.get()).second) continue;
     add_trials(*body::find_body(s.moving.bodies, id), *fragile, movers, trials);
   }
+  core::parallel_for(solids.size(), 1, [&](std::size_t i) { fracture::prepare_cracks(*solids[i]); });
   fracture::FractureSettings once;
   once.most_generations = 1;
   once.core_spacing = 0.0;  // what is crushed comes after the last solve
