@@ -43,6 +43,9 @@ class RowBuilder {
 
   RowRange build(Size begin, Size end) {
     RowRange range;
+    const auto corners = at(incidence_.first[end] - incidence_.first[begin]);
+    range.column.reserve(corners);  // hardly more: a row has fewer neighbours than tetrahedra
+    range.entries.reserve(9 * corners);
     for (Size row = begin; row < end; ++row) {
       const Size first = range.column.size();
       const int begin_corner = incidence_.first[row], end_corner = incidence_.first[row + 1];

@@ -71,22 +71,36 @@ TriangleShare share_of_triangle(const std::array<Vec3, 3>& corners, const SolidP
   return share;
 }
 
-constexpr double kSurely = 1.0 + 1e-9;  // times a distance: beyond its rounding
+constexpr double kSurely = 1.0 + 1e-9;  // times a squared distance: beyond its rounding
 
-/// From a point to the box about a triangle: what is farther need not be looked at.
-double distance_to_box(const Vec3& point, const std::array<Vec3, 3>& corners) {
-  const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
-  const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
-  return (low - point).cwiseMax(point - high).cwiseMax(0.0).norm();
+/// m2, from a point to the boxes about all triangles: what is farther need not be looked at.
+std::vector<double> squared_distances_to_boxes(const SolidSkin& skin, const Vec3& point) {
+  std::vector<double> squared(skin.cells.size());
+  for (Size t = 0; t < squared.size(); ++t) {
+    const geometry::Triangle& corners = skin.mesh.triangles[t];
+    const Vec3 &a = skin.mesh.positions[at(corners[0])], &b = skin.mesh.positions[at(corners[1])],
+               &c = skin.mesh.positions[at(corners[2])];
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double below = std::min({a[i], b[i], c[i]}) - point[i];
+      const double above = point[i] - std::max({a[i], b[i], c[i]});
+      const double apart = std::max({below, above, 0.0});
+      sum += apart * apart;
+    }
+    squared[t] = sum;
+  }
+  return squared;
 }
 
 /// Triangles nearer than the radius to the centre and not turned away, that hang together with the first one;
-/// ascending.
-std::vector<int> flood_skin(const SolidSkin& skin, int first, const SolidPatch& patch) {
+/// ascending. `squared` are the boxes' distances from a point that is `apart` (m) from the centre.
+std::vector<int> flood_skin(const SolidSkin& skin, int first, const SolidPatch& patch,
+                            const std::vector<double>& squared, double apart) {
   std::vector<int> near;
+  const double farthest = kSurely * (patch.radius + apart) * (patch.radius + apart);
   for (int t = 0; t < static_cast<int>(skin.cells.size()); ++t) {
+    if (t != first && squared[at(t)] > farthest) continue;
     const auto corners = triangle_corners(skin, t);
-    if (t != first && distance_to_box(patch.centre, corners) > kSurely * patch.radius) continue;
     if (twice_area_vector(corners).dot(patch.normal) <= 0.0) continue;
     const auto nearest = geometry::closest_on_triangle(patch.centre, corners[0], corners[1], corners[2]);
     if (nearest.distance < patch.radius || t == first) near.push_back(t);
@@ -123,9 +137,10 @@ SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& ski
   patch.radius = radius;
   int first = -1;
   double least = 0.0;
+  const std::vector<double> squared = squared_distances_to_boxes(skin, point);
   for (int t = 0; t < static_cast<int>(skin.cells.size()); ++t) {
+    if (first >= 0 && squared[at(t)] > kSurely * least * least) continue;
     const auto corners = triangle_corners(skin, t);
-    if (first >= 0 && distance_to_box(point, corners) > kSurely * least) continue;
     const auto nearest = geometry::closest_on_triangle(point, corners[0], corners[1], corners[2]);
     if (first >= 0 && !(nearest.distance < least)) continue;
     first = t;
@@ -141,7 +156,7 @@ SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& ski
   std::map<int, TriangleShare> by_cell;
   double sum = 0.0;
   if (radius > 0.0)
-    for (const int t : flood_skin(skin, first, patch)) {
+    for (const int t : flood_skin(skin, first, patch, squared, least)) {
       const TriangleShare share = share_of_triangle(triangle_corners(skin, t), patch);
       if (!(share.weight > 0.0)) continue;
       TriangleShare& whole = by_cell[skin.cells[at(t)]];
