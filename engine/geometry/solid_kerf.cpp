@@ -32,6 +32,15 @@ struct BoxedMesh {
       : positions(p), triangles(std::move(t)), tree(build_triangle_tree(positions, triangles)) {
     update();
   }
+  /// The same triangles elsewhere: boxes differ, and the tree is as good.
+  BoxedMesh(const std::vector<Vec3>& p, const BoxedMesh& other)
+      : positions(p), triangles(other.triangles), tree(other.tree) {
+    update();
+  }
+  Box box_of(const Triangle& t) const {
+    const Vec3 &p = positions[at(t[0])], &q = positions[at(t[1])], &r = positions[at(t[2])];
+    return {p.cwiseMin(q).cwiseMin(r), p.cwiseMax(q).cwiseMax(r)};
+  }
   void update() {
     const auto vertex_box = [this](int vertex) {
       Box box;
@@ -62,7 +71,7 @@ void for_crossing(const BoxedMesh& a, const BoxedMesh& b, const Exempt& are_exem
                          for (int k = leaf_b.begin; k < leaf_b.begin + leaf_b.count; ++k) {
                            const int ta = a.tree.order[at(i)], tb = b.tree.order[at(k)];
                            const Triangle &first = a.triangles[at(ta)], &second = b.triangles[at(tb)];
-                           if (are_exempt(ta, tb)) continue;
+                           if (are_exempt(ta, tb) || !overlaps(a.box_of(first), b.box_of(second))) continue;
                            if (an_edge_passes(a, first, b, second) || an_edge_passes(b, second, a, first))
                              visit(ta, tb);
                          }
@@ -116,18 +125,48 @@ std::vector<int> triangles_at(const TriangleMesh& mesh, const std::vector<char>&
   return found;
 }
 
+/// A box that holds all that a vertex on its way back, or a face that it takes along, can meet.
+Box reach_of(const TriangleMesh& mesh, const std::vector<Vec3>& shift) {
+  double longest = 0.0;
+  std::vector<char> is_moved(shift.size(), 0);
+  for (Size v = 0; v < shift.size(); ++v) {
+    is_moved[v] = shift[v].isZero(0.0) ? 0 : 1;
+    longest = std::max(longest, shift[v].norm());
+  }
+  Box box;
+  for (const int t : triangles_at(mesh, is_moved))
+    for (const int v : mesh.triangles[at(t)]) box.include(mesh.positions[at(v)]);
+  const Vec3 way = Vec3::Constant(2.0 / kShareOfWidth * longest);
+  return {box.low - way, box.high + way};
+}
+
+std::vector<int> triangles_in(const TriangleMesh& mesh, const Box& box) {
+  std::vector<int> found;
+  for (Size t = 0; t < mesh.triangles.size(); ++t) {
+    Box own;
+    for (const int v : mesh.triangles[t]) own.include(mesh.positions[at(v)]);
+    if (overlaps(own, box)) found.push_back(static_cast<int>(t));
+  }
+  return found;
+}
+
 /// Shortens shifts to a quarter of the material's width in their direction; then halves what leads a moved
 /// face through a crack face or another moved one. What cannot be helped so stays where it is. Each round
 /// looks at what the last one has changed: of all else it is known that it crosses nothing, or cannot be
 /// helped.
 void limit(const SolidSurface& surface, std::vector<Vec3>& shift) {
   const TriangleMesh& mesh = surface.mesh;
-  const BoxedMesh still(mesh.positions, mesh.triangles);
+  if (std::all_of(shift.begin(), shift.end(), [](const Vec3& s) { return s.isZero(0.0); })) return;
+  // Most of a large piece is far from its new faces.
+  const std::vector<int> near = triangles_in(mesh, reach_of(mesh, shift));
+  std::vector<Triangle> near_corners;
+  for (const int t : near) near_corners.push_back(mesh.triangles[at(t)]);
+  const BoxedMesh still(mesh.positions, near_corners);
   for (Size v = 0; v < shift.size(); ++v)
     if (!shift[v].isZero(0.0))
       shift[v] *= kShareOfWidth * way_to_face(still, static_cast<int>(v), shift[v], 1.0 / kShareOfWidth);
   std::vector<Vec3> positions = mesh.positions;
-  BoxedMesh moved(positions, mesh.triangles);
+  BoxedMesh moved(positions, still);
   std::vector<char> has_changed(shift.size(), 0);
   for (Size v = 0; v < shift.size(); ++v) has_changed[v] = shift[v].isZero(0.0) ? 0 : 1;
   for (int round = 0; round < 2 * kHalvings; ++round) {
@@ -144,13 +183,17 @@ void limit(const SolidSurface& surface, std::vector<Vec3>& shift) {
       for (const int v : mesh.triangles[at(triangle)]) is_marked[at(v)] = 1;
     };
     for_crossing(
-        own, still, [&](int, int b) { return !surface.is_crack_face[at(b)] || surface.is_old_face[at(b)]; },
+        own, still,
+        [&](int, int b) {
+          const Size t = at(near[at(b)]);
+          return !surface.is_crack_face[t] || surface.is_old_face[t];
+        },
         [&](int a, int) { mark(changed[at(a)]); });
     for_crossing(
-        own, moved, [&](int a, int b) { return changed[at(a)] == b; },
+        own, moved, [&](int a, int b) { return changed[at(a)] == near[at(b)]; },
         [&](int a, int b) {
           mark(changed[at(a)]);
-          mark(b);
+          mark(near[at(b)]);
         });
     has_changed.assign(shift.size(), 0);
     for (Size v = 0; v < shift.size(); ++v) {
