@@ -1,6 +1,7 @@
 #include "engine/fracture/decide_solid.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "engine/core/clock.h"
@@ -19,6 +20,9 @@ using core::at;
 constexpr double kToldSize = 1.5;  // of the elements, is the least that they can tell of a crack
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
+
+// Where a crack came to nothing, none is begun again before the stress is so many times as great.
+constexpr double kSolidTriedAgain = 1.25;
 
 class SolidDecider {
  public:
@@ -204,6 +208,14 @@ class SolidDecider {
     return setup;
   }
 
+  /// A guide for those that come to nothing again would be made in vain.
+  void leave_out_stillborn(std::vector<SolidCandidate>& candidates) const {
+    std::erase_if(candidates, [this](const SolidCandidate& c) {
+      const auto before = stillborn_.find(c.number);
+      return before != stillborn_.end() && c.overload < kSolidTriedAgain * before->second;
+    });
+  }
+
   void run_generations(std::vector<SolidCandidate> candidates) {
     turns_ = subject_.kept_turns->of(model().mesh.elements, model().size, settings_.waviness, subject_.seed);
     auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
@@ -223,7 +235,9 @@ class SolidDecider {
       const auto start = core::Clock::now();
       SolidTracer tracer(*complex, tracer_setup(generation > 0 ? mesh : model().mesh));
       tracer.resume(cracks_);
+      leave_out_stillborn(candidates);
       tracer.nucleate(std::move(candidates), cracks_);
+      for (const SolidCandidate& c : tracer.stillborn()) stillborn_[c.number] = c.overload;
       decision_.generation_bound_active = false;
       decision_.energy_guard_active = decision_.energy_guard_active || tracer.is_out_of_energy();
       if (!(tracer.area() > 0.0)) break;
@@ -259,6 +273,7 @@ class SolidDecider {
   std::vector<double> tensions_;               // their first principal values
   std::vector<int> pieces_;                    // that its cells are in
   std::vector<OpenCrack> cracks_;              // of this decision
+  std::map<int, double> stillborn_;            // overload by candidate's number, where no crack came of it
 };
 
 }  // namespace

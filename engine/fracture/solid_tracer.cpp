@@ -299,10 +299,17 @@ bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>&
     values = follow_grains(*setup_.grains, complex_.elements->mesh, values, element, boundary_weakness());
   field_.take(std::make_shared<const std::vector<double>>(std::move(values)));
   const CrackCap cap = field_.cap(cell);
-  if (!(cap.area > 0.0) || !pay(cap.area, weakness_at(element))) return false;
+  if (!(cap.area > 0.0)) {
+    stillborn_.push_back(candidate);
+    return false;
+  }
+  if (!pay(cap.area, weakness_at(element))) return false;
   enter(cell, cap, 0.0);
   grow();
-  if (!take()) return false;
+  if (!take()) {
+    stillborn_.push_back(candidate);
+    return false;
+  }
   ++crack_count_;
   cracks.push_back({present_id_, crack_area_, field_.values(), rests_});
   return true;

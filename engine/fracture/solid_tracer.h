@@ -68,6 +68,9 @@ class SolidTracer {
 
   /// |cells| of the complex as it is now: which one each was when the generation began.
   const std::vector<int>& origins() const { return origin_; }
+  /// Where a crack was begun and came to nothing: it would have lain between cells, or stayed too small to
+  /// tell.
+  const std::vector<SolidCandidate>& stillborn() const { return stillborn_; }
   int crack_count() const { return crack_count_; }   // new ones
   double area() const { return area_; }              // m2, of the new cracks
   double grain_area() const { return grain_area_; }  // m2 of it, along grain boundaries
@@ -113,6 +116,7 @@ class SolidTracer {
   std::vector<Vec3> middles_;  // m, of its caps in them
   std::vector<Front> fronts_;  // heap
   std::vector<int> rests_;     // elements that the present crack did not enter
+  std::vector<SolidCandidate> stillborn_;
   int next_order_ = 0, crack_count_ = 0, present_id_ = 0;
   double crack_area_ = 0.0;      // m2, of the present crack
   double solved_area_ = 0.0;     // m2, of it when it was solved

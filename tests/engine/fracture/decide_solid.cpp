@@ -289,9 +289,11 @@ namespace {
 struct Trace {
   double area = 0.0, energy = 0.0;
   bool is_out_of_energy = false;
+  std::vector<SolidCandidate> stillborn;
 };
 Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
-            const std::optional<Vec3>& place, int id, double budget, std::vector<OpenCrack>& cracks) {
+            const std::optional<Vec3>& place, int id, double budget, std::vector<OpenCrack>& cracks,
+            double least_size = 0.0) {
   const material::Material glass;
   const auto contacts = find_solid_contacts(complex);
   const geometry::SolidMesh mesh = make_solid_mesh(complex, contacts);
@@ -307,6 +309,7 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   setup.solved = {&mesh, &displacement};
   setup.centres = {{Vec3(0.0, 0.0, 0.5), 0.1}};
   setup.energy_budget = budget;
+  setup.least_size = least_size;
   setup.first_id = id;
   SolidTracer tracer(complex, setup);
   tracer.resume(cracks);
@@ -316,7 +319,7 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
     tracer.nucleate({{cell, *place, 2.0, 0}}, cracks);
   }
   settle(complex);
-  return {tracer.area(), tracer.energy(), tracer.is_out_of_energy()};
+  return {tracer.area(), tracer.energy(), tracer.is_out_of_energy(), tracer.stillborn()};
 }
 
 Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress, const Vec3& place, int id,
@@ -332,6 +335,25 @@ stress::SolidStress pull(int axis, double tension) {
 }
 
 }  // namespace
+
+TEST_CASE("a solid's crack that stays too small to tell is none and its place is told") {
+  const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), 0.1, "glass");
+  const Vec3 place(0.03, 0.02, 0.11);
+  for (const double least_size : {1.0, 3.0}) {  // a crack across has 1 m2, and 2.25 are asked for at last
+    geometry::SolidComplex complex = *subject.complex;
+    std::vector<OpenCrack> cracks;
+    const Trace traced = trace(complex, pull(2, 1e9), place, 0, -1.0, cracks, least_size);
+    const bool is_told = least_size < 2.0;
+    CHECK(traced.stillborn.empty() == is_told);
+    CHECK(cracks.empty() == !is_told);
+    CHECK((traced.area > 0.0) == is_told);
+    CHECK((traced.energy > 0.0) == is_told);
+    if (is_told) continue;
+    CHECK(traced.stillborn[0].place == place);
+    CHECK(traced.stillborn[0].overload == 2.0);
+    CHECK(split_solid(complex).pieces.size() == 1);
+  }
+}
 
 TEST_CASE("a solid's crack runs across the pull, to the surface, and ends where it meets another one") {
   const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), 0.1, "glass");
