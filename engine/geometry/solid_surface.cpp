@@ -16,6 +16,17 @@ using core::at;
 
 constexpr double kStraight = 1e-11;  // sine: an edge that turns by less at a vertex is straight
 
+/// By numbers in [0, number_count); those of one number stay in their order.
+template <class Item, class Number>
+std::vector<Item> sorted_by(std::vector<Item> items, Size number_count, const Number& number_of) {
+  std::vector<Size> next(number_count + 1, 0);
+  for (const Item& item : items) ++next[at(number_of(item)) + 1];
+  for (Size n = 0; n < number_count; ++n) next[n + 1] += next[n];
+  std::vector<Item> sorted(items.size());
+  for (Item& item : items) sorted[next[at(number_of(item))]++] = std::move(item);
+  return sorted;
+}
+
 /// The border of a piece while it is put together.
 class BorderBuilder {
  public:
@@ -79,16 +90,14 @@ class BorderBuilder {
         sides.push_back({side / 2, static_cast<int>(b), i, (side % 2 == 0) != borders_[b].is_reversed});
       }
     }
-    std::vector<int> first(complex_.edges.size() + 1, 0);
-    for (const BorderSide& side : sides) ++first[at(side.edge) + 1];
-    for (Size e = 0; e < complex_.edges.size(); ++e) first[e + 1] += first[e];
-    std::vector<BorderSide> sorted(sides.size());
-    std::vector<int> next = first;
-    for (const BorderSide& side : sides) sorted[at(next[at(side.edge)]++)] = side;
-    for (Size e = 0; e < complex_.edges.size(); ++e) {
-      const int count = first[e + 1] - first[e];
-      if (count == 2) weld(sorted[at(first[e])], sorted[at(first[e]) + 1]);
-      if (count > 2) pair_at_edge(sorted.data() + first[e], count);
+    sides = sorted_by(std::move(sides), complex_.edges.size(), [](const BorderSide& s) { return s.edge; });
+    for (Size first = 0; first < sides.size();) {
+      Size last = first + 1;
+      while (last < sides.size() && sides[last].edge == sides[first].edge) ++last;
+      const int count = static_cast<int>(last - first);
+      if (count == 2) weld(sides[first], sides[first + 1]);
+      if (count > 2) pair_at_edge(sides.data() + first, count);
+      first = last;
     }
   }
 
@@ -239,9 +248,10 @@ class BorderBuilder {
   /// The rims of all regions as loops of vertices that are needed.
   void chain_loops() {
     std::vector<char> is_used(at(corner_count_), 0);
+    std::vector<int> sides;
     for (int start = 0; start < corner_count_; ++start) {
       if (is_used[at(start)] || !is_rim(start)) continue;
-      std::vector<int> sides;
+      sides.clear();
       for (int side = start; !is_used[at(side)];) {
         is_used[at(side)] = 1;
         sides.push_back(side);
@@ -250,14 +260,15 @@ class BorderBuilder {
       }
       loops_.push_back(make_loop(sides));
     }
-    std::stable_sort(loops_.begin(), loops_.end(),
-                     [](const Loop& a, const Loop& b) { return a.region < b.region; });
+    loops_ = sorted_by(std::move(loops_), borders_.size(), [](const Loop& loop) { return loop.region; });
   }
 
   Loop make_loop(const std::vector<int>& sides) {
     Loop loop;
     loop.region = region_of(sides[0]);
     const int n = static_cast<int>(sides.size());
+    loop.vertices.reserve(sides.size());
+    loop.keys.reserve(sides.size());
     int first = 0;
     while (first < n && is_needless_[at(begin_of(sides[at(first)]))]) ++first;
     for (int i = 0; i < n; ++i) {
@@ -411,9 +422,18 @@ class BorderBuilder {
       for (Size k = j + 1; k < joined_keys_.size(); ++k)
         std::replace(joined_keys_[k].begin(), joined_keys_[k].end(), gone, kept);
     }
-    std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
-      return a.ends != b.ends ? a.ends < b.ends : a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
-    });
+    // Those of one vertex are few.
+    spokes_ = sorted_by(std::move(spokes_), surface_.mesh.positions.size(),
+                        [](const Spoke& spoke) { return spoke.ends[0]; });
+    for (auto first = spokes_.begin(); first != spokes_.end();) {
+      const int begin = first->ends[0];
+      const auto last =
+          std::find_if(first, spokes_.end(), [begin](const Spoke& spoke) { return spoke.ends[0] != begin; });
+      std::sort(first, last, [](const Spoke& a, const Spoke& b) {
+        return a.ends != b.ends ? a.ends < b.ends : a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
+      });
+      first = last;
+    }
     for (Size first = 0; first < spokes_.size();) {
       Size last = first;
       while (last < spokes_.size() && spokes_[last].ends == spokes_[first].ends) ++last;
