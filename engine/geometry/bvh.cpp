@@ -7,11 +7,11 @@ namespace shatterbox::geometry {
 namespace {
 
 /// A triangle's centre along the axis that is split, and the triangle.
-struct Place {
+struct MedianPlace {
   double along = 0.0;
   int triangle = 0;
 
-  bool operator<(const Place& other) const {
+  bool operator<(const MedianPlace& other) const {
     return along < other.along || (along == other.along && triangle < other.triangle);
   }
 };
@@ -20,7 +20,7 @@ struct Builder {
   const std::vector<Vec3>& centres;
   TriangleTree& tree;
   int leaf_size;
-  std::vector<Place> places;  // |T|, scratch
+  std::vector<MedianPlace> places;  // |T|, scratch
 
   void build(int begin, int end) {
     const std::size_t index = tree.nodes.size();
@@ -70,7 +70,7 @@ TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::
   tree.order.resize(triangles.size());
   std::iota(tree.order.begin(), tree.order.end(), 0);
   tree.nodes.reserve(2 * triangles.size() / static_cast<std::size_t>(leaf_size) + 2);
-  Builder{centres, tree, leaf_size, std::vector<Place>(triangles.size())}.build(
+  Builder{centres, tree, leaf_size, std::vector<MedianPlace>(triangles.size())}.build(
       0, static_cast<int>(triangles.size()));
   return tree;
 }
