@@ -20,13 +20,14 @@ using body::ImpulseKind;
 using core::at;
 
 // A step with newborn pieces is taken in at least so many parts, none longer than this; and one after which,
-// of so many awake bodies, more than one turns far and, of so many, more than one pair was hit.
+// of so many bodies that are near others, more than one turns far and, of so many, more than one pair was
+// hit.
 constexpr int kLeastParts = 4;
 constexpr double kPartTime = 1.0 / 960.0;  // s
 constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
-constexpr int kManyCut = 500;   // one after which, of so many awake bodies, more than one was cut short
-constexpr int kCrowdParts = 2;  // of one after which, of so many awake bodies, more than one pair was hit,
+constexpr int kManyCut = 500;   // one after which, of so many of them, more than one was cut short
+constexpr int kCrowdParts = 2;  // of one after which, of so many of them, more than one pair was hit,
 constexpr int kCrowdHits = 5;   // and at least so many in all
 constexpr int kLeastHits = 50;
 
@@ -260,23 +261,30 @@ int lively_parts(const ContactSettings& settings) {
   return std::max(kLeastParts, static_cast<int>(std::ceil(settings.time_step / kPartTime - 1e-9)));
 }
 
+void count_near(const ContactSettings& settings, const MotionWork& work, ContactReport& report) {
+  std::vector<char> is_near(work.bodies.size(), 0);
+  for (const WorkPair& pair : work.pairs)
+    if (!pair.is_apart) is_near[at(pair.a)] = is_near[at(pair.b)] = 1;
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    const WorkBody& w = work.bodies[i];
+    if (!is_near[i] || !w.is_active || w.inverse_mass == 0.0) continue;
+    ++report.near_bodies;
+    const bool turns_far = w.spin.norm() * settings.time_step > kStraightTurn;
+    report.spinning_bodies += w.shape->kind != body::ShapeKind::sphere && turns_far ? 1 : 0;
+  }
+}
+
 // Who was cut stood still for the whole part: short parts cost less of the motion.
 bool were_many_cut(const ContactSettings& settings, const ContactReport& report) {
-  return kManyCut * report.failsafe_steps > report.awake_bodies && settings.time_step > kPartTime;
+  return kManyCut * report.failsafe_steps > report.near_bodies && settings.time_step > kPartTime;
 }
 
 // What is hit on its way did not see it coming: over shorter ways more does.
-int find_next_parts(const std::vector<Body>& bodies, const ContactSettings& settings,
-                    const ContactReport& report) {
-  int spinning = 0;
-  for (const Body& b : bodies) {
-    const bool turns = b.is_dynamic() && b.is_awake && b.shape->kind != body::ShapeKind::sphere;
-    spinning += turns && b.angular_velocity.norm() * settings.time_step > kStraightTurn ? 1 : 0;
-  }
-  const int awake = report.awake_bodies, hits = report.hits;
+int find_next_parts(const ContactSettings& settings, const ContactReport& report) {
+  const int near = report.near_bodies, hits = report.hits;
   if (were_many_cut(settings, report)) return lively_parts(settings);
-  if (kManySpin * spinning > awake && kManyHits * hits > awake) return lively_parts(settings);
-  return hits >= kLeastHits && kCrowdHits * hits > awake ? kCrowdParts : 1;
+  if (kManySpin * report.spinning_bodies > near && kManyHits * hits > near) return lively_parts(settings);
+  return hits >= kLeastHits && kCrowdHits * hits > near ? kCrowdParts : 1;
 }
 
 }  // namespace
@@ -323,6 +331,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   guard_motion(bodies, own, state, work, report);
   const std::size_t first = log.size();
   finish_motion(bodies, state, work, log, report);
+  count_near(settings, work, report);
   for (std::size_t i = first; i < log.size(); ++i) log[i].time += part.number * own.time_step;
   if (own.has_ways) report.ways = find_ways(work, part);
   return report;
@@ -358,12 +367,13 @@ void add_part(ContactReport&& part, ContactReport& step) {
   step.residual = std::max(step.residual, part.residual);
   step.drift = std::max(step.drift, part.drift);
   step.awake_bodies = part.awake_bodies;
+  step.near_bodies = part.near_bodies;
+  step.spinning_bodies = part.spinning_bodies;
 }
 
-void end_step(const std::vector<Body>& bodies, const ContactSettings& settings, int parts,
-              ContactReport& step, ContactState& state) {
+void end_step(const ContactSettings& settings, int parts, ContactReport& step, ContactState& state) {
   step.frozen_share /= parts;
-  state.next_parts = find_next_parts(bodies, settings, step);
+  state.next_parts = find_next_parts(settings, step);
 }
 
 ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
@@ -372,7 +382,7 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
   StepPart part{0, count_parts(bodies, settings, state)};
   for (; part.number < part.count; ++part.number)
     add_part(move_part(bodies, settings, part, state, log), step);
-  end_step(bodies, settings, part.count, step, state);
+  end_step(settings, part.count, step, state);
   return step;
 }
 

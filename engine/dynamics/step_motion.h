@@ -36,6 +36,8 @@ struct ContactReport {
   double frozen_share = 0.0;                                  // failsafe_steps / awake dynamic bodies
   double residual = 0.0;  // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
+  int near_bodies = 0;          // of them: in a pair that had to be looked at
+  int spinning_bodies = 0;      // of these, spheres apart: turn far in a step
   std::vector<body::Way> ways;  // ascending id; if asked for: of bodies that did not go straight
   double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone
 };
@@ -55,7 +57,8 @@ struct StepPart {
 
 /// In how many parts the step that begins here should be taken: several if pieces are newborn, which lie in
 /// each other's way and go far against their own size while they part, and after that while many spin and
-/// collide; or if many were hit on their ways in the step before.
+/// collide; or if many were hit on their ways in the step before. Many of those that are near others: who is
+/// far from all does not matter.
 int count_parts(const std::vector<body::Body>& bodies, const ContactSettings& settings,
                 const ContactState& state);
 
@@ -73,8 +76,7 @@ int count_parts_instead(const ContactSettings& settings, const StepPart& part, c
 void add_part(ContactReport&& part, ContactReport& step);
 
 /// After the last part: decides whether the next step is one that is taken in parts too.
-void end_step(const std::vector<body::Body>& bodies, const ContactSettings& settings, int parts,
-              ContactReport& step, ContactState& state);
+void end_step(const ContactSettings& settings, int parts, ContactReport& step, ContactState& state);
 
 /// All parts of a step, one after the other.
 ContactReport step_motion(std::vector<body::Body>& bodies, const ContactSettings& settings,

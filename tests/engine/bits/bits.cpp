@@ -54,6 +54,7 @@ TEST_CASE("a far body that touches nothing changes no bit of the others") {
   world::BodyDescription far_box;
   far_box.form = world::BoxDescription{Vec3::Constant(0.3)};
   far_box.pose.translation = Vec3(500.0, 200.0, -300.0);
+  far_box.angular_velocity = Vec3(0.0, 100.0, 0.0);  // though it spins
   const body::BodyId id = w.add_body(far_box).value();
   for (int i = 0; i < test::kBitSteps; ++i) {
     alone.step();

@@ -132,29 +132,43 @@ TEST_CASE("who is woken in the midst of a step has stood still until then") {
 
 TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, spinning ones in short ones") {
   test::Scene scene;
-  for (int k = 0; k < 300; ++k)
-    scene.add(test::make_shell(test::square_mesh(0.05, 1))).pose.translation.x() = 0.2 * k;
-  const auto parts_after = [&](int hits, double spin, int failsafe_steps = 0) {
+  const auto parts_after = [&](int hits, int spinning, int failsafe_steps = 0) {
     dynamics::ContactReport step;
-    step.awake_bodies = 300;
+    step.near_bodies = 300;
+    step.spinning_bodies = spinning;
     step.failsafe_steps = failsafe_steps;
     step.hits = hits;
-    for (auto& b : scene.bodies) b.angular_velocity = Vec3(0, spin, 0);
-    dynamics::end_step(scene.bodies, scene.settings, 1, step, scene.state);
+    dynamics::end_step(scene.settings, 1, step, scene.state);
     scene.state.bodies.resize(1);  // no world that only begins
     return dynamics::count_parts({}, scene.settings, scene.state);
   };
-  CHECK(parts_after(0, 0.0) == 1);
-  CHECK(parts_after(60, 0.0) == 1);
-  CHECK(parts_after(61, 0.0) == 2);
-  CHECK(parts_after(0, 200.0) == 1);
-  CHECK(parts_after(61, 200.0) == 4);
-  CHECK(parts_after(0, 0.0, 1) == 4);
+  CHECK(parts_after(0, 0) == 1);
+  CHECK(parts_after(60, 0) == 1);
+  CHECK(parts_after(61, 0) == 2);
+  CHECK(parts_after(0, 16) == 1);
+  CHECK(parts_after(61, 15) == 2);
+  CHECK(parts_after(61, 16) == 4);
+  CHECK(parts_after(0, 0, 1) == 4);
   scene.settings.time_step = 1.0 / 960.0;
-  CHECK(parts_after(0, 0.0, 1) == 1);
+  CHECK(parts_after(0, 0, 1) == 1);
   scene.settings.time_step = 1.0 / 60.0;
-  CHECK(parts_after(61, 200.0) == 16);
-  CHECK(parts_after(0, 0.0, 1) == 16);
+  CHECK(parts_after(61, 16) == 16);
+  CHECK(parts_after(0, 0, 1) == 16);
+}
+
+TEST_CASE("of those who count for the parts of a step each is near another, spheres do not spin") {
+  test::Scene scene;
+  scene.settings.time_step = 1.0 / 60.0;
+  scene.add(test::make_plane());
+  scene.add(test::make_box(Vec3::Constant(0.05), Vec3(0, 0.06, 0)));    // near the plane, and turns
+  scene.add(test::make_sphere(0.05, Vec3(1, 0.0501, 0)));               // near it too
+  scene.add(test::make_box(Vec3::Constant(0.05), Vec3(3, 20.0, 0)));    // far from all
+  scene.add(test::make_box(Vec3::Constant(0.05), Vec3(5, 0.0501, 0)));  // lies still
+  for (std::size_t i = 1; i < 4; ++i) scene.bodies[i].angular_velocity = Vec3(0, 60.0, 0);
+  scene.step();
+  CHECK(scene.report.awake_bodies == 4);
+  CHECK(scene.report.near_bodies == 3);
+  CHECK(scene.report.spinning_bodies == 1);
 }
 
 TEST_CASE(
