@@ -11,13 +11,13 @@ namespace shatterbox::dynamics {
 namespace {
 
 /// A body of the step, its start, and where it has gone.
-struct Mover {
+struct Turner {
   body::Body body;
   WorkBody work;
   Moved moved;
   Pose now;
 
-  Mover(body::Body of, double turn, core::Random& random) : body(std::move(of)) {
+  Turner(body::Body of, double turn, core::Random& random) : body(std::move(of)) {
     work.shape = body.shape.get();
     work.start = body.pose;
     const Quat by(Eigen::AngleAxisd(turn, test::draw_vector(random).normalized()));
@@ -26,7 +26,7 @@ struct Mover {
   }
 };
 
-geometry::TriangleMesh triangle(const Vec3& p, const Vec3& q, const Vec3& r) {
+geometry::TriangleMesh lone_triangle(const Vec3& p, const Vec3& q, const Vec3& r) {
   geometry::TriangleMesh mesh;
   mesh.positions = {p, q, r};
   mesh.triangles = {{0, 1, 2}};
@@ -41,12 +41,12 @@ TEST_CASE("a vertex over a face and an edge over an edge have their true gap whe
     INFO("try " << n);
     const bool is_edges = n % 2 == 0;
     // The face lies flat; a corner, or an edge, of the other stands over it.
-    const Mover below(test::make_shell(triangle(Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 1))), 0.3,
-                      random);
-    const Mover above(is_edges
-                          ? test::make_shell(triangle(Vec3(0.2, 0.1, -2), Vec3(-0.3, 0.1, 0), Vec3(0, 1, -1)))
-                          : test::make_shell(triangle(Vec3(0, 0.1, 0), Vec3(1, 1, 0), Vec3(0, 1, 1))),
-                      0.3, random);
+    const Turner below(test::make_shell(lone_triangle(Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 1))), 0.3,
+                       random);
+    const Turner above(
+        is_edges ? test::make_shell(lone_triangle(Vec3(0.2, 0.1, -2), Vec3(-0.3, 0.1, 0), Vec3(0, 1, -1)))
+                 : test::make_shell(lone_triangle(Vec3(0, 0.1, 0), Vec3(1, 1, 0), Vec3(0, 1, 1))),
+        0.3, random);
     const collision::FeatureKind kind =
         is_edges ? collision::FeatureKind::edge_edge : collision::FeatureKind::vertex_triangle;
     const auto a = collision::make_collider(*above.body.shape),
@@ -71,11 +71,12 @@ TEST_CASE("a ball has its true gap over a face, a box and a ball wherever they t
   core::Random random(29);
   for (int n = 0; n < 100; ++n) {
     INFO("try " << n);
-    const Mover ball(test::make_sphere(0.2, Vec3(0.1, 0.35, 0.05)), 0.3, random);
-    const Mover box(test::make_box(Vec3(1, 0.1, 1), Vec3::Zero()), 0.3, random);
-    const Mover other(test::make_sphere(0.1, Vec3(0, 0, 0)), 0.3, random);
-    const Mover face(test::make_shell(triangle(Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 1))), 0.3, random);
-    for (const Mover* solid : {&box, &other}) {
+    const Turner ball(test::make_sphere(0.2, Vec3(0.1, 0.35, 0.05)), 0.3, random);
+    const Turner box(test::make_box(Vec3(1, 0.1, 1), Vec3::Zero()), 0.3, random);
+    const Turner other(test::make_sphere(0.1, Vec3(0, 0, 0)), 0.3, random);
+    const Turner face(test::make_shell(lone_triangle(Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 1))), 0.3,
+                      random);
+    for (const Turner* solid : {&box, &other}) {
       const auto found = collision::find_ball_contact(*ball.work.shape, ball.work.start, *solid->work.shape,
                                                       solid->work.start);
       const auto now =
