@@ -12,41 +12,42 @@ using core::at;
 // What closes within this substep, and how fast it will be when it touches. From the energy at the
 // substep's start: gravity's share of the way down is in it, whatever the part of the substep.
 void IslandSolver::find_arrivals() {
-  has_arrivals_ = false;
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
-    c.impulse.setZero();
-    c.rolling_impulse.setZero();
-    c.is_arriving = false;
-    c.was_apart = !is_touching(c);
-    work_.pairs[at(c.pair)].work = 0.0;
-    const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
-    const double after_kick = relative_velocity(c)[0];
-    const double before = after_kick - 0.5 * drive * step_;
-    const double way = std::max(0.0, c.slack);
-    if (after_kick >= 0.0 || way + after_kick * step_ > kTouching * c.kept_gap) continue;
-    const double speed_squared = before * std::abs(before) + 2.0 * drive * way;  // closing is negative
-    if (speed_squared >= 0.0) continue;
-    const double speed = std::sqrt(-speed_squared);
-    if (speed <= c.threshold) continue;
-    arrive(c, speed, part_start_ + std::min(step_, way / -after_kick));
-  }
+  has_arrivals_ = each([&](std::size_t, SolverContact& c, Found& found) {
+                    c.impulse.setZero();
+                    c.rolling_impulse.setZero();
+                    c.is_arriving = false;
+                    c.was_apart = !is_touching(c);
+                    work_.pairs[at(c.pair)].work = 0.0;
+                    const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
+                    const double after_kick = relative_velocity(c)[0];
+                    const double before = after_kick - 0.5 * drive * step_;
+                    const double way = std::max(0.0, c.slack);
+                    if (after_kick >= 0.0 || way + after_kick * step_ > kTouching * c.kept_gap) return;
+                    const double speed_squared =
+                        before * std::abs(before) + 2.0 * drive * way;  // closing is negative
+                    if (speed_squared >= 0.0) return;
+                    const double speed = std::sqrt(-speed_squared);
+                    if (speed <= c.threshold) return;
+                    arrive(c, speed, part_start_ + std::min(step_, way / -after_kick));
+                    found.is_any = true;
+                  }).is_any;
 }
 
 // Normals and arms turn on the way: what did not seem to arrive in this part may have all the same. It has
 // come from beyond the kept gap: what is opened, or lies in each other by rounding, does not bounce.
 void IslandSolver::find_late_arrivals() {
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
-    if (!c.was_apart || c.is_arriving || c.impulse[0] > 0.0 || !is_touching(c)) continue;
+  const Found late = each([&](std::size_t, SolverContact& c, Found& found) {
+    if (!c.was_apart || c.is_arriving || c.impulse[0] > 0.0 || !is_touching(c)) return;
     const double speed = -relative_velocity(c)[0];
-    if (speed > c.threshold && speed * step_ > c.kept_gap) arrive(c, speed, part_start_ + step_);
-  }
+    if (speed <= c.threshold || speed * step_ <= c.kept_gap) return;
+    arrive(c, speed, part_start_ + step_);
+    found.is_any = true;
+  });
+  has_arrivals_ = has_arrivals_ || late.is_any;
 }
 
 void IslandSolver::arrive(SolverContact& c, double speed, double time) {
   c.is_arriving = true;
-  has_arrivals_ = true;
   c.arrival_speed = std::max(c.arrival_speed, speed);
   if (c.closing_speed == 0.0) c.arrival_time = time;
   if (speed > c.closing_speed) {
@@ -62,7 +63,7 @@ void IslandSolver::strike() {
   for (int round = 0; round < kMostStrikes; ++round) {
     core::stop_if_asked();
     struck_.clear();
-    for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
+    for (std::size_t k = 0; k < order_.contacts.size(); ++k) {
       SolverContact& c = contact(k);
       double speed = c.arrival_speed;
       if (round == 0) {
@@ -125,39 +126,34 @@ void IslandSolver::bounce_together() {
 // Newton's rule with the speed before the impact; the pair's impulses of this substep may not do work in
 // sum.
 void IslandSolver::bounce() {
-  bool is_due = false;
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
+  const Found due = each([&](std::size_t, SolverContact& c, Found& found) {
     c.target = 0.0;
-    if (c.arrival_speed <= 0.0 || !is_touching(c)) continue;
+    if (c.arrival_speed <= 0.0 || !is_touching(c)) return;
     if (c.impulse[0] <= 0.0 && !c.is_arriving) {  // turned away by others before it touched
       c.arrival_speed = 0.0;
-      continue;
+      return;
     }
     c.target = c.restitution * c.arrival_speed;
-    is_due = true;
-  }
-  if (!is_due) return;
+    found.is_any = true;
+  });
+  if (!due.is_any) return;
   const int most = most_sweeps(40);
   for (int sweep = 0; sweep < most; ++sweep) {
     core::stop_if_asked();
-    double excess = 0.0;
-    for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
-      SolverContact& c = work_.contacts[at(island_.contacts[k])];
+    const Found left = in_turn([&](std::size_t k, SolverContact& c, Found& found) {
       const double speed = std::max(c.target, c.threshold);
       const bool must_bounce = sweep == 0 && c.target > 0.0;
-      if ((!must_bounce && is_still(k, c, kBounced * speed)) || !is_touching(c)) continue;
-      const double found = c.target > 0.0 ? visit_bounce(c) : visit(c, 0.0);
+      if ((!must_bounce && is_still(k, c, kBounced * speed)) || !is_touching(c)) return;
+      const double change = c.target > 0.0 ? visit_bounce(c) : visit(c, 0.0);
       see(k, c);
-      excess = std::max(excess, found / speed);
-    }
+      found.excess = std::max(found.excess, change / speed);
+    });
     joints_.hold(is_before_drift_);
-    if (excess < kBounced) break;
+    if (left.excess < kBounced) break;
   }
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
+  each([](std::size_t, SolverContact& c, Found&) {
     if (is_touching(c)) c.arrival_speed = 0.0;
-  }
+  });
 }
 
 }  // namespace shatterbox::dynamics

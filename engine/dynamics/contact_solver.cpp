@@ -95,9 +95,8 @@ double IslandSolver::until_first_arrival(double left) {
 
 // The solver may be run again with more contacts: all begins at the start of the step.
 void IslandSolver::begin() {
-  seen_.assign(island_.contacts.size(), 0.0);
-  for (const int i : island_.bodies) {
-    WorkBody& b = body(i);
+  seen_.assign(order_.contacts.size(), 0.0);
+  each_body([](WorkBody& b) {
     b.velocity = b.velocity_start;
     b.spin = b.spin_start;
     b.way.setZero();
@@ -107,28 +106,27 @@ void IslandSolver::begin() {
     b.stirred = 0.0;
     b.substep_rotations.clear();
     place_inertia(b);
-  }
+  });
   joints_.begin();
   may_strike_on_ = strikes_one_by_one(island_, work_);
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
-    const WorkBody &a = body(c.a), &b = body(c.b);
-    has_scripted_ = has_scripted_ || a.is_scripted || b.is_scripted;
-    const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
-    c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
-    c.warm = c.warm_start;
-    c.held_from = -c.creep_before;
-    c.arrival_speed = c.arrival_before;
-    c.impulse.setZero();
-    reset_axes(c);
-    c.total.setZero();
-    c.moment_point.setZero();
-    c.moment_a.setZero();
-    c.moment_b.setZero();
-    c.impulse_a.setZero();
-    c.impulse_b.setZero();
-    c.moment_weight = c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
-  }
+  has_scripted_ = each([&](std::size_t, SolverContact& c, Found& found) {
+                    const WorkBody &a = body(c.a), &b = body(c.b);
+                    found.is_any = found.is_any || a.is_scripted || b.is_scripted;
+                    const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
+                    c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
+                    c.warm = c.warm_start;
+                    c.held_from = -c.creep_before;
+                    c.arrival_speed = c.arrival_before;
+                    c.impulse.setZero();
+                    reset_axes(c);
+                    c.total.setZero();
+                    c.moment_point.setZero();
+                    c.moment_a.setZero();
+                    c.moment_b.setZero();
+                    c.impulse_a.setZero();
+                    c.impulse_b.setZero();
+                    c.moment_weight = c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
+                  }).is_any;
 }
 
 // Scripted bodies have their own velocity in each substep. Islands that share one are solved one after the
@@ -152,16 +150,14 @@ void IslandSolver::ride(int substep) {
 }
 
 void IslandSolver::kick() {
-  for (const int i : island_.bodies) {
-    WorkBody& b = body(i);
+  each_body([&](WorkBody& b) {
     b.velocity += b.gravity * (0.5 * step_);
     if (!b.torque.isZero(0.0)) b.spin += b.inverse_inertia * b.torque * (0.5 * step_);
-  }
+  });
 }
 
 void IslandSolver::drift() {
-  for (const int i : island_.bodies) {
-    WorkBody& b = body(i);
+  each_body([&](WorkBody& b) {
     b.way += b.velocity * step_;
     const bool is_fast = b.spin.squaredNorm() * step_ * step_ > kFastSpin * kFastSpin;
     advance_spin(b.inertia, step_, is_fast ? SpinOrder::fourth : SpinOrder::second, b.rotation, b.spin);
@@ -173,15 +169,14 @@ void IslandSolver::drift() {
     if (b.shape->kind != body::ShapeKind::sphere) {
       b.turn_angle += b.spin.norm() * step_;
     }
-  }
+  });
 }
 
 // Arms, gap and response at the present pose. Both bodies feel the impulse at one and the same point:
 // angular momentum is kept to rounding.
 void IslandSolver::prepare(int substeps) {
   joints_.place(substeps);
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
+  each([&](std::size_t, SolverContact& c, Found&) {
     const WorkBody &a = body(c.a), &b = body(c.b);
     const Moved ma = moved(a, substeps), mb = moved(b, substeps);
     const PlacedContact now = place_contact(a, ma, b, mb, c.found);
@@ -210,7 +205,7 @@ void IslandSolver::prepare(int substeps) {
       }
       c.weights[k] = 1.0 / c.response(k, k);
     }
-  }
+  });
 }
 
 // An impact's impulse says nothing about the next substep: the bodies in it start that one from what was
@@ -225,14 +220,13 @@ void IslandSolver::book() {
       if (body(k).inverse_mass > 0.0) body(k).is_struck = true;
     }
   }
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
+  each([&](std::size_t, SolverContact& c, Found&) {
     const bool was_impact = body(c.a).is_struck || body(c.b).is_struck;
     if (!was_impact) c.warm = c.impulse;
     if (!c.can_creep || was_impact || c.impulse.tail<2>().norm() >= kSliding * c.friction * c.impulse[0])
       c.held_from = c.change;
     keep_impulse(c);
-  }
+  });
 }
 
 void IslandSolver::keep_impulse(SolverContact& c) {
@@ -260,7 +254,10 @@ bool strikes_one_by_one(const Island& island, const MotionWork& work) {
 }
 
 void solve_island(const ContactSettings& settings, const Island& island, MotionWork& work) {
-  IslandSolver(settings, island, work).run();
+  const auto solve = [&](core::Crew& crew) { IslandSolver(settings, island, work, crew).run(); };
+  if (island.contacts.size() > ContactOrder::kMany) return core::Crew::run(solve);
+  core::Crew alone;
+  solve(alone);
 }
 
 }  // namespace shatterbox::dynamics

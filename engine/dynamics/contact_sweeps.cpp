@@ -9,13 +9,12 @@ namespace shatterbox::dynamics {
 using core::at;
 
 void IslandSolver::start_warm(double share) {
-  for (const int i : island_.contacts) {
-    SolverContact& c = work_.contacts[at(i)];
+  in_turn([&](std::size_t, SolverContact& c, Found&) {
     // What has come apart, or bounced, must not be pushed by what it weighed before.
-    if (may_strike_on_ && c.is_arriving && !is_before_drift_) continue;
+    if (may_strike_on_ && c.is_arriving && !is_before_drift_) return;
     if (c.warm[0] > 0.0 && c.slack <= kTouching * c.kept_gap)
       apply(c, share * settings_.warm_start * c.warm, relative_velocity(c));
-  }
+  });
 }
 
 // Sweeps alone carry a heavy body on light ones only after as many of them as the masses differ. Where
@@ -25,12 +24,12 @@ void IslandSolver::start_warm(double share) {
 // harder by every sweep and be no stiller.
 void IslandSolver::begin_course() {
   course_square_ = 0.0;
-  course_.assign(island_.contacts.size(), Vec3::Zero());
+  course_.assign(order_.contacts.size(), Vec3::Zero());
 }
 
 void IslandSolver::note_impulses() {
-  before_sweep_.resize(island_.contacts.size());
-  for (std::size_t k = 0; k < island_.contacts.size(); ++k) before_sweep_[k] = contact(k).impulse;
+  before_sweep_.resize(order_.contacts.size());
+  for (std::size_t k = 0; k < order_.contacts.size(); ++k) before_sweep_[k] = contact(k).impulse;
 }
 
 Vec3 IslandSolver::within_cone(const SolverContact& c, Vec3 impulse) {
@@ -42,11 +41,11 @@ Vec3 IslandSolver::within_cone(const SolverContact& c, Vec3 impulse) {
 
 void IslandSolver::go_on_course() {
   double square = 0.0;
-  for (std::size_t k = 0; k < island_.contacts.size(); ++k)
+  for (std::size_t k = 0; k < order_.contacts.size(); ++k)
     square += (contact(k).impulse - before_sweep_[k]).squaredNorm();
   const double share = square < course_square_ ? square / course_square_ : 0.0;
   course_square_ = square;
-  for (std::size_t k = 0; k < island_.contacts.size(); ++k) {
+  for (std::size_t k = 0; k < order_.contacts.size(); ++k) {
     SolverContact& c = contact(k);
     const Vec3 change = c.impulse - before_sweep_[k];
     const Vec3 extra = within_cone(c, c.impulse + share * course_[k]) - c.impulse;
@@ -57,40 +56,42 @@ void IslandSolver::go_on_course() {
 }
 
 template <class Visit>
-void IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
-  const std::size_t count = island_.contacts.size();
+bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
+  const std::size_t count = order_.contacts.size();
+  const auto look = [&](std::size_t k, SolverContact& c, Found& found) {
+    visit_contact(k, c, found);
+    const double lasting = std::min(c.impulse[0], c.warm[0]);
+    if ((c.has_sides && lasting > c.strained_from) || (c.is_close && c.impulse[0] > 0.0))
+      found.has_strain = true;
+  };
   const int most = how.plain + static_cast<int>(kCourseSize * kCourseSize / (count * count + 1));
   forget_seen();
   double least_excess = 1e300;
   int least_round = 0;
+  bool is_any = false;
   for (int round = 0; round < most; ++round) {
     core::stop_if_asked();
     const bool is_on_course = round >= how.plain;
     if (round == how.plain) begin_course();
     if (is_on_course) note_impulses();
-    double excess = 0.0;
-    bool has_strain = false;
-    for (std::size_t i = 0; i < (is_on_course ? 2 * count : count); ++i) {
-      const std::size_t k = i < count ? i : 2 * count - 1 - i;
-      SolverContact& c = contact(k);
-      excess = std::max(excess, visit_contact(k, c));
-      const double lasting = std::min(c.impulse[0], c.warm[0]);
-      has_strain =
-          has_strain || (c.has_sides && lasting > c.strained_from) || (c.is_close && c.impulse[0] > 0.0);
-    }
+    Found found = in_turn(look);
+    // So small an island is visited by one thread.
+    for (std::size_t k = is_on_course ? count : 0; k-- > 0;) look(k, contact(k), found);
     joints_.hold(is_before_drift_);
-    if (count == 0) return;
+    is_any = is_any || found.is_any;
+    if (count == 0) break;
     const double enough = round + 1 < how.plain ? how.enough : how.loose;
-    if (excess < (has_strain ? how.tight : enough)) return;
+    if (found.excess < (found.has_strain ? how.tight : enough)) break;
     // What is jammed has no solution.
-    if (excess < kProgress * least_excess) {
-      least_excess = excess;
+    if (found.excess < kProgress * least_excess) {
+      least_excess = found.excess;
       least_round = round;
     } else if (round > least_round + (has_scripted_ ? kScriptedPatience : kCoursePatience)) {
-      return;
+      break;
     }
     if (is_on_course && round + 1 < most) go_on_course();
   }
+  return is_any;
 }
 
 double IslandSolver::target_before_drift(const SolverContact& c) const {
@@ -109,39 +110,37 @@ double IslandSolver::target_before_drift(const SolverContact& c) const {
 // Small islands are swept until nothing is left to do, for large ones few sweeps a substep must do: what
 // they leave the next substep finds, which starts from their impulses.
 int IslandSolver::most_sweeps(int of_small) const {
-  const auto affordable = static_cast<int>(kVisits / (island_.contacts.size() + 1));
+  const auto affordable = static_cast<int>(kVisits / (order_.contacts.size() + 1));
   return std::clamp(affordable, kFewSweeps, of_small);
 }
 
 // One sweep is mostly enough at rest; what arrives must not overshoot the gap.
 void IslandSolver::sweep_before_drift() {
-  bool is_pushed_apart = false;
-  const auto hold = [&](std::size_t k, SolverContact& c) {
+  const auto hold = [&](std::size_t k, SolverContact& c, Found& found) {
     const double tolerance = kTouching * c.kept_gap / step_;
-    if (is_still(k, c, tolerance)) return 0.0;
+    if (is_still(k, c, tolerance)) return;
     const double pressed = c.impulse[0];
-    const double found = visit(c, target_before_drift(c));
+    const double closing = visit(c, target_before_drift(c));
     see(k, c);
-    is_pushed_apart = is_pushed_apart || (c.impulse[0] < pressed && found > tolerance);
-    return found / tolerance;
+    const bool is_pushed_apart = c.impulse[0] < pressed && closing > tolerance;
+    found.is_any = found.is_any || is_pushed_apart;
+    found.excess = std::max(found.excess, closing / tolerance);
   };
   const int calm = joints_.is_empty() ? 1 : most_sweeps(kJointSweeps);
-  sweep({has_arrivals_ ? most_sweeps(16) : calm, 1.0, 1e300, kStrainedGap}, hold);
+  bool is_pushed_apart = sweep({has_arrivals_ ? most_sweeps(16) : calm, 1.0, 1e300, kStrainedGap}, hold);
   // What came free must not be thrown by what wedged it. To press on would only strain what is wedged
   // still.
   for (int round = 1; is_pushed_apart && !has_arrivals_ && round < most_sweeps(16); ++round) {
-    is_pushed_apart = false;
-    for (std::size_t k = 0; k < island_.contacts.size(); ++k) hold(k, contact(k));
+    is_pushed_apart = in_turn(hold).is_any;
     joints_.hold(is_before_drift_);
   }
 }
 
 void IslandSolver::sweep_after_drift() {
-  sweep({most_sweeps(8), kResting, kLooseRest, kResting}, [&](std::size_t k, SolverContact& c) {
-    if (is_still(k, c, kResting * c.threshold) || !is_touching(c)) return 0.0;
-    const double found = visit(c, 0.0);
+  sweep({most_sweeps(8), kResting, kLooseRest, kResting}, [&](std::size_t k, SolverContact& c, Found& found) {
+    if (is_still(k, c, kResting * c.threshold) || !is_touching(c)) return;
+    found.excess = std::max(found.excess, visit(c, 0.0) / c.threshold);
     see(k, c);
-    return found / c.threshold;
   });
 }
 

@@ -1,13 +1,16 @@
 // One island's contacts through one step. Its motion is in contact_solver.cpp, its sweeps over contacts at
-// rest in contact_sweeps.cpp, what arrives and bounces in contact_impacts.cpp; here is what they share.
+// rest in contact_sweeps.cpp, what arrives and bounces in contact_impacts.cpp, the order in which they visit
+// contacts in contact_order.cpp; here is what they share.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "engine/core/crew.h"
 #include "engine/core/index.h"
 #include "engine/dynamics/contact_friction.h"
+#include "engine/dynamics/contact_order.h"
 #include "engine/dynamics/contact_solver.h"
 #include "engine/dynamics/joint_solver.h"
 
@@ -15,10 +18,12 @@ namespace shatterbox::dynamics {
 
 class IslandSolver {
  public:
-  IslandSolver(const ContactSettings& settings, const Island& island, MotionWork& work)
+  IslandSolver(const ContactSettings& settings, const Island& island, MotionWork& work, core::Crew& crew)
       : settings_(settings),
         island_(island),
         work_(work),
+        crew_(crew),
+        order_(order_contacts(island, work)),
         substep_(settings.time_step / settings.substeps),
         step_(substep_),
         joints_(island, step_, work) {}
@@ -39,6 +44,31 @@ class IslandSolver {
   void book();
   void keep_impulse(SolverContact& c);
 
+  // What visits to contacts found, together.
+  struct Found {
+    double excess = 0.0;  // the most
+    bool is_any = false;  // whatever was asked
+    bool has_strain = false;
+
+    void add(const Found& other) {
+      excess = std::max(excess, other.excess);
+      is_any = is_any || other.is_any;
+      has_strain = has_strain || other.has_strain;
+    }
+  };
+
+  // visit(k, contact, found so far) for all contacts, one after the other where they share a body that
+  // impulses move.
+  template <class Visit>
+  Found in_turn(const Visit& visit);
+  // The same for what changes nothing but the contact and its pair.
+  template <class Visit>
+  Found each(const Visit& visit);
+  template <class Visit>
+  void each_body(const Visit& visit);
+  template <class Visit>
+  Found visit_chunks(const ContactOrder::Range& chunks, const Visit& visit);
+
   // contact_sweeps.cpp
   // How much closing may be left, as a share of what `visit` measures it by.
   struct Sweeps {
@@ -56,8 +86,9 @@ class IslandSolver {
   int most_sweeps(int of_small) const;
   void sweep_before_drift();
   void sweep_after_drift();
+  // True if what was asked was so for any contact in any sweep.
   template <class Visit>
-  void sweep(const Sweeps& how, const Visit& visit_contact);
+  bool sweep(const Sweeps& how, const Visit& visit_contact);
 
   // contact_impacts.cpp
   void find_arrivals();
@@ -70,7 +101,7 @@ class IslandSolver {
   void bounce();
 
   bool has_hits_one_by_one() const {
-    return island_.contacts.size() <= kFewContacts && !has_scripted_ && joints_.is_empty();
+    return order_.contacts.size() <= kFewContacts && !has_scripted_ && joints_.is_empty();
   }
 
   static void place_inertia(WorkBody& b) {
@@ -79,7 +110,7 @@ class IslandSolver {
   }
 
   WorkBody& body(int i) { return work_.bodies[core::at(i)]; }
-  SolverContact& contact(std::size_t k) { return work_.contacts[core::at(island_.contacts[k])]; }
+  SolverContact& contact(std::size_t k) { return work_.contacts[core::at(order_.contacts[k])]; }
   Vec3 relative_velocity(const SolverContact& c) {
     const WorkBody &a = body(c.a), &b = body(c.b);
     const Vec3 u = a.velocity + a.spin.cross(c.arm_a) - b.velocity - b.spin.cross(c.arm_b);
@@ -182,7 +213,7 @@ class IslandSolver {
   static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
-  static constexpr std::size_t kCourseSize = 1200;
+  static constexpr std::size_t kCourseSize = ContactOrder::kMany;
   static constexpr double kProgress = 0.8;      // a course that in so many rounds has not come so much nearer
   static constexpr int kCoursePatience = 500;   // is given up
   static constexpr int kScriptedPatience = 50;  // the same, where a scripted body may squeeze
@@ -197,16 +228,20 @@ class IslandSolver {
   static constexpr double kRanks = 1e6;  // speeds that differ by less are alike
   static constexpr int kMostCuts = 8;    // of a substep
   static constexpr double kLeastPart = 1.0 / 1024.0;  // of a substep
+  static constexpr std::size_t kBodies = 32;          // that one thread takes at once
   static constexpr int kJointSweeps = 8;              // of an island with joints in which nothing arrives
 
   const ContactSettings& settings_;
   const Island& island_;
   MotionWork& work_;
+  core::Crew& crew_;
+  const ContactOrder order_;
   const double substep_;  // s
   double step_;           // s, of the part of it that is taken
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
+  std::vector<Found> found_;                 // per chunk
   std::vector<std::size_t> struck_;          // contacts of the island that bounce together
   std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island
   double course_square_ = 0.0;               // N2 s2, of the last change
@@ -217,5 +252,41 @@ class IslandSolver {
   bool has_scripted_ = false;  // a scripted body is in it
   bool is_before_drift_ = false;
 };
+
+template <class Visit>
+IslandSolver::Found IslandSolver::in_turn(const Visit& visit) {
+  Found all;
+  for (const ContactOrder::Range& round : order_.rounds) all.add(visit_chunks(round, visit));
+  return all;
+}
+
+template <class Visit>
+IslandSolver::Found IslandSolver::each(const Visit& visit) {
+  return visit_chunks({0, order_.chunks.size()}, visit);
+}
+
+template <class Visit>
+IslandSolver::Found IslandSolver::visit_chunks(const ContactOrder::Range& chunks, const Visit& visit) {
+  found_.assign(chunks.end - chunks.begin, {});
+  crew_.loop(found_.size(), [&](std::size_t i) {
+    const ContactOrder::Range& own = order_.chunks[chunks.begin + i];
+    Found found;
+    for (std::size_t k = own.begin; k < own.end; ++k) visit(k, contact(k), found);
+    found_[i] = found;
+  });
+  Found all;
+  for (const Found& found : found_) all.add(found);
+  return all;
+}
+
+template <class Visit>
+void IslandSolver::each_body(const Visit& visit) {
+  const std::vector<int>& bodies = island_.bodies;
+  const std::size_t chunks = (bodies.size() + kBodies - 1) / kBodies;
+  crew_.loop(chunks, [&](std::size_t chunk) {
+    const std::size_t end = std::min(bodies.size(), (chunk + 1) * kBodies);
+    for (std::size_t i = chunk * kBodies; i < end; ++i) visit(body(bodies[i]));
+  });
+}
 
 }  // namespace shatterbox::dynamics

@@ -20,24 +20,27 @@
 
 namespace shatterbox::dynamics {
 
-struct WorkBody {
+// What sweeps over contacts touch comes first, in as few cache lines as it fits in.
+struct alignas(64) WorkBody {
+  Vec3 velocity = Vec3::Zero();         // m/s, now
+  Vec3 spin = Vec3::Zero();             // rad/s, now
+  double inverse_mass = 0.0;            // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
+  double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
+  Mat3 inverse_inertia = Mat3::Zero();  // world, now
+  double reach = 0.0;                   // m: greatest distance of a vertex from the centre
+  Vec3 gravity = Vec3::Zero();          // m/s2, the body's own force with it; zero unless dynamic and awake
+
   const body::Shape* shape = nullptr;
   const collision::Collider* collider = nullptr;
   PrincipalInertia inertia;
   Vec3 inverse_moments = Vec3::Zero();  // about the principal axes; zero if nothing can turn it
-  double inverse_mass = 0.0;            // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
   bool is_active = false;               // moves in this step: awake dynamic, or scripted with a velocity
   bool is_quiet = false;                // at the step's start
-  double reach = 0.0;                   // m: greatest distance of a vertex from the centre
+  bool is_struck = false;               // something arrives at it in this substep
 
   Pose start, end;
-  Vec3 gravity = Vec3::Zero();  // m/s2, the body's own force with it; zero unless dynamic and awake
-  Vec3 torque = Vec3::Zero();   // N m, likewise
+  Vec3 torque = Vec3::Zero();  // N m; zero unless dynamic and awake
   Vec3 velocity_start = Vec3::Zero(), spin_start = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();         // m/s, now
-  Vec3 spin = Vec3::Zero();             // rad/s, now
-  double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
-  bool is_struck = false;               // something arrives at it in this substep
   double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
   std::vector<Quat> substep_rotations;  // after each substep of the solver
   int straight_parts = 1;               // of its way, a power of two: between them vertices go straight
@@ -45,7 +48,6 @@ struct WorkBody {
   Vec3 way = Vec3::Zero();           // m, of the centre since the start
   Quat rotation = Quat::Identity();  // now
   Mat3 turn = Mat3::Identity();      // rotation since the start
-  Mat3 inverse_inertia = Mat3::Zero();  // world, now
 
   bool is_placed = false;
   bool is_free = true;               // no contact: end is the predicted end
@@ -80,48 +82,48 @@ inline constexpr double kStraightTurn = 0.5;
 /// to the other.
 inline constexpr double kNoDistance = 1e-9;
 
-struct SolverContact {
+// As above: what a visit of a sweep touches comes first, at the present pose.
+struct alignas(64) SolverContact {
   int a = 0, b = 0;  // numbers of the bodies
   int pair = 0;
-  double friction = 0.0, restitution = 0.0, rolling = 0.0;
-  double kept_gap = 0.0;    // m
-  double threshold = 0.0;   // m/s: slower closing does not bounce
-  bool was_loaded = false;  // in the last step
-
-  collision::Contact found;                                     // at the start of the step
-  Vec3 tangent_start = Vec3::UnitX();                           // unit, across `found.normal`
-  Vec3 arm_a_start = Vec3::Zero(), arm_b_start = Vec3::Zero();  // m
-
-  // At the present pose.
+  bool has_sides = false;  // one of the two is solid
+  bool is_close = false;   // both are, and were placed nearer than the usual gap
+  bool can_creep = false;  // both are quiet, and no sphere rolls
+  bool is_arriving = false;
+  double slack = 0.0;  // m: gap less kept gap
   Vec3 normal = Vec3::UnitY();
+  Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
   Vec3 tangent_u = Vec3::UnitX(), tangent_v = Vec3::UnitZ();
-  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero(), point = Vec3::Zero();
-  Mat3 response = Mat3::Zero();   // relative velocity by impulse, in (normal, tangents), 1/kg
-  Vec3 weights = Vec3::Zero();    // 1 / diagonal of it, kg
-  double slack = 0.0;             // m: gap less kept gap
-  Vec3 change = Vec3::Zero();     // m: of a against b since the step's start
-  Vec3 held_from = Vec3::Zero();  // m: `change` where friction began to hold
-  bool can_creep = false;         // both are quiet, and no sphere rolls
-  bool has_sides = false;         // one of the two is solid
-  bool is_close = false;          // both are, and were placed nearer than the usual gap
+  Mat3 response = Mat3::Zero();  // relative velocity by impulse, in (normal, tangents), 1/kg
+  Vec3 weights = Vec3::Zero();   // 1 / diagonal of it, kg
+  double friction = 0.0, rolling = 0.0;
+  double kept_gap = 0.0;      // m
+  double threshold = 0.0;     // m/s: slower closing does not bounce
+  Vec3 total = Vec3::Zero();  // N s, world, on a, of the whole step
+  double left_over = 0.0;     // m/s, along the normal, that the last visit's friction brought
+  Vec3 warm = Vec3::Zero();   // to start the next substep from, in the axes of `impulse`
   // N s along the normal in a substep: many times what the lighter body weighs. What is left at such a
   // contact is felt far away.
   double strained_from = 0.0;
+  Vec3 change = Vec3::Zero();     // m: of a against b since the step's start
+  Vec3 held_from = Vec3::Zero();  // m: `change` where friction began to hold
+  double target = 0.0;            // m/s, of the bounce
 
-  Vec3 impulse = Vec3::Zero();          // of this substep, in (normal, tangents), N s
-  Vec3 warm = Vec3::Zero();             // to start the next substep from, in the same axes
-  Vec3 rolling_impulse = Vec3::Zero();  // couple, N m s, in the same axes
-  Vec3 creep_before = Vec3::Zero();     // m, at the start of the step
-  Vec3 warm_start = Vec3::Zero();       // of the last step, to begin this one with
-  double arrival_speed = 0.0;           // m/s, of an impact that has not bounced
-  double arrival_before = 0.0;          // m/s, the same at the start of the step
-  double target = 0.0;                  // m/s, of the bounce
-  double left_over = 0.0;               // m/s, along the normal, that the last visit's friction brought
-  bool is_arriving = false;
-  bool was_apart = false;  // at the start of the part of a substep that is taken
+  Vec3 point = Vec3::Zero();
+  double restitution = 0.0;
+  bool was_loaded = false;             // in the last step
+  bool was_apart = false;              // at the start of the part of a substep that is taken
+  collision::Contact found;            // at the start of the step
+  Vec3 tangent_start = Vec3::UnitX();  // unit, across `found.normal`
+  Vec3 arm_a_start = Vec3::Zero(), arm_b_start = Vec3::Zero();  // m
+  Vec3 rolling_impulse = Vec3::Zero();                          // couple, N m s, in the axes of `impulse`
+  Vec3 creep_before = Vec3::Zero();                             // m, at the start of the step
+  Vec3 warm_start = Vec3::Zero();                               // of the last step, to begin this one with
+  double arrival_speed = 0.0;                                   // m/s, of an impact that has not bounced
+  double arrival_before = 0.0;                                  // m/s, the same at the start of the step
 
   // Of the whole step.
-  Vec3 total = Vec3::Zero();                                // N s, world, on a
   Vec3 moment_point = Vec3::Zero();                         // sum of |normal impulse| point
   Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();    // the same in the body spaces of a and b
   Vec3 impulse_a = Vec3::Zero(), impulse_b = Vec3::Zero();  // N s, on a and b in their body spaces

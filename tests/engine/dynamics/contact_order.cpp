@@ -1,0 +1,121 @@
+#include "engine/dynamics/contact_order.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "engine/core/index.h"
+#include "engine/core/parallel.h"
+#include "engine/core/random.h"
+#include "tests/engine/dynamics/bodies.h"
+
+namespace shatterbox::dynamics {
+namespace {
+
+using core::at;
+
+// Bodies of which the first is held, and contacts of pairs that are drawn, some in several stretches.
+MotionWork draw_work(int bodies, int contacts, bool all_with_one) {
+  MotionWork work;
+  work.bodies.resize(at(bodies));
+  for (int i = 1; i < bodies; ++i) work.bodies[at(i)].inverse_mass = 1.0;
+  core::Random random(7);
+  const auto draw = [&](int most) {
+    return std::min(most - 1, static_cast<int>(random.uniform(0, static_cast<double>(most))));
+  };
+  for (int i = 0; i < contacts; ++i) {
+    SolverContact c;
+    c.a = all_with_one ? 1 : draw(bodies - 1);
+    c.b = all_with_one ? 2 + i % (bodies - 2) : c.a + 1 + draw(bodies - 1 - c.a);
+    c.pair = c.a * bodies + c.b;
+    work.contacts.push_back(c);
+  }
+  std::stable_sort(work.contacts.begin(), work.contacts.end() - contacts / 20,
+                   [](const SolverContact& x, const SolverContact& y) { return x.pair < y.pair; });
+  return work;
+}
+
+Island island_of(const MotionWork& work) {
+  Island island;
+  for (std::size_t i = 0; i < work.contacts.size(); ++i) island.contacts.push_back(static_cast<int>(i));
+  return island;
+}
+
+void check_order(const MotionWork& work, const ContactOrder& order) {
+  std::vector<int> sorted = order.contacts;
+  std::sort(sorted.begin(), sorted.end());
+  CHECK(sorted == island_of(work).contacts);
+  std::size_t next_contact = 0, next_chunk = 0;
+  std::set<int> pairs_seen;
+  for (const ContactOrder::Range& round : order.rounds) {
+    CHECK(round.begin == next_chunk);
+    next_chunk = round.end;
+    std::set<int> moved_in_round;
+    for (std::size_t k = round.begin; k < round.end; ++k) {
+      CHECK(order.chunks[k].begin == next_contact);
+      next_contact = order.chunks[k].end;
+      std::set<int> pairs, moved;
+      for (std::size_t i = order.chunks[k].begin; i < order.chunks[k].end; ++i) {
+        const SolverContact& c = work.contacts[at(order.contacts[i])];
+        pairs.insert(c.pair);
+        for (const int b : {c.a, c.b})
+          if (work.bodies[at(b)].inverse_mass > 0.0) moved.insert(b);
+      }
+      for (const int pair : pairs) CHECK(pairs_seen.insert(pair).second);
+      for (const int b : moved) CHECK(moved_in_round.insert(b).second);
+    }
+  }
+  CHECK(next_contact == order.contacts.size());
+  CHECK(next_chunk == order.chunks.size());
+}
+
+}  // namespace
+
+TEST_CASE("contacts that are visited at once share no body that moves, and no pair") {
+  const MotionWork work = draw_work(300, 3000, false);
+  const ContactOrder order = order_contacts(island_of(work), work);
+  check_order(work, order);
+  CHECK(order.rounds.size() < 60);
+  CHECK(order.chunks.size() > 100);
+}
+
+TEST_CASE("more neighbours of one body than there are colours are visited one by one") {
+  const MotionWork work = draw_work(1500, 2000, true);
+  const ContactOrder order = order_contacts(island_of(work), work);
+  check_order(work, order);
+  CHECK(order.rounds.size() == 65);
+}
+
+TEST_CASE("the contacts of a small island keep their order") {
+  const MotionWork work = draw_work(50, static_cast<int>(ContactOrder::kMany), false);
+  const ContactOrder order = order_contacts(island_of(work), work);
+  CHECK(order.contacts == island_of(work).contacts);
+  CHECK(order.chunks.size() == 1);
+}
+
+TEST_CASE("a heap that is one island has the same bits on any number of threads") {
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2, 5}) {
+    core::set_thread_count(threads);
+    test::Scene scene;
+    scene.add(test::make_plane());
+    for (int i = 0; i < 500; ++i) {
+      const int layer = i / 100, row = i / 10 % 10;
+      const Vec3 place(0.2002 * (i % 10), 0.1 + 1e-4 + 0.2003 * layer, 0.2002 * row);
+      scene.add(test::make_box(Vec3::Constant(0.1), place));
+      scene.bodies.back().velocity = Vec3(0.1 * (i % 3), -0.5, 0.05 * (i % 7));
+    }
+    int most = 0;
+    for (int i = 0; i < 20; ++i) {
+      scene.step();
+      most = std::max(most, scene.report.solver_contacts);
+    }
+    CHECK(most > 2 * static_cast<int>(ContactOrder::kMany));
+    hashes.push_back(scene.hash());
+  }
+  core::set_thread_count(0);
+  CHECK(hashes[0] == hashes[1]);
+  CHECK(hashes[0] == hashes[2]);
+}
+
+}  // namespace shatterbox::dynamics
