@@ -93,37 +93,38 @@ void mark_joined(const std::vector<Body>& bodies, const ContactState& state, std
   }
 }
 
-// Wakes the sleepers that a disturbance reaches: those it begins with, and from neighbour to neighbour all
-// that its momentum (kg m/s; 0: is not disturbed) could move noticeably.
+// Wakes the sleepers that a disturbance reaches: those it begins with, and from neighbour to neighbour, the
+// nearest first, as many as its momentum (kg m/s; 0: is not disturbed) could move noticeably all together.
+// Who moves in truth wakes others in the next step.
 void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const ContactState& state,
            std::vector<double> momentum) {
-  std::vector<int> roused;
-  const auto wake = [&](int i) {
+  struct Roused {
+    int body, origin;
+  };
+  std::vector<Roused> roused;
+  const auto wake = [&](int i, int origin) {
     Body& b = bodies[static_cast<std::size_t>(i)];
     if (!b.is_dynamic() || b.is_awake) return;
     b.is_awake = true;
     b.quiet_time = 0.0;
-    roused.push_back(i);
+    roused.push_back({i, origin});
   };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (momentum[i] > 0.0) wake(static_cast<int>(i));
+    if (momentum[i] > 0.0) wake(static_cast<int>(i), static_cast<int>(i));
   }
   if (roused.empty()) return;
   const auto neighbours = find_neighbours(bodies, state), joined = find_joined(bodies, state);
   for (std::size_t next = 0; next < roused.size(); ++next) {
-    const double given = momentum[static_cast<std::size_t>(roused[next])];
-    for (const int i : neighbours[static_cast<std::size_t>(roused[next])]) {
+    const auto [by, origin] = roused[next];
+    double& left = momentum[static_cast<std::size_t>(origin)];
+    for (const int i : neighbours[static_cast<std::size_t>(by)]) {
       const Body& b = bodies[static_cast<std::size_t>(i)];
-      if (!b.is_dynamic() || b.is_awake || given < least_momentum(settings, b)) continue;
-      momentum[static_cast<std::size_t>(i)] = std::max(momentum[static_cast<std::size_t>(i)], given);
-      wake(i);
+      if (!b.is_dynamic() || b.is_awake || left < least_momentum(settings, b)) continue;
+      left -= least_momentum(settings, b);
+      wake(i, origin);
     }
     // What is one with it moves with it.
-    for (const int i : joined[static_cast<std::size_t>(roused[next])]) {
-      double& own = momentum[static_cast<std::size_t>(i)];
-      own = std::max(own, given);
-      wake(i);
-    }
+    for (const int i : joined[static_cast<std::size_t>(by)]) wake(i, origin);
   }
 }
 

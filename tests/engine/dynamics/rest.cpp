@@ -1,4 +1,5 @@
 // Sleep and waking: who keeps whom awake, and what a disturbance reaches.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/engine/dynamics/bodies.h"
@@ -70,6 +71,23 @@ TEST_CASE("a blow wakes the row to its end, and its momentum goes through") {
   CHECK(all_awake);
   CHECK(scene.momentum().x() == Approx(momentum).epsilon(1e-9));
   CHECK(scene.bodies[4].velocity.x() > 1.0);
+}
+
+TEST_CASE("a light blow on a crowd that sleeps wakes as many as it could move, not all") {
+  std::vector<double> densities(61, 1000.0);
+  densities.back() = 100.0;
+  auto scene = sleeping_row(densities);
+  scene.bodies.back().is_awake = true;
+  scene.bodies.back().velocity = Vec3(-0.3, 0, 0);
+  int most = 0;
+  for (int i = 0; i < 24; ++i) {
+    scene.step();
+    int awake = 0;
+    for (std::size_t k = 1; k + 1 < scene.bodies.size(); ++k) awake += scene.bodies[k].is_awake ? 1 : 0;
+    most = std::max(most, awake);
+  }
+  CHECK(most >= 1);
+  CHECK(most <= 20);
 }
 
 TEST_CASE("who sleeps on something falls when it has slipped away") {
