@@ -3,12 +3,41 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/core/index.h"
+#include "engine/core/parallel.h"
+
 namespace shatterbox::collision {
+namespace {
+
+using core::at;
+
+constexpr std::size_t kChunk = 32;  // bodies that one thread looks about at once
+
+// By a, then by b; both are below `count`.
+std::vector<IndexPair> sorted(const std::vector<std::vector<IndexPair>>& lists, std::size_t count) {
+  std::vector<std::size_t> begin(count + 1, 0);
+  for (const auto& list : lists)
+    for (const IndexPair& pair : list) ++begin[at(pair.a) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<IndexPair> pairs(begin.back());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (const auto& list : lists)
+    for (const IndexPair& pair : list) pairs[next[at(pair.a)]++] = pair;
+  core::parallel_for(count, kChunk, [&](std::size_t a) {
+    const auto first = pairs.begin();
+    std::sort(first + static_cast<std::ptrdiff_t>(begin[a]),
+              first + static_cast<std::ptrdiff_t>(begin[a + 1]),
+              [](const IndexPair& x, const IndexPair& y) { return x.b < y.b; });
+  });
+  return pairs;
+}
+
+}  // namespace
 
 std::vector<IndexPair> find_overlapping_pairs(const std::vector<SweptBound>& bounds) {
   std::vector<int> order(bounds.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto low = [&](int i) { return bounds[static_cast<std::size_t>(i)].box.low; };
+  const auto low = [&](int i) { return bounds[at(i)].box.low; };
   // The axis along which the bodies spread most leaves the fewest neighbours.
   geometry::Box spread;
   for (const auto& bound : bounds) {
@@ -19,19 +48,20 @@ std::vector<IndexPair> find_overlapping_pairs(const std::vector<SweptBound>& bou
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     return low(a)[axis] < low(b)[axis] || (low(a)[axis] == low(b)[axis] && a < b);
   });
-  std::vector<IndexPair> pairs;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const SweptBound& first = bounds[static_cast<std::size_t>(order[i])];
+  std::vector<SweptBound> in_order;
+  in_order.reserve(order.size());
+  for (const int i : order) in_order.push_back(bounds[at(i)]);
+  std::vector<std::vector<IndexPair>> lists((order.size() + kChunk - 1) / kChunk);
+  core::parallel_for(order.size(), kChunk, [&](std::size_t i) {
+    const SweptBound& first = in_order[i];
     for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const SweptBound& second = bounds[static_cast<std::size_t>(order[j])];
+      const SweptBound& second = in_order[j];
       if (second.box.low[axis] > first.box.high[axis]) break;
       if (!(first.is_moving || second.is_moving) || !geometry::overlaps(first.box, second.box)) continue;
-      pairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
+      lists[i / kChunk].push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
     }
-  }
-  std::sort(pairs.begin(), pairs.end(),
-            [](const IndexPair& x, const IndexPair& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
-  return pairs;
+  });
+  return sorted(lists, bounds.size());
 }
 
 }  // namespace shatterbox::collision

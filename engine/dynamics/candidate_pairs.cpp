@@ -302,8 +302,10 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     bool place = false, boxes = false, swept = false;
   };
   std::vector<Needs> needs(bodies.size());
-  for (WorkPair& pair : work.pairs) {
-    classify(bodies, settings, state.pairs[at(pair.state)], work, pair);
+  core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
+    classify(bodies, settings, state.pairs[at(work.pairs[p].state)], work, work.pairs[p]);
+  });
+  for (const WorkPair& pair : work.pairs) {
     if (pair.is_apart) continue;
     for (const int i : {pair.a, pair.b}) {
       Needs& n = needs[at(i)];

@@ -4,6 +4,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/dynamics/contact_place.h"
 
 namespace shatterbox::dynamics {
@@ -52,14 +53,20 @@ SolverContact make_solver_contact(const PairState& memory, const MotionWork& wor
 }
 
 void build_contact_graph(const ContactState& state, MotionWork& work) {
+  std::vector<std::size_t> begin(work.pairs.size() + 1, 0);
   for (std::size_t p = 0; p < work.pairs.size(); ++p) {
     const WorkPair& pair = work.pairs[p];
-    if (work.bodies[at(pair.a)].inverse_mass == 0.0 && work.bodies[at(pair.b)].inverse_mass == 0.0) continue;
-    const PairState& memory = state.pairs[at(pair.state)];
-    for (const Contact& found : pair.contacts) {
-      work.contacts.push_back(make_solver_contact(memory, work, static_cast<int>(p), found));
-    }
+    const bool is_held =
+        work.bodies[at(pair.a)].inverse_mass == 0.0 && work.bodies[at(pair.b)].inverse_mass == 0.0;
+    begin[p + 1] = begin[p] + (is_held ? 0 : pair.contacts.size());
   }
+  work.contacts.resize(begin.back());
+  core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
+    const WorkPair& pair = work.pairs[p];
+    for (std::size_t k = begin[p]; k < begin[p + 1]; ++k)
+      work.contacts[k] = make_solver_contact(state.pairs[at(pair.state)], work, static_cast<int>(p),
+                                             pair.contacts[k - begin[p]]);
+  });
   build_islands(work);
 }
 

@@ -4,10 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/parallel.h"
+
 namespace shatterbox::dynamics {
 
 void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out) {
   collision::place_vertices(*body.collider, pose, out);
+}
+
+void free_pairs(MotionWork& work) {
+  core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) { work.pairs[p] = WorkPair(); });
 }
 
 void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin) {

@@ -209,6 +209,9 @@ class MotionWork {
   double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
 };
 
+/// Lets go of what pairs hold, on all threads: there is a list of every feature that is near.
+void free_pairs(MotionWork& work);
+
 /// Turns a dynamic body that nothing touches for `time` (s): its torque acts in two halves, before and after.
 void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin);
 

@@ -103,7 +103,11 @@ std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionW
     bounds[i] = {w.looked, is_wanted[i] != 0};
   }
   auto near = collision::find_overlapping_pairs(bounds);
+  const auto without_planes = static_cast<std::ptrdiff_t>(near.size());
   add_pairs_with_planes(work, is_wanted, near);
+  const auto by_number = [](const auto& x, const auto& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); };
+  std::sort(near.begin() + without_planes, near.end(), by_number);
+  std::inplace_merge(near.begin(), near.begin() + without_planes, near.end(), by_number);
   std::erase_if(near, [&](const collision::IndexPair& pair) {
     return !may_meet(bodies[at(pair.a)], bodies[at(pair.b)], work.bodies[at(pair.a)],
                      work.bodies[at(pair.b)]) ||
@@ -123,8 +127,6 @@ std::vector<FoundPair> find_pairs(const std::vector<Body>& bodies, const MotionW
   std::vector<FoundPair> pairs;
   for (std::size_t k = 0; k < near.size(); ++k)
     if (is_near[k]) pairs.push_back({near[k].a, near[k].b, clearances[k]});
-  std::sort(pairs.begin(), pairs.end(),
-            [](const auto& x, const auto& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
   return pairs;
 }
 

@@ -334,6 +334,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   count_near(settings, work, report);
   for (std::size_t i = first; i < log.size(); ++i) log[i].time += part.number * own.time_step;
   if (own.has_ways) report.ways = find_ways(work, part);
+  free_pairs(work);
   return report;
 }
 
