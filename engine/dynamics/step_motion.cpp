@@ -301,9 +301,11 @@ int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings
                                                : state.next_parts;
 }
 
-int count_parts_instead(const ContactSettings& settings, const StepPart& part, const ContactReport& moved) {
-  return part.number == 0 && were_many_cut(settings, moved) ? std::max(lively_parts(settings), part.count)
-                                                            : part.count;
+std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,
+                                         const ContactReport& moved) {
+  const int finer = (lively_parts(settings) + part.count - 1) / part.count;
+  if (finer < 2 || !were_many_cut(settings, moved)) return std::nullopt;
+  return StepPart{part.number * finer, part.count * finer};
 }
 
 ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settings, const StepPart& part,
@@ -338,22 +340,22 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   return report;
 }
 
-void add_part(ContactReport&& part, ContactReport& step) {
-  step.contacts = part.contacts;
-  step.solver_contacts = std::max(step.solver_contacts, part.solver_contacts);
-  step.least_gap = std::min(step.least_gap, part.least_gap);
-  step.hits += part.hits;
-  step.rounds += part.rounds;
-  step.ways_tested += part.ways_tested;
-  step.test_bytes = std::max(step.test_bytes, part.test_bytes);
-  step.failsafe_steps += part.failsafe_steps;
-  step.longest_cut = std::max(step.longest_cut, part.longest_cut);
-  step.crossing_pairs = part.crossing_pairs;
-  step.new_crossing_pairs.insert(step.new_crossing_pairs.end(), part.new_crossing_pairs.begin(),
-                                 part.new_crossing_pairs.end());
-  step.parted.insert(step.parted.end(), part.parted.begin(), part.parted.end());
-  step.frozen_share += part.frozen_share;
-  for (body::Way& way : part.ways) {
+void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step) {
+  step.contacts = moved.contacts;
+  step.solver_contacts = std::max(step.solver_contacts, moved.solver_contacts);
+  step.least_gap = std::min(step.least_gap, moved.least_gap);
+  step.hits += moved.hits;
+  step.rounds += moved.rounds;
+  step.ways_tested += moved.ways_tested;
+  step.test_bytes = std::max(step.test_bytes, moved.test_bytes);
+  step.failsafe_steps += moved.failsafe_steps;
+  step.longest_cut = std::max(step.longest_cut, moved.longest_cut);
+  step.crossing_pairs = moved.crossing_pairs;
+  step.new_crossing_pairs.insert(step.new_crossing_pairs.end(), moved.new_crossing_pairs.begin(),
+                                 moved.new_crossing_pairs.end());
+  step.parted.insert(step.parted.end(), moved.parted.begin(), moved.parted.end());
+  step.frozen_share += moved.frozen_share / part.count;
+  for (body::Way& way : moved.ways) {
     const auto place =
         std::lower_bound(step.ways.begin(), step.ways.end(), way.id,
                          [](const body::Way& known, body::BodyId id) { return known.id < id; });
@@ -365,15 +367,14 @@ void add_part(ContactReport&& part, ContactReport& step) {
       place->points.insert(place->points.end(), first, way.points.end());
     }
   }
-  step.residual = std::max(step.residual, part.residual);
-  step.drift = std::max(step.drift, part.drift);
-  step.awake_bodies = part.awake_bodies;
-  step.near_bodies = part.near_bodies;
-  step.spinning_bodies = part.spinning_bodies;
+  step.residual = std::max(step.residual, moved.residual);
+  step.drift = std::max(step.drift, moved.drift);
+  step.awake_bodies = moved.awake_bodies;
+  step.near_bodies = moved.near_bodies;
+  step.spinning_bodies = moved.spinning_bodies;
 }
 
-void end_step(const ContactSettings& settings, int parts, ContactReport& step, ContactState& state) {
-  step.frozen_share /= parts;
+void end_step(const ContactSettings& settings, const ContactReport& step, ContactState& state) {
   state.next_parts = find_next_parts(settings, step);
 }
 
@@ -382,8 +383,8 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
   ContactReport step;
   StepPart part{0, count_parts(bodies, settings, state)};
   for (; part.number < part.count; ++part.number)
-    add_part(move_part(bodies, settings, part, state, log), step);
-  end_step(settings, part.count, step, state);
+    add_part(part, move_part(bodies, settings, part, state, log), step);
+  end_step(settings, step, state);
   return step;
 }
 

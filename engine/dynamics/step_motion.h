@@ -8,6 +8,7 @@
 // make it arrive.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct ContactReport {
   int crossing_pairs = 0;   // crossed when they were first seen, and still do
   std::vector<std::pair<body::BodyId, body::BodyId>> new_crossing_pairs;  // seen in this step
   std::vector<std::pair<body::BodyId, body::BodyId>> parted;  // lay exactly in each other: parting.h
-  double frozen_share = 0.0;                                  // failsafe_steps / awake dynamic bodies
-  double residual = 0.0;  // m/s: greatest closing speed left in a touching contact
+  double frozen_share = 0.0;  // of the motion of awake dynamic bodies: that of those cut short
+  double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
   int near_bodies = 0;          // of them: in a pair that had to be looked at
   int spinning_bodies = 0;      // of these, spheres apart: turn far in a step
@@ -68,15 +69,16 @@ int count_parts(const std::vector<body::Body>& bodies, const ContactSettings& se
 ContactReport move_part(std::vector<body::Body>& bodies, const ContactSettings& settings,
                         const StepPart& part, ContactState& state, body::ImpulseLog& log);
 
-/// In how many parts the step should be taken from its begin again, now that its first one is known: in more
-/// than before if many stood still in it because they found no room.
-int count_parts_instead(const ContactSettings& settings, const StepPart& part, const ContactReport& moved);
+/// The part with which the step should go on in place of this one, now that its motion is known: the first of
+/// several that are shorter, if many stood still in it because they found no room; else none.
+std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,
+                                         const ContactReport& moved);
 
 /// Adds what a part reports to the report of its step.
-void add_part(ContactReport&& part, ContactReport& step);
+void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step);
 
 /// After the last part: decides whether the next step is one that is taken in parts too.
-void end_step(const ContactSettings& settings, int parts, ContactReport& step, ContactState& state);
+void end_step(const ContactSettings& settings, const ContactReport& step, ContactState& state);
 
 /// All parts of a step, one after the other.
 ContactReport step_motion(std::vector<body::Body>& bodies, const ContactSettings& settings,

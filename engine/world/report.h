@@ -109,7 +109,9 @@ struct ContactFigures {
   std::vector<std::string> parted_names;    // "a / b": b lay exactly in a and was set aside; a hundred
   int longest_cut = 0;                      // steps in a row in which the failsafe had to cut one pair short
   long failsafe_steps = 0;
-  double frozen_share = 0.0;  // of body-steps
+  double body_steps = 0.0;  // steps of bodies that were awake
+  double frozen_body_steps = 0.0;
+  double frozen_share = 0.0;  // of them: these by those
   double drift = 0.0;         // m, ContactScheme::paper: greatest distance of a surface from its rigid body
   double residual = 0.0;      // m/s, worst normal velocity left by the solver, last step
   int hits = 0;               // pairs in which the continuous pass had to act, last step

@@ -59,7 +59,7 @@ std::string name_of(const std::vector<body::Body>& bodies, body::BodyId id) {
   return body != nullptr ? body->name : "body " + std::to_string(id) + ", broken since";
 }
 
-void book_contact(const dynamics::ContactReport& contact, const std::vector<body::Body>& bodies, long steps,
+void book_contact(const dynamics::ContactReport& contact, const std::vector<body::Body>& bodies,
                   ContactFigures& figures) {
   constexpr std::size_t kMostNames = 100;
   figures.contacts = contact.contacts;
@@ -78,8 +78,9 @@ void book_contact(const dynamics::ContactReport& contact, const std::vector<body
   }
   figures.longest_cut = std::max(figures.longest_cut, contact.longest_cut);
   figures.failsafe_steps += contact.failsafe_steps > 0 ? 1 : 0;
-  const double n = static_cast<double>(steps);
-  figures.frozen_share = (figures.frozen_share * n + contact.frozen_share) / (n + 1.0);
+  figures.body_steps += contact.awake_bodies;
+  figures.frozen_body_steps += contact.frozen_share * contact.awake_bodies;
+  if (figures.body_steps > 0.0) figures.frozen_share = figures.frozen_body_steps / figures.body_steps;
   figures.residual = contact.residual;
   figures.hits = contact.hits;
   figures.ways_tested += contact.ways_tested;
@@ -116,11 +117,11 @@ int World::count_parts() const {
              : dynamics::count_parts(s.moving.bodies, s.contact_settings, s.moving.contact);
 }
 
-int World::count_parts_instead(const dynamics::StepPart& part, const dynamics::ContactReport& moved) const {
+std::optional<dynamics::StepPart> World::divide_where_cut(const dynamics::StepPart& part,
+                                                          const dynamics::ContactReport& moved) const {
   const State& s = *state_;
-  return s.settings.contact == ContactScheme::paper
-             ? part.count
-             : dynamics::count_parts_instead(s.contact_settings, part, moved);
+  if (s.settings.contact == ContactScheme::paper) return std::nullopt;
+  return dynamics::divide_where_cut(s.contact_settings, part, moved);
 }
 
 bool World::step() {
@@ -146,7 +147,7 @@ bool World::step() {
   for (dynamics::Hand& hand : s.hands) hand.velocity.setZero();
   s.ways = std::move(contact.ways);
   s.ways.insert(s.ways.end(), s.ended_ways.begin(), s.ended_ways.end());
-  book_contact(contact, s.moving.bodies, s.steps, s.report.contact);
+  book_contact(contact, s.moving.bodies, s.report.contact);
   book_scripted(s.moving.bodies, s.report.scripted);
   s.factors.clear_out(s.moving.fragiles, s.ancestry);
   ++s.steps;
@@ -171,9 +172,9 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     given.insert(given.end(), log.begin(), log.end());
     tell_watcher("motion", part, pass);
     if (may_break) {
-      if (const int parts = count_parts_instead(part, moved); parts > part.count) {
+      if (const auto finer = divide_where_cut(part, moved)) {
         s.moving = std::move(snapshot);
-        part.count = parts;
+        part = *finer;
         continue;
       }
       if (has_joints) {
@@ -207,7 +208,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     }
     book_conservation(before, log, s.contact_settings.time_step / part.count);
     s.log.insert(s.log.end(), given.begin(), given.end());
-    dynamics::add_part(std::move(moved), contact);
+    dynamics::add_part(part, std::move(moved), contact);
     if (s.wants_to_stop && !s.begin.moving)
       s.begin.moving = std::move(snapshot);  // the next part has its own
     ++part.number;
@@ -218,7 +219,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   if (may_yield) timer.time("dents", [&] { dent_bodies(snapshot); });
   if (may_yield) tell_watcher("dents", {part.count - 1, part.count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
-    dynamics::end_step(s.contact_settings, part.count, contact, s.moving.contact);
+    dynamics::end_step(s.contact_settings, contact, s.moving.contact);
     timer.time("sleep",
                [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   }

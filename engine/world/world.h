@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -143,7 +144,8 @@ class World {
   /// All parts of the step, up to sleep. `snapshot`: at the begin of the part that is taken.
   void take_parts(dynamics::ContactReport& contact, MovingState& snapshot);
   int count_parts() const;
-  int count_parts_instead(const dynamics::StepPart& part, const dynamics::ContactReport& moved) const;
+  std::optional<dynamics::StepPart> divide_where_cut(const dynamics::StepPart& part,
+                                                     const dynamics::ContactReport& moved) const;
   /// Stages "explosions" and "hands", of one part of the step.
   body::ImpulseLog act(const dynamics::StepPart& part);
   /// Stage "motion", of one part of the step.

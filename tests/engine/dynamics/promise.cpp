@@ -114,8 +114,8 @@ TEST_CASE("who is woken in the midst of a step has stood still until then") {
       scene.bodies[0].is_awake = true;
       scene.bodies[0].velocity = Vec3(0, 2, 0);
     }
-    dynamics::add_part(dynamics::move_part(scene.bodies, scene.settings, {k, 4}, scene.state, scene.log),
-                       step);
+    dynamics::add_part(
+        {k, 4}, dynamics::move_part(scene.bodies, scene.settings, {k, 4}, scene.state, scene.log), step);
   }
   REQUIRE(step.ways.size() == 2);
   const auto check_way = [&](std::size_t i, const std::vector<double>& times, double speed, double from) {
@@ -130,6 +130,30 @@ TEST_CASE("who is woken in the midst of a step has stood still until then") {
   check_way(1, {0.25, 0.5, 0.75}, 1.0, 0.0);
 }
 
+TEST_CASE("a step in which many were cut goes on in shorter parts, from the part in which they were") {
+  dynamics::ContactSettings settings;
+  settings.time_step = 1.0 / 60.0;
+  dynamics::ContactReport moved;
+  moved.near_bodies = 300;
+  CHECK(!dynamics::divide_where_cut(settings, {1, 2}, moved));
+  moved.failsafe_steps = 5;
+  const auto finer = dynamics::divide_where_cut(settings, {1, 2}, moved);
+  REQUIRE(finer);
+  CHECK(finer->number == 8);
+  CHECK(finer->count == 16);
+  CHECK(dynamics::divide_where_cut(settings, {2, 3}, moved)->number == 12);
+  CHECK(!dynamics::divide_where_cut(settings, {9, 16}, moved));
+}
+
+TEST_CASE("the share of a step that was cut is that of its time, however it was divided") {
+  dynamics::ContactReport half, eighth, step;
+  half.frozen_share = 0.1;
+  eighth.frozen_share = 0.4;
+  dynamics::add_part({0, 2}, dynamics::ContactReport(half), step);
+  for (int k = 4; k < 8; ++k) dynamics::add_part({k, 8}, dynamics::ContactReport(eighth), step);
+  CHECK(step.frozen_share == Approx(0.25));
+}
+
 TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, spinning ones in short ones") {
   test::Scene scene;
   const auto parts_after = [&](int hits, int spinning, int failsafe_steps = 0) {
@@ -138,7 +162,7 @@ TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, sp
     step.spinning_bodies = spinning;
     step.failsafe_steps = failsafe_steps;
     step.hits = hits;
-    dynamics::end_step(scene.settings, 1, step, scene.state);
+    dynamics::end_step(scene.settings, step, scene.state);
     scene.state.bodies.resize(1);  // no world that only begins
     return dynamics::count_parts({}, scene.settings, scene.state);
   };

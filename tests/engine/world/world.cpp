@@ -60,6 +60,26 @@ TEST_CASE("a body in flight follows the parabola") {
   CHECK(w.report().conservation.momentum_error < 1e-12);
 }
 
+TEST_CASE("body-steps are those of bodies that were awake") {
+  world::World w{world::WorldSettings{}};
+  const int number = w.add_material(material::Material{}).value();
+  REQUIRE(w.add_body(ground(number)).ok());
+  world::BodyDescription box;
+  box.form = world::BoxDescription{Vec3::Constant(0.2)};
+  box.material = number;
+  box.pose.translation = Vec3(0, 0.105, 0);
+  REQUIRE(w.add_body(box).ok());
+  double awake = 0.0;
+  for (int i = 0; i < 480; ++i) {
+    w.step();
+    awake += w.bodies()[1].is_awake ? 1.0 : 0.0;
+  }
+  REQUIRE(!w.bodies()[1].is_awake);
+  // The step at whose end it falls asleep is one in which it was awake.
+  CHECK(w.report().contact.body_steps == awake + 1.0);
+  CHECK(w.report().contact.frozen_body_steps == 0.0);
+}
+
 TEST_CASE("what cannot be a body is refused with a reason") {
   world::World w{world::WorldSettings{}};
   const int number = w.add_material(material::Material{}).value();
