@@ -15,6 +15,7 @@ using Size = std::size_t;
 
 constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr double kClear = 1.3;   // times the least separation: where a start does not lower it
+constexpr double kClearlyApart = 1.01 * kClear;  // where rounding does not count
 constexpr Size kBlocksToTask = 64;
 
 // Some features of a pair, one after the other.
@@ -58,7 +59,8 @@ class Follower {
   bool part_as_one(Size number, PathMemory::Block& block) {
     if (search_.blocks.empty()) return false;
     const collision::FeatureBlock& leaves = search_.blocks[number];
-    const auto along = [&](const std::vector<Vec3>& at_a, const std::vector<Vec3>& at_b, const Vec3& direction) {
+    const auto along = [&](const std::vector<Vec3>& at_a, const std::vector<Vec3>& at_b,
+                           const Vec3& direction) {
       return collision::leaf_span(*a_.collider, leaves.leaf_a, at_a, direction).least -
              collision::leaf_span(*b_.collider, leaves.leaf_b, at_b, direction).most - radii_;
     };
@@ -78,41 +80,53 @@ class Follower {
   }
 
   void follow(Size i) {
-    double& free_until = known_.free_until[i];
-    if (free_until > known_.moved) {
-      note_free(free_until);
+    PathMemory::Feature& known = known_.features[i];
+    if (known.free_until > known_.moved) {
+      note_free(known.free_until);
       return;
     }
     const collision::FeaturePair& features = search_.features[i];
     if (features.bound > paths_.listed) {
-      all_free_until_ = std::min(all_free_until_, known_.moved + (features.bound - paths_.listed) + paths_.spare);
+      const double left = (features.bound - paths_.listed) + paths_.spare;
+      all_free_until_ = std::min(all_free_until_, known_.moved + left);
       return;
     }
-    double& start_gap = known_.start_gaps[i];
-    if (is_out_of_reach(start_gap)) return;
+    if (is_out_of_reach(known.start_gap) || parts_along(features, known)) return;
     const auto start =
         collision::gather(features, *a_.collider, a_.placed.start, *b_.collider, b_.placed.start);
-    const auto end = collision::gather(features, *a_.collider, paths_.ends_a, *b_.collider, paths_.ends_b);
-    if (collision::separation_along(start, parting_) > kClear * safe_) {
-      const double left = collision::separation_along(end, parting_) - safe_;
-      if (left >= spare_) {
-        free_until = known_.moved + left;
-        all_free_until_ = std::min(all_free_until_, free_until);
-        return;
-      }
-    }
     const Vec3 hint = direction_hint(a_, b_, start);
     const collision::FeatureGap gap = collision::measure(start, hint);
-    start_gap = gap.gap;
-    if (is_out_of_reach(start_gap)) return;
+    known.start_gap = gap.gap;
+    if (is_out_of_reach(known.start_gap)) return;
     parting_ = gap.normal;
-    const auto path =
-        collision::follow_paths(start, end, least_separation(gap.gap, pair_), hint, &gap);
+    if (gap.gap > kClearlyApart * safe_) known.parting = parting_;
+    const auto end = collision::gather(features, *a_.collider, paths_.ends_a, *b_.collider, paths_.ends_b);
+    const auto path = collision::follow_paths(start, end, least_separation(gap.gap, pair_), hint, &gap);
     spare_ = std::min(spare_, path.spare);
-    free_until = path.has_hit ? -1.0 : known_.moved + path.spare;
-    all_free_until_ = std::min(all_free_until_, free_until);
+    known.free_until = path.has_hit ? -1.0 : known_.moved + path.spare;
+    all_free_until_ = std::min(all_free_until_, known.free_until);
     if (path.has_hit)
       hits_.push_back({path.time, 1.0, collision::contact_at_impact(features, start, path.gap)});
+  }
+
+  // Along one direction the features are apart at both ends.
+  bool parts_along(const collision::FeaturePair& features, PathMemory::Feature& known) {
+    const auto along = [&](const std::vector<Vec3>& at_a, const std::vector<Vec3>& at_b,
+                           const Vec3& direction) {
+      return collision::separation_along(features, *a_.collider, at_a, *b_.collider, at_b, direction);
+    };
+    const auto part = [&](const Vec3& direction) {
+      const double left = along(paths_.ends_a, paths_.ends_b, direction) - safe_;
+      if (!(left >= spare_)) return false;
+      known.free_until = known_.moved + left;
+      all_free_until_ = std::min(all_free_until_, known.free_until);
+      return true;
+    };
+    if (known.parting != Vec3::Zero() && part(known.parting)) return true;
+    if (known.parting == parting_ || !(along(a_.placed.start, b_.placed.start, parting_) > kClear * safe_))
+      return false;
+    known.parting = parting_;
+    return part(parting_);
   }
 
   bool is_out_of_reach(double start_gap) {
@@ -134,6 +148,12 @@ class Follower {
   std::vector<PathHit> hits_;
 };
 
+void begin_memory(Size features, PathMemory& known) {
+  if (known.features.size() == features) return;
+  known.features.resize(features);
+  for (Size i = 0; i < known.start_gaps.size(); ++i) known.features[i].start_gap = known.start_gaps[i];
+}
+
 }  // namespace
 
 double least_separation(double gap, const WorkPair& pair) {
@@ -146,8 +166,7 @@ std::vector<PathHit> follow_features(const WorkBody& a, const WorkBody& b, const
                                      WorkPair& pair, double& spare) {
   const FeatureSearch& search = *pair.search;
   const Size blocks = search.block_count(paths.listed);
-  pair.known.free_until.resize(search.features.size(), -1.0);
-  pair.known.start_gaps.resize(search.features.size(), PathMemory::kUnknown);
+  begin_memory(search.features.size(), pair.known);
   pair.known.blocks.resize(std::max(pair.known.blocks.size(), blocks));
   struct Found {
     double spare = 0.0;

@@ -31,9 +31,9 @@ double least_separation(double gap, const WorkPair& pair);
 /// Where the bodies of a pair go, and how far that was looked at.
 struct PairPaths {
   const std::vector<Vec3>&ends_a, &ends_b;  // |V| x 3, world, m
-  double reach = 0.0;   // m: gaps at the start that are greater stay free
-  double spare = 0.0;   // m: what the search leaves, at most the kept gap
-  double listed = 0.0;  // m: features of a greater bound stay free, by `spare` and more
+  double reach = 0.0;                       // m: gaps at the start that are greater stay free
+  double spare = 0.0;                       // m: what the search leaves, at most the kept gap
+  double listed = 0.0;                      // m: features of a greater bound stay free, by `spare` and more
 };
 
 /// Tests the features of `pair.search` on these paths, which its memory is of. Returns the hits, in any order
