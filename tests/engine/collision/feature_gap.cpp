@@ -39,6 +39,21 @@ body::Shape sheet(core::Random& random, int n) {
   return shape;
 }
 
+// Two rough sheets that stay where they are, one away from the other.
+struct StillSheets {
+  std::shared_ptr<const Collider> a, b;
+  PlacedCollider pa, pb;
+
+  StillSheets(core::Random& random, int n, const Vec3& away)
+      : a(make_collider(sheet(random, n))), b(make_collider(sheet(random, n))) {
+    pa.collider = a.get();
+    pb.collider = b.get();
+    pa.start = pb.start = a->vertices;
+    for (std::size_t v = 0; v < pb.start.size(); ++v) pb.start[v] = b->vertices[v] + away;
+    for (PlacedCollider* placed : {&pa, &pb}) refit_swept_boxes(*placed, placed->start, placed->start);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a list holds every feature pair within the margin, each once") {
@@ -75,14 +90,8 @@ TEST_CASE("a list holds every feature pair within the margin, each once") {
 
 TEST_CASE("of great bodies, looked through in parts, a list holds every near vertex and triangle") {
   core::Random random(31);
-  const auto a = make_collider(sheet(random, 33)), b = make_collider(sheet(random, 33));
-  PlacedCollider pa, pb;
-  pa.collider = a.get();
-  pb.collider = b.get();
-  pa.start = a->vertices;
-  for (const Vec3& v : b->vertices) pb.start.push_back(v + Vec3(0.01, 0.2, 0.02));
-  refit_swept_boxes(pa, pa.start, pa.start);
-  refit_swept_boxes(pb, pb.start, pb.start);
+  const StillSheets sheets(random, 33, Vec3(0.01, 0.2, 0.02));
+  const auto& [a, b, pa, pb] = sheets;
   const double margin = 0.05;
   FeatureList list;
   list_swept_features(pa, pb, Vec3::Zero(), margin, list);
@@ -106,14 +115,8 @@ TEST_CASE("of great bodies, looked through in parts, a list holds every near ver
 TEST_CASE("the blocks of a list follow each other, and their leaves hold what they list") {
   core::Random random(37);
   for (const int n : {4, 33}) {  // looked through at once and in parts
-    const auto a = make_collider(sheet(random, n)), b = make_collider(sheet(random, n));
-    PlacedCollider pa, pb;
-    pa.collider = a.get();
-    pb.collider = b.get();
-    pa.start = a->vertices;
-    for (const Vec3& v : b->vertices) pb.start.push_back(v + Vec3(0.1, 0.1, 0));
-    refit_swept_boxes(pa, pa.start, pa.start);
-    refit_swept_boxes(pb, pb.start, pb.start);
+    const StillSheets sheets(random, n, Vec3(0.1, 0.1, 0));
+    const auto& [a, b, pa, pb] = sheets;
     FeatureList list, alone;
     std::vector<FeatureBlock> blocks;
     list_swept_features(pa, pb, Vec3::Zero(), 0.05, list, &blocks);

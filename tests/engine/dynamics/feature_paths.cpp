@@ -13,13 +13,15 @@
 namespace shatterbox::dynamics {
 namespace {
 
+constexpr double kGap = 1e-3;  // m, between the sheets
+
 // Two rough sheets that face each other, as the sides of a crack do.
 class FacingSheets {
  public:
-  FacingSheets(core::Random& random, int n, double gap) {
+  FacingSheets(core::Random& random, int n) {
     const body::Shape under = sheet(random, n);
     body::Shape over = under;
-    for (Vec3& v : over.surface.positions) v.y() += random.uniform(gap, 1.5 * gap);
+    for (Vec3& v : over.surface.positions) v.y() += random.uniform(kGap, 1.5 * kGap);
     shapes_[0] = over;
     shapes_[1] = under;
     WorkBody* bodies[2] = {&a, &b};
@@ -30,7 +32,7 @@ class FacingSheets {
       bodies[k]->reach = colliders_[k]->bounding_radius;
       place(*bodies[k]);
     }
-    pair.kept_gap = gap;
+    pair.kept_gap = kGap;
     pair.size = 1.0;
   }
 
@@ -94,11 +96,10 @@ TEST_CASE("features that are said to keep apart do so all the way") {
   core::Random random(5);
   int free_pairs = 0, hit_pairs = 0;
   for (int n = 0; n < 40; ++n) {
-    const double gap = 1e-3;
-    FacingSheets sheets(random, 4, gap);
-    sheets.a.end.translation = 4.0 * gap * (test::draw_vector(random) + Vec3(0, 0.5, 0));
-    move_end(random, gap, sheets.b);
-    sheets.search(20.0 * gap);
+    FacingSheets sheets(random, 4);
+    sheets.a.end.translation = 4.0 * kGap * (test::draw_vector(random) + Vec3(0, 0.5, 0));
+    move_end(random, kGap, sheets.b);
+    sheets.search(20.0 * kGap);
     double spare = 0.0;
     const auto hits = keys_of(sheets.follow(spare));
     (hits.empty() ? free_pairs : hit_pairs) += 1;
@@ -117,9 +118,9 @@ TEST_CASE("features that are said to keep apart do so all the way") {
         if (k == 20) least_at_end = std::min(least_at_end, here);
       }
     }
-    CHECK(least >= kSafe * gap - 1e-15);
+    CHECK(least >= kSafe * kGap - 1e-15);
     // Only the ends are moved from one test to the next.
-    if (hits.empty()) CHECK(least_at_end >= kSafe * gap + spare - 1e-15);
+    if (hits.empty()) CHECK(least_at_end >= kSafe * kGap + spare - 1e-15);
   }
   CHECK(free_pairs > 3);
   CHECK(hit_pairs > 3);
@@ -129,10 +130,9 @@ TEST_CASE("what is remembered of features finds the hits that a test without mem
   core::Random random(7);
   int hits_found = 0, skipped = 0;
   for (int n = 0; n < 20; ++n) {
-    const double gap = 1e-3;
-    FacingSheets sheets(random, 5, gap);
-    sheets.a.end.translation = 3.0 * gap * (test::draw_vector(random) + Vec3(0, 1, 0));
-    sheets.search(40.0 * gap);
+    FacingSheets sheets(random, 5);
+    sheets.a.end.translation = 3.0 * kGap * (test::draw_vector(random) + Vec3(0, 1, 0));
+    sheets.search(40.0 * kGap);
     for (int k = 0; k < 8; ++k) {
       double spare = 0.0, spare_anew = 0.0;
       const auto hits = keys_of(sheets.follow(spare));
@@ -145,7 +145,7 @@ TEST_CASE("what is remembered of features finds the hits that a test without mem
         skipped += f.free_until > sheets.pair.known.moved ? 1 : 0;
       // The ends move a little, or anywhere.
       const Pose before = sheets.a.end;
-      move_end(random, k % 3 == 2 ? 3.0 * gap : 0.3 * gap, sheets.a);
+      move_end(random, k % 3 == 2 ? 3.0 * kGap : 0.3 * kGap, sheets.a);
       if (k % 3 == 2)
         sheets.pair.known.forget_ends();
       else
@@ -159,7 +159,7 @@ TEST_CASE("what is remembered of features finds the hits that a test without mem
 
 TEST_CASE("gaps that were measured before the first test are known to it") {
   core::Random random(9);
-  FacingSheets sheets(random, 3, 1e-3);
+  FacingSheets sheets(random, 3);
   sheets.a.end.translation = Vec3(0, -2e-3, 0);
   sheets.search(0.02);
   // They say that nothing can be reached.
