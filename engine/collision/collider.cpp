@@ -67,6 +67,20 @@ void add_neighbours(Collider& collider, const geometry::EdgeTopology& topology) 
   fill_rows(collider.edges.size(), opposite_entries, collider.opposite_begin, collider.opposites);
 }
 
+void add_leaf_vertices(Collider& collider) {
+  const geometry::TriangleTree& tree = collider.tree;
+  std::vector<int>& vertices = collider.leaf_vertices;
+  collider.leaf_vertex_begin.reserve(tree.nodes.size() + 1);
+  for (const auto& node : tree.nodes) {
+    const auto first = static_cast<std::ptrdiff_t>(vertices.size());
+    collider.leaf_vertex_begin.push_back(static_cast<int>(first));
+    for (int k = node.begin; k < node.begin + node.count; ++k)
+      for (const int v : collider.triangles[at(tree.order[at(k)])])
+        if (std::find(vertices.begin() + first, vertices.end(), v) == vertices.end()) vertices.push_back(v);
+  }
+  collider.leaf_vertex_begin.push_back(static_cast<int>(vertices.size()));
+}
+
 }  // namespace
 
 std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
@@ -107,6 +121,7 @@ std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
   collider->edges = topology.edges;
   collider->triangle_edges = topology.triangle_edges;
   collider->tree = geometry::build_triangle_tree(collider->vertices, collider->triangles);
+  add_leaf_vertices(*collider);
   add_owners(*collider, topology);
   add_neighbours(*collider, topology);
   double reach_squared = 0.0;

@@ -29,7 +29,8 @@ struct Collider {
   std::vector<int> owned_vertex_begin, owned_vertices;  // |T| + 1
   std::vector<int> owned_edge_begin, owned_edges;       // |T| + 1
   geometry::TriangleTree tree;
-  geometry::Box box;             // of the vertices, radius included, body space
+  std::vector<int> leaf_vertex_begin, leaf_vertices;  // |nodes| + 1: those of a leaf's triangles, each once
+  geometry::Box box;                                  // of the vertices, radius included, body space
   double radius = 0.0;           // about the vertices and edges of spheres and capsules, m
   double bounding_radius = 0.0;  // about the origin, m, radius included
 };

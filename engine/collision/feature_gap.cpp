@@ -72,20 +72,27 @@ FeaturePoints gather_points(const FeaturePair& pair, const Collider& a, const Pl
   FeaturePoints result;
   result.radius_a = a.radius;
   result.radius_b = b.radius;
+  // One by one: a list would be stored and copied by wider loads, each of which waits for two stores.
+  auto& points = result.points;
   if (pair.kind == FeatureKind::edge_edge) {
     const auto& edge_a = a.edges[at(pair.a)];
     const auto& edge_b = b.edges[at(pair.b)];
     result.is_edge_edge = true;
-    result.points = {place_a(edge_a[0]), place_a(edge_a[1]), place_b(edge_b[0]), place_b(edge_b[1])};
+    points[0] = place_a(edge_a[0]);
+    points[1] = place_a(edge_a[1]);
+    points[2] = place_b(edge_b[0]);
+    points[3] = place_b(edge_b[1]);
     return result;
   }
   result.is_flipped = pair.kind == FeatureKind::triangle_vertex;
   if (result.is_flipped) {
     const auto& t = a.triangles[at(pair.a)];
-    result.points = {place_b(pair.b), place_a(t[0]), place_a(t[1]), place_a(t[2])};
+    points[0] = place_b(pair.b);
+    for (std::size_t i = 0; i < 3; ++i) points[i + 1] = place_a(t[i]);
   } else {
     const auto& t = b.triangles[at(pair.b)];
-    result.points = {place_a(pair.a), place_b(t[0]), place_b(t[1]), place_b(t[2])};
+    points[0] = place_a(pair.a);
+    for (std::size_t i = 0; i < 3; ++i) points[i + 1] = place_b(t[i]);
   }
   return result;
 }
@@ -143,8 +150,25 @@ double separation_along(const FeaturePoints& f, const Vec3& direction) {
   std::array<double, 4> along;
   for (std::size_t i = 0; i < 4; ++i) along[i] = direction.dot(f.points[i]);
   if (f.is_edge_edge) return std::min(along[0], along[1]) - std::max(along[2], along[3]) - f.radii();
-  if (f.is_flipped) return std::min({along[1], along[2], along[3]}) - along[0] - f.radii();
-  return along[0] - std::max({along[1], along[2], along[3]}) - f.radii();
+  if (f.is_flipped) return std::min(std::min(along[1], along[2]), along[3]) - along[0] - f.radii();
+  return along[0] - std::max(std::max(along[1], along[2]), along[3]) - f.radii();
+}
+
+double separation_along(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
+                        const Collider& b, const std::vector<Vec3>& positions_b, const Vec3& direction) {
+  const auto along_a = [&](int v) { return direction.dot(positions_a[at(v)]); };
+  const auto along_b = [&](int v) { return direction.dot(positions_b[at(v)]); };
+  const double radii = a.radius + b.radius;
+  if (pair.kind == FeatureKind::edge_edge) {
+    const auto &p = a.edges[at(pair.a)], &q = b.edges[at(pair.b)];
+    return std::min(along_a(p[0]), along_a(p[1])) - std::max(along_b(q[0]), along_b(q[1])) - radii;
+  }
+  if (pair.kind == FeatureKind::triangle_vertex) {
+    const auto& t = a.triangles[at(pair.a)];
+    return std::min(std::min(along_a(t[0]), along_a(t[1])), along_a(t[2])) - along_b(pair.b) - radii;
+  }
+  const auto& t = b.triangles[at(pair.b)];
+  return along_a(pair.a) - std::max(std::max(along_b(t[0]), along_b(t[1])), along_b(t[2])) - radii;
 }
 
 bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Collider& a,

@@ -45,6 +45,10 @@ FeatureGap measure(const FeaturePoints& points, const Vec3& hint);
 /// How far the features are apart along a direction, unit, from b towards a, m: at most their gap.
 double separation_along(const FeaturePoints& points, const Vec3& direction);
 
+/// The same of features with the vertices of both bodies at these positions.
+double separation_along(const FeaturePair& pair, const Collider& a, const std::vector<Vec3>& positions_a,
+                        const Collider& b, const std::vector<Vec3>& positions_b, const Vec3& direction);
+
 /// True if the distance of the two *surfaces*, not only of these features, is least here: neighbouring
 /// features of either mesh lead away from the other. Slack: sine of the angle by which they may lead closer.
 bool is_local_minimum(const FeaturePair& pair, const FeatureGap& gap, const Collider& a,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/geometry/crossings.h"
 
 namespace shatterbox::collision {
@@ -61,6 +62,10 @@ class Descent {
 
   float reach_squared() const { return reach_squared_; }
 
+  // Whose triangles are visited.
+  int leaf_a() const { return leaf_a_; }
+  int leaf_b() const { return leaf_b_; }
+
   // Mostly one axis tells; what it does not, the distance does.
   bool is_about_near(const TightBox& box_a, const TightBox& box_b) const {
     return !any_exceeds(apart(box_a, box_b), reach_);
@@ -69,30 +74,78 @@ class Descent {
     return is_about_near(box_a, box_b) && distance_squared(box_a, box_b) <= reach_squared_;
   }
 
+  using NodePair = std::pair<int, int>;
+
   template <class Visit>
   void run(const Visit& visit) {
-    if (boxes_a_.nodes.empty() || boxes_b_.nodes.empty()) return;
+    for (const NodePair& root : split(1)) run_below(root, visit);
+  }
+
+  // At least so many pairs of nodes, unless there are fewer, below which all is that may be near; in the
+  // order in which they are visited.
+  std::vector<NodePair> split(std::size_t least) {
+    std::vector<NodePair> pairs;
+    if (boxes_a_.nodes.empty() || boxes_b_.nodes.empty()) return pairs;
     stack_.clear();
     push_if_near(0, boxes_a_.nodes[0], 0, stretched(boxes_b_.nodes[0], way_));
-    while (!stack_.empty()) {
-      const auto [i, j] = stack_.back();
-      stack_.pop_back();
-      const TightBox& box_a = boxes_a_.nodes[at(i)];
-      const TightBox box_b = stretched(boxes_b_.nodes[at(j)], way_);
-      const Node &node_a = a_.tree.nodes[at(i)], &node_b = b_.tree.nodes[at(j)];
-      if (node_a.count > 0 && node_b.count > 0) {
-        visit_triangles(node_a, box_a, node_b, box_b, visit);
-      } else if (node_b.count > 0 || (node_a.count == 0 && extent(box_a) >= extent(box_b))) {
-        for (const int child : {node_a.right, i + 1})
-          push_if_near(child, boxes_a_.nodes[at(child)], j, box_b);
-      } else {
-        for (const int child : {node_b.right, j + 1})
-          push_if_near(i, box_a, child, stretched(boxes_b_.nodes[at(child)], way_));
+    pairs.swap(stack_);
+    for (bool goes_on = true; goes_on && pairs.size() < least;) {
+      std::vector<NodePair> below;
+      for (const NodePair& pair : pairs) {
+        if (are_leaves(pair))
+          below.push_back(pair);
+        else
+          push_children(pair);
+        below.insert(below.end(), stack_.rbegin(), stack_.rend());
+        stack_.clear();
       }
+      goes_on = !std::all_of(below.begin(), below.end(), [this](const NodePair& p) { return are_leaves(p); });
+      pairs = std::move(below);
+    }
+    return pairs;
+  }
+
+  template <class Visit>
+  void run_below(const NodePair& root, const Visit& visit) {
+    stack_.assign(1, root);
+    while (!stack_.empty()) {
+      const NodePair pair = stack_.back();
+      stack_.pop_back();
+      if (are_leaves(pair))
+        visit_leaves(pair, visit);
+      else
+        push_children(pair);
     }
   }
 
  private:
+  bool are_leaves(const NodePair& pair) const {
+    return a_.tree.nodes[at(pair.first)].count > 0 && b_.tree.nodes[at(pair.second)].count > 0;
+  }
+
+  // The last one comes first.
+  void push_children(const NodePair& pair) {
+    const auto [i, j] = pair;
+    const TightBox& box_a = boxes_a_.nodes[at(i)];
+    const TightBox box_b = stretched(boxes_b_.nodes[at(j)], way_);
+    const Node &node_a = a_.tree.nodes[at(i)], &node_b = b_.tree.nodes[at(j)];
+    if (node_b.count > 0 || (node_a.count == 0 && extent(box_a) >= extent(box_b))) {
+      for (const int child : {node_a.right, i + 1}) push_if_near(child, boxes_a_.nodes[at(child)], j, box_b);
+    } else {
+      for (const int child : {node_b.right, j + 1})
+        push_if_near(i, box_a, child, stretched(boxes_b_.nodes[at(child)], way_));
+    }
+  }
+
+  template <class Visit>
+  void visit_leaves(const NodePair& pair, const Visit& visit) {
+    const auto [i, j] = pair;
+    leaf_a_ = i;
+    leaf_b_ = j;
+    visit_triangles(a_.tree.nodes[at(i)], boxes_a_.nodes[at(i)], b_.tree.nodes[at(j)],
+                    stretched(boxes_b_.nodes[at(j)], way_), visit);
+  }
+
   void push_if_near(int i, const TightBox& box_a, int j, const TightBox& box_b) {
     if (is_about_near(box_a, box_b)) stack_.push_back({i, j});
   }
@@ -126,7 +179,8 @@ class Descent {
   const TightWay way_;
   BoxLanes reach_ = {};  // m
   float reach_squared_ = 0.0F;
-  std::vector<std::pair<int, int>> stack_;
+  int leaf_a_ = 0, leaf_b_ = 0;
+  std::vector<NodePair> stack_;
   std::vector<NearTriangle> near_b_;
 };
 
@@ -208,44 +262,114 @@ class Planes {
   std::vector<Face> seconds_;  // by place in a leaf
 };
 
+// One that holds nothing gives its place to the next.
+void begin_block(int leaf_a, int leaf_b, int begin, std::vector<FeatureBlock>& blocks) {
+  if (!blocks.empty() && blocks.back().leaf_a == leaf_a && blocks.back().leaf_b == leaf_b) return;
+  if (!blocks.empty() && blocks.back().begin == begin) blocks.pop_back();
+  blocks.push_back({leaf_a, leaf_b, begin});
+}
+
+// Two bodies, their places and boxes, and how far features are looked for.
+struct FeatureQuery {
+  const Collider& a;
+  const FeatureBoxes& boxes_a;
+  const Places places_a;
+  const Collider& b;
+  const FeatureBoxes& boxes_b;
+  const Places places_b;
+  const Vec3 relative_way;
+  const double margin;  // m
+};
+
 // Features that near triangles own.
-void list_features(const Collider& a, const FeatureBoxes& boxes_a, const Places& places_a, const Collider& b,
-                   const FeatureBoxes& boxes_b, const Places& places_b, const Vec3& relative_way,
-                   double margin, FeatureList& out) {
-  const TightWay way(relative_way);
-  Descent descent(a, boxes_a, b, boxes_b, way, margin);
-  Planes planes(a, places_a, b, places_b, relative_way, margin);
-  // A sphere is but a vertex: what touches it, it touches with that.
-  const bool a_has_faces = !a.edges.empty(), b_has_faces = !b.edges.empty();
-  const auto add = [&](FeatureKind kind, int i, const TightBox& box_a, int j, const TightBox& box_b) {
-    if (!descent.is_about_near(box_a, box_b)) return;
-    const float squared = distance_squared(box_a, box_b);
-    if (squared <= descent.reach_squared()) out.push_back({kind, squared, i, j});
-  };
-  int edges_of = -1;
-  std::array<TightBox, 3> boxes_e;
-  descent.run([&](int ta, const TightBox& box_a, int tb, const TightBox& box_b, int place) {
-    if (planes.are_apart(ta, tb, place)) return;
-    for (int k = a.owned_vertex_begin[at(ta)]; b_has_faces && k < a.owned_vertex_begin[at(ta) + 1]; ++k) {
-      const int v = a.owned_vertices[at(k)];
-      add(FeatureKind::vertex_triangle, v, boxes_a.vertices[at(v)], tb, box_b);
+class Lister {
+ public:
+  explicit Lister(const FeatureQuery& query)
+      : a_(query.a),
+        b_(query.b),
+        boxes_a_(query.boxes_a),
+        boxes_b_(query.boxes_b),
+        way_(query.relative_way),
+        descent_(query.a, query.boxes_a, query.b, query.boxes_b, way_, query.margin),
+        planes_(query.a, query.places_a, query.b, query.places_b, query.relative_way, query.margin) {}
+
+  Descent& descent() { return descent_; }
+
+  // Adds those below two nodes; of blocks only if they are asked for.
+  void list_below(const Descent::NodePair& root, FeatureList& out, std::vector<FeatureBlock>* blocks) {
+    const std::size_t first = out.size();
+    descent_.run_below(root, [&](int ta, const TightBox& box_a, int tb, const TightBox& box_b, int place) {
+      if (planes_.are_apart(ta, tb, place)) return;
+      if (blocks) begin_block(descent_.leaf_a(), descent_.leaf_b(), static_cast<int>(out.size()), *blocks);
+      list_owned(ta, box_a, tb, box_b, out);
+    });
+    if (blocks && !blocks->empty() && at(blocks->back().begin) == out.size()) blocks->pop_back();
+    for (std::size_t i = first; i < out.size(); ++i) out[i].bound = std::sqrt(out[i].bound) * (1.0F - 1e-5F);
+  }
+
+ private:
+  void list_owned(int ta, const TightBox& box_a, int tb, const TightBox& box_b, FeatureList& out) {
+    const auto add = [&](FeatureKind kind, int i, const TightBox& box_i, int j, const TightBox& box_j) {
+      if (!descent_.is_about_near(box_i, box_j)) return;
+      const float squared = distance_squared(box_i, box_j);
+      if (squared <= descent_.reach_squared()) out.push_back({kind, squared, i, j});
+    };
+    // A sphere is but a vertex: what touches it, it touches with that.
+    const bool a_has_faces = !a_.edges.empty(), b_has_faces = !b_.edges.empty();
+    for (int k = a_.owned_vertex_begin[at(ta)]; b_has_faces && k < a_.owned_vertex_begin[at(ta) + 1]; ++k) {
+      const int v = a_.owned_vertices[at(k)];
+      add(FeatureKind::vertex_triangle, v, boxes_a_.vertices[at(v)], tb, box_b);
     }
-    for (int k = b.owned_vertex_begin[at(tb)]; a_has_faces && k < b.owned_vertex_begin[at(tb) + 1]; ++k) {
-      const int v = b.owned_vertices[at(k)];
-      add(FeatureKind::triangle_vertex, ta, box_a, v, stretched(boxes_b.vertices[at(v)], way));
+    for (int k = b_.owned_vertex_begin[at(tb)]; a_has_faces && k < b_.owned_vertex_begin[at(tb) + 1]; ++k) {
+      const int v = b_.owned_vertices[at(k)];
+      add(FeatureKind::triangle_vertex, ta, box_a, v, stretched(boxes_b_.vertices[at(v)], way_));
     }
-    const int first = a.owned_edge_begin[at(ta)], last = a.owned_edge_begin[at(ta) + 1];
-    for (int k = first; edges_of != ta && k < last; ++k)
-      boxes_e[at(k - first)] = box_of_edge(a, boxes_a, a.owned_edges[at(k)]);
-    edges_of = ta;
-    for (int l = b.owned_edge_begin[at(tb)]; first < last && l < b.owned_edge_begin[at(tb) + 1]; ++l) {
-      const int f = b.owned_edges[at(l)];
-      const TightBox box_f = stretched(box_of_edge(b, boxes_b, f), way);
+    const int first = a_.owned_edge_begin[at(ta)], last = a_.owned_edge_begin[at(ta) + 1];
+    for (int k = first; edges_of_ != ta && k < last; ++k)
+      boxes_e_[at(k - first)] = box_of_edge(a_, boxes_a_, a_.owned_edges[at(k)]);
+    edges_of_ = ta;
+    for (int l = b_.owned_edge_begin[at(tb)]; first < last && l < b_.owned_edge_begin[at(tb) + 1]; ++l) {
+      const int f = b_.owned_edges[at(l)];
+      const TightBox box_f = stretched(box_of_edge(b_, boxes_b_, f), way_);
       for (int k = first; k < last; ++k)
-        add(FeatureKind::edge_edge, a.owned_edges[at(k)], boxes_e[at(k - first)], f, box_f);
+        add(FeatureKind::edge_edge, a_.owned_edges[at(k)], boxes_e_[at(k - first)], f, box_f);
     }
+  }
+
+  const Collider &a_, &b_;
+  const FeatureBoxes &boxes_a_, &boxes_b_;
+  const TightWay way_;
+  Descent descent_;
+  Planes planes_;
+  int edges_of_ = -1;  // triangle of a, whose edges have these boxes
+  std::array<TightBox, 3> boxes_e_;
+};
+
+// Great bodies in parts that depend on their trees alone, one after the other in the list.
+void list_features(const FeatureQuery& query, FeatureList& out, std::vector<FeatureBlock>* blocks) {
+  constexpr std::size_t kManyTriangles = 4000, kParts = 16;
+  Lister whole(query);
+  const bool is_great = query.a.triangles.size() + query.b.triangles.size() > kManyTriangles;
+  const auto roots = whole.descent().split(is_great ? kParts : 1);
+  if (roots.size() <= 1) {
+    for (const auto& root : roots) whole.list_below(root, out, blocks);
+    return;
+  }
+  struct Part {
+    FeatureList features;
+    std::vector<FeatureBlock> blocks;
+  };
+  std::vector<Part> parts(roots.size());
+  core::parallel_for(roots.size(), 1, [&](std::size_t k) {
+    Lister(query).list_below(roots[k], parts[k].features, blocks ? &parts[k].blocks : nullptr);
   });
-  for (FeaturePair& f : out) f.bound = std::sqrt(f.bound) * (1.0F - 1e-5F);
+  for (const Part& part : parts) {
+    for (FeatureBlock block : part.blocks) {
+      block.begin += static_cast<int>(out.size());
+      blocks->push_back(block);
+    }
+    out.insert(out.end(), part.features.begin(), part.features.end());
+  }
 }
 
 std::array<Vec3, 3> corners(const PlacedCollider& placed, int triangle) {
@@ -298,6 +422,17 @@ void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from, st
   placed.swept_to = std::move(turned);
 }
 
+Span leaf_span(const Collider& collider, int leaf, const std::vector<Vec3>& positions,
+               const Vec3& direction) {
+  Span span{1e300, -1e300};
+  for (int k = collider.leaf_vertex_begin[at(leaf)]; k < collider.leaf_vertex_begin[at(leaf) + 1]; ++k) {
+    const double along = direction.dot(positions[at(collider.leaf_vertices[at(k)])]);
+    span.least = std::min(span.least, along);
+    span.most = std::max(span.most, along);
+  }
+  return span;
+}
+
 void sort_by_bound(FeatureList& features) {
   std::sort(features.begin(), features.end(), [](const FeaturePair& x, const FeaturePair& y) {
     return x.bound < y.bound || (x.bound == y.bound && x.key() < y.key());
@@ -306,15 +441,30 @@ void sort_by_bound(FeatureList& features) {
 
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out) {
   out.clear();
-  list_features(*a.collider, a.boxes, {a.start, nullptr}, *b.collider, b.boxes, {b.start, nullptr},
-                Vec3::Zero(), margin, out);
+  list_features({*a.collider,
+                 a.boxes,
+                 {a.start, nullptr},
+                 *b.collider,
+                 b.boxes,
+                 {b.start, nullptr},
+                 Vec3::Zero(),
+                 margin},
+                out, nullptr);
 }
 
 void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
-                         double margin, FeatureList& out) {
+                         double margin, FeatureList& out, std::vector<FeatureBlock>* blocks) {
   out.clear();
-  list_features(*a.collider, a.swept, {a.swept_from, &a.swept_to}, *b.collider, b.swept,
-                {b.swept_from, &b.swept_to}, relative_way, margin, out);
+  if (blocks) blocks->clear();
+  list_features({*a.collider,
+                 a.swept,
+                 {a.swept_from, &a.swept_to},
+                 *b.collider,
+                 b.swept,
+                 {b.swept_from, &b.swept_to},
+                 relative_way,
+                 margin},
+                out, blocks);
 }
 
 bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius, const Vec3& relative_way,

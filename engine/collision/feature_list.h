@@ -35,6 +35,20 @@ struct FeaturePair {
 
 using FeatureList = std::vector<FeaturePair>;
 
+/// The features of a list that triangles of two leaves own, one from each body's tree: from `begin` up to the
+/// next block's.
+struct FeatureBlock {
+  int leaf_a = 0, leaf_b = 0, begin = 0;
+};
+
+/// How far something reaches along a direction, m.
+struct Span {
+  double least = 0.0, most = 0.0;
+};
+
+/// Of the triangles of a leaf, with the vertices at `positions` (|V| x 3), radius not included.
+Span leaf_span(const Collider& collider, int leaf, const std::vector<Vec3>& positions, const Vec3& direction);
+
 /// Boxes over vertices, triangles and over the nodes of the tree. Those of a leaf's triangles lie side by
 /// side.
 struct FeatureBoxes {
@@ -73,9 +87,9 @@ void sort_by_bound(FeatureList& features);
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out);
 
 /// All feature pairs whose straight paths may come within `margin`, when b moves by `relative_way` more than
-/// a. Needs `swept` of both.
+/// a. Needs `swept` of both. `blocks`, if asked for, are of the list in its order; none is empty.
 void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
-                         double margin, FeatureList& out);
+                         double margin, FeatureList& out, std::vector<FeatureBlock>* blocks = nullptr);
 
 /// True if a ball that moves by `relative_way` more than the body may come within `margin` of one of its
 /// triangles. Needs `swept`.

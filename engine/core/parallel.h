@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace shatterbox::core {
 
@@ -21,6 +22,20 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
   parallel_chunks(count, grain, [&body](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
+}
+
+/// The numbers in [0, count) of which `claim(i)` is true, ascending; `grain` of them are asked in a task.
+template <class Claim>
+std::vector<int> find_where(std::size_t count, std::size_t grain, const Claim& claim) {
+  std::vector<std::vector<int>> found((count + grain - 1) / grain);
+  parallel_chunks(count, grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<int>& own = found[begin / grain];
+    for (std::size_t i = begin; i < end; ++i)
+      if (claim(i)) own.push_back(static_cast<int>(i));
+  });
+  std::vector<int> all;
+  for (const std::vector<int>& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
 
 /// Sets the number of threads for all loops of the process; 0 means one a core. Results never depend on it.

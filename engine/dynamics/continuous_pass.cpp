@@ -111,7 +111,7 @@ class Guard {
       if (must_test_[p] && is_exempt(p) && !work_.pairs[p].has_sides) must_test_[p] = 0;
     }
     paths_.prepare(must_test_);
-    core::parallel_for(work_.pairs.size(), 8, [&](std::size_t p) {
+    core::parallel_for(work_.pairs.size(), 4, [&](std::size_t p) {
       if (must_test_[p]) hits_[p] = paths_.find_hits(p, spare_[p]);
     });
     bool has_hits = false;
@@ -350,11 +350,11 @@ class Guard {
   static bool is_due(WorkPair& pair, double moved, double& spare) {
     if (moved == 0.0) return false;
     if (moved >= kElsewhere) {
-      pair.free_until.clear();
+      pair.known.forget_ends();
       return true;
     }
     spare -= moved;
-    pair.moved += moved;
+    pair.known.moved += moved;
     return spare <= 0.0;
   }
 

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/index.h"
 #include "engine/dynamics/motion_work.h"
 
 namespace shatterbox::dynamics {
 namespace {
+
+using core::at;
+
+constexpr std::size_t kBlock = 32;  // features of a list that is not swept
 
 bool is_same(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
@@ -85,6 +90,27 @@ double moved_where_near(const FeatureSearch& search, const WorkBody& a, const Po
 
 }  // namespace
 
+std::size_t FeatureSearch::count_within(double bound) const {
+  const auto last = std::partition_point(features.begin(), features.end(),
+                                         [&](const collision::FeaturePair& f) { return f.bound <= bound; });
+  return static_cast<std::size_t>(last - features.begin());
+}
+
+std::size_t FeatureSearch::block_count(double bound) const {
+  return is_swept ? blocks.size() : (count_within(bound) + kBlock - 1) / kBlock;
+}
+
+std::pair<std::size_t, std::size_t> FeatureSearch::features_of(std::size_t block) const {
+  if (!is_swept) return {block * kBlock, std::min((block + 1) * kBlock, features.size())};
+  const std::size_t end = block + 1 < blocks.size() ? at(blocks[block + 1].begin) : features.size();
+  return {at(blocks[block].begin), end};
+}
+
+void PathMemory::forget_ends() {
+  for (Feature& feature : features) feature.free_until = -1.0;
+  for (Block& block : blocks) block.free_until = -1.0;
+}
+
 double turn_bound(const Quat& from, const Quat& to, double reach) {
   // |q - p| of unit quaternions is 2 sin(theta / 4); the chord of a point at `reach` is 2 sin(theta / 2)
   // reach.
@@ -117,10 +143,10 @@ double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& e
   const double length_squared = looked.squaredNorm();
   const double share = length_squared > 0.0 ? std::clamp(way.dot(looked) / length_squared, 0.0, 1.0) : 1.0;
   // Paths are matched at a share `s` of the way that was looked at: x(t) against the path at s t.
-  const auto at = [&](double s) {
+  const auto by = [&](double s) {
     return relative_bound(a, gone_a - s * looked_a, b, gone_b - s * looked_b);
   };
-  const double most = std::min({at(share), at(1.0), at(0.0)});
+  const double most = std::min({by(share), by(1.0), by(0.0)});
   if (most + near <= search.margin) return most;
   const double reach = near + motion_bound(a, end_a, b, end_b);
   const auto where_near = [&](double s) {

@@ -2,6 +2,10 @@
 // once, never changed, shared between steps and passes: a cache that changes no result.
 #pragma once
 
+#include <cstddef>
+#include <utility>
+#include <vector>
+
 #include "engine/collision/feature_list.h"
 #include "engine/core/vec.h"
 
@@ -10,11 +14,42 @@ namespace shatterbox::dynamics {
 struct WorkBody;
 
 struct FeatureSearch {
-  collision::FeatureList features;  // ascending by `bound` unless swept
-  double margin = 0.0;              // m: all that come this close are in it
-  bool is_swept = false;            // looked along straight paths, not only at the starts
-  Pose start_a, start_b;            // where the bodies were
-  Pose end_a, end_b;                // swept: where they were thought to go
+  collision::FeatureList features;              // ascending by `bound` unless swept
+  double margin = 0.0;                          // m: all that come this close are in it
+  bool is_swept = false;                        // looked along straight paths, not only at the starts
+  Pose start_a, start_b;                        // where the bodies were
+  Pose end_a, end_b;                            // swept: where they were thought to go
+  std::vector<collision::FeatureBlock> blocks;  // swept: of the features, in their order
+
+  /// How many features have no greater bound than this (m); not for a swept list.
+  std::size_t count_within(double bound) const;
+  /// How many blocks have features of no greater bound than this (m): all of a swept list; of others, which
+  /// have none of their own, as many as fixed numbers of features make.
+  std::size_t block_count(double bound) const;
+  /// The first feature of a block, and the one behind its last.
+  std::pair<std::size_t, std::size_t> features_of(std::size_t block) const;
+};
+
+/// What is known of the features of a search, for the starts where they are.
+struct PathMemory {
+  static constexpr double kUnknown = -1e300;
+  struct Block {
+    double free_until = -1.0;     // m, of all of it
+    Vec3 parting = Vec3::Zero();  // at the start its leaves are apart along this; zero: unknown
+  };
+  struct Feature {
+    double start_gap = kUnknown;  // m: at least that
+    double free_until = -1.0;  // m: until the ends have moved so far in all, counted in `moved`, it is free
+    Vec3 parting = Vec3::Zero();  // as of a block
+  };
+  std::vector<double> start_gaps;  // m, of the first features, where they were measured before any test
+  std::vector<Feature> features;
+  std::vector<Block> blocks;
+  double moved = 0.0;
+  double searched = 0.0;  // m: margin of the search, if it was made for the tests of this step
+
+  /// The ends are elsewhere.
+  void forget_ends();
 };
 
 /// No point within `reach` of the origin moves further than this by the turn from one rotation to the other,

@@ -153,7 +153,8 @@ std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose&
   search->end_a = end_a;
   search->end_b = end_b;
   const Vec3 way_a = end_a.translation - a.start.translation, way_b = end_b.translation - b.start.translation;
-  collision::list_swept_features(a.placed, b.placed, way_b - way_a, margin, search->features);
+  collision::list_swept_features(a.placed, b.placed, way_b - way_a, margin, search->features,
+                                 &search->blocks);
   return search;
 }
 

@@ -155,12 +155,7 @@ struct WorkPair {
   bool is_apart = false;           // further than the margin: nothing more need be known
   bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
   std::shared_ptr<const FeatureSearch> search;
-  std::vector<double> gaps;                       // m, of the first features of `search` at the start
-  std::vector<collision::FeatureGap> start_gaps;  // of its features at the start, where it was needed
-  // Of its features, m: until the ends have moved so far in all since the search, counted in `moved`, their
-  // paths are free.
-  std::vector<double> free_until;
-  double moved = 0.0;
+  PathMemory known;          // of its features
   double least_gap = 1e300;  // m, at the start; at least what was looked at if nothing is near
   std::vector<collision::Contact> contacts;
   double work = 0.0;  // J, of its impulses in this substep

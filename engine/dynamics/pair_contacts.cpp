@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/dynamics/rest.h"
 #include "engine/dynamics/solid_touch.h"
 
@@ -26,6 +26,7 @@ struct Manifold {
   std::size_t cap;
 };
 constexpr Manifold kOnSolid = {0.04, 16}, kOnSurface = {0.08, 8};
+constexpr std::size_t kFeaturesToTask = 256;
 constexpr double kFastSlack = 0.25;    // of the slack: a list for one step need not last
 constexpr double kAlwaysNear = 3.0;    // of the usual gap
 constexpr double kRaiseTime = 0.5;     // s
@@ -67,37 +68,77 @@ std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBo
   collision::FeatureList& features = search->features;
   collision::list_near_features(a.placed, b.placed, margin, features);
   if (stays) {
-    for (auto& f : features) {
+    core::parallel_for(features.size(), kFeaturesToTask, [&](std::size_t i) {
+      collision::FeaturePair& f = features[i];
       const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
       const double gap = collision::measure(points, direction_hint(a, b, points)).gap;
       f.bound = std::max(f.bound, collision::round_down(gap * (1.0 - 1e-9)));
-    }
+    });
     std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
   }
   collision::sort_by_bound(features);
   return search;
 }
 
-// Follows the predicted paths of features that are not near yet, and takes the first that meet.
-class Foresight {
- public:
-  Foresight(const WorkBody& a, const WorkBody& b, double usual_gap) : a_(a), b_(b), usual_gap_(usual_gap) {}
+// What some features of a pair come to.
+struct PairMeeting {
+  double least_gap = 1e300;  // m, at the start
+  bool is_free = true;
+  std::vector<Contact> contacts;
+  std::vector<Hit> hits;  // of those that are not near yet, on the predicted paths
 
-  void follow(const collision::FeaturePair& features, const collision::FeaturePoints& start,
-              const collision::FeatureGap& gap, const Vec3& hint) {
-    const auto end =
-        collision::gather(features, *a_.collider, a_.predicted_vertices, *b_.collider, b_.predicted_vertices);
-    const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap_), hint, &gap);
-    if (path.has_hit) hits_.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
+  void add(PairMeeting&& other) {
+    least_gap = std::min(least_gap, other.least_gap);
+    is_free = is_free && other.is_free;
+    contacts.insert(contacts.end(), other.contacts.begin(), other.contacts.end());
+    hits.insert(hits.end(), other.hits.begin(), other.hits.end());
   }
-
-  std::vector<Hit>& hits() { return hits_; }
-
- private:
-  const WorkBody &a_, &b_;
-  double usual_gap_;
-  std::vector<Hit> hits_;
 };
+
+void follow_prediction(const WorkBody& a, const WorkBody& b, double usual_gap,
+                       const collision::FeaturePair& features, const collision::FeaturePoints& start,
+                       const collision::FeatureGap& gap, const Vec3& hint, PairMeeting& meeting) {
+  const auto end =
+      collision::gather(features, *a.collider, a.predicted_vertices, *b.collider, b.predicted_vertices);
+  const auto path = collision::follow_paths(start, end, least_on_path(gap.gap, usual_gap), hint, &gap);
+  if (path.has_hit)
+    meeting.hits.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
+}
+
+// Features [begin, end) of the pair's search; fills their gaps at the start.
+PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, std::size_t begin,
+                      std::size_t end, WorkPair& pair) {
+  PairMeeting meeting;
+  for (std::size_t i = begin; i < end; ++i) {
+    const collision::FeaturePair& features = pair.search->features[i];
+    double& start_gap = pair.known.start_gaps[i];
+    if (pair.is_fast && features.bound > pair.margin) {
+      start_gap = features.bound - pair.motion;
+      continue;
+    }
+    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    const Vec3 hint = direction_hint(a, b, start);
+    const auto gap = collision::measure(start, hint);
+    start_gap = gap.gap;
+    meeting.least_gap = std::min(meeting.least_gap, gap.gap);
+    if (gap.gap <= pair.margin) {
+      // So close that the direction cannot mislead, every feature counts.
+      if (gap.gap <= kAlwaysNear * usual_gap ||
+          collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
+                                      kLocalSlack)) {
+        meeting.contacts.push_back(collision::contact_here(features, start, gap));
+        meeting.is_free = false;
+        continue;
+      }
+    }
+    if (gap.gap > pair.motion + usual_gap) continue;
+    if (pair.is_fast)
+      follow_prediction(a, b, usual_gap, features, start, gap, hint, meeting);
+    else
+      meeting.is_free = false;
+  }
+  return meeting;
+}
 
 void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
                    WorkPair& pair) {
@@ -121,43 +162,21 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
     pair.search = memory.search;
     moved = moved_since(*pair.search, a, a.start, b, b.start, reach);
   }
-  std::optional<Foresight> foresight;
-  if (pair.is_fast && !pair.search->features.empty()) foresight.emplace(a, b, usual_gap);
-  pair.is_free_certified = !turns_far;
-  pair.least_gap = reach;
-  pair.gaps.reserve(pair.search->features.size());
-  for (const auto& features : pair.search->features) {
-    if (!pair.is_fast && features.bound > reach + moved) break;
-    if (pair.is_fast && features.bound > pair.margin) {
-      pair.gaps.push_back(features.bound - pair.motion);
-      continue;
-    }
-    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    const Vec3 hint = direction_hint(a, b, start);
-    const auto gap = collision::measure(start, hint);
-    pair.gaps.push_back(gap.gap);
-    pair.least_gap = std::min(pair.least_gap, gap.gap);
-    if (gap.gap <= pair.margin) {
-      // So close that the direction cannot mislead, every feature counts.
-      if (gap.gap <= kAlwaysNear * usual_gap ||
-          collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
-                                      kLocalSlack)) {
-        pair.contacts.push_back(collision::contact_here(features, start, gap));
-        pair.is_free_certified = false;
-        continue;
-      }
-    }
-    if (gap.gap <= pair.motion + usual_gap) {
-      if (foresight)
-        foresight->follow(features, start, gap, hint);
-      else
-        pair.is_free_certified = false;
-    }
-  }
-  if (foresight && !foresight->hits().empty()) {
-    pair.is_free_certified = false;
-    keep_first_hits(foresight->hits(), pair.size, pair.contacts);
-  }
+  const FeatureSearch& search = *pair.search;
+  const std::size_t count = pair.is_fast ? search.features.size() : search.count_within(reach + moved);
+  pair.known.start_gaps.resize(count);
+  std::vector<PairMeeting> found((count + kFeaturesToTask - 1) / kFeaturesToTask);
+  core::parallel_chunks(count, kFeaturesToTask, [&](std::size_t begin, std::size_t end) {
+    found[begin / kFeaturesToTask] = meet_some(a, b, usual_gap, begin, end, pair);
+  });
+  PairMeeting whole;
+  whole.least_gap = reach;
+  whole.is_free = !turns_far;
+  for (PairMeeting& some : found) whole.add(std::move(some));
+  pair.least_gap = whole.least_gap;
+  pair.contacts = std::move(whole.contacts);
+  pair.is_free_certified = whole.is_free && whole.hits.empty();
+  if (!whole.hits.empty()) keep_first_hits(whole.hits, pair.size, pair.contacts);
 }
 
 // Spheres and boxes: contacts at the start, and the first touch on the way if the pair moves further than

@@ -16,10 +16,9 @@ namespace {
 using body::ShapeKind;
 using core::at;
 
-constexpr double kFloor = 1e-5;  // below this a direction is not to be trusted
 constexpr std::size_t kMostHits = 6;
 constexpr double kStrayed = 0.1;  // of the slack of searches
-constexpr double kClear = 1.3;    // times the least separation: where a start does not lower it
+constexpr double kWiden = 3.0;    // times the margin of a search that did not last
 // times the kept gap: what is looked at, with what is spare and what later rounds move
 constexpr double kLooked = 3.0;
 constexpr double kAmple = 20.0;  // times the kept gap: more room than rounds take
@@ -54,12 +53,6 @@ double centre_distance(const Vec3& apart, const Vec3& way) {
 }
 
 }  // namespace
-
-double least_separation(double gap, const WorkPair& pair) {
-  const double floor = kFloor * pair.kept_gap;
-  if (gap > floor) return std::max(floor, std::min(kSafe * pair.kept_gap, 0.8 * gap));
-  return pair.has_sides ? gap - 1e-9 * std::abs(gap) - pair.rounding : gap * (1.0 - 1e-9);
-}
 
 bool PathTest::turns_far(const WorkPair& pair) const {
   return work_.bodies[at(pair.a)].straight_parts > 1 || work_.bodies[at(pair.b)].straight_parts > 1;
@@ -117,15 +110,15 @@ void PathTest::prepare(const std::vector<char>& is_due) {
     if (must_sweep[i]) sweep(w, w.end);
   });
   divide(turning);
-  core::parallel_for(to_search.size(), 2, [&](std::size_t k) {
+  core::parallel_for(to_search.size(), 1, [&](std::size_t k) {
     WorkPair& pair = work_.pairs[to_search[k]];
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-    // Wider than needed: openings move the ends a little.
-    const double margin = 2.0 * pair.kept_gap + kStrayed * settings_.search_slack * pair.size;
+    // Wider than needed: openings move the ends a little; those that were moved further may be again.
+    const double slack = settings_.search_slack * pair.size, before = pair.known.searched;
+    const double margin = std::max(2.0 * pair.kept_gap + kStrayed * slack, std::min(kWiden * before, slack));
     pair.search = search_paths(a, a.end, b, b.end, margin);
-    pair.gaps.clear();
-    pair.start_gaps.clear();
-    pair.free_until.clear();
+    pair.known = PathMemory();
+    pair.known.searched = margin;
   });
 }
 
@@ -281,46 +274,8 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
   const double listed =
       spare +
       (search.is_swept ? safe + strays : reach + moved_since(search, a, a.start, b, b.start, reach + spare));
-  const auto &ends_a = paths_[at(pair.a)].end, &ends_b = paths_[at(pair.b)].end;
-  std::vector<PathHit> hits;
-  pair.free_until.resize(search.features.size(), -1.0);
-  // Neighbouring features part along about the same direction.
-  Vec3 parting = Vec3::Zero();
-  for (std::size_t i = 0; i < search.features.size(); ++i) {
-    if (pair.free_until[i] > pair.moved) {
-      spare = std::min(spare, pair.free_until[i] - pair.moved);
-      continue;
-    }
-    const auto& features = search.features[i];
-    if (features.bound > listed) {
-      if (search.is_swept) continue;
-      break;
-    }
-    if (i < pair.gaps.size() && pair.gaps[i] > reach + spare) continue;
-    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    if (pair.start_gaps.size() <= i) pair.start_gaps.resize(search.features.size());
-    auto& gap = pair.start_gaps[i];
-    if (gap.distance >= 0.0 && gap.gap > reach + spare) continue;
-    const auto end = collision::gather(features, *a.collider, ends_a, *b.collider, ends_b);
-    if (collision::separation_along(start, parting) > kClear * safe) {
-      const double left = collision::separation_along(end, parting) - safe;
-      if (left >= spare) {
-        pair.free_until[i] = pair.moved + left;
-        continue;
-      }
-    }
-    const Vec3 hint = direction_hint(a, b, start);
-    if (gap.distance < 0.0) gap = collision::measure(start, hint);
-    if (gap.gap > reach + spare) continue;
-    parting = gap.normal;
-    const double least = least_separation(gap.gap, pair);
-    const auto path = collision::follow_paths(start, end, least, hint, &gap);
-    spare = std::min(spare, path.spare);
-    pair.free_until[i] = path.has_hit ? -1.0 : pair.moved + path.spare;
-    if (path.has_hit)
-      hits.push_back({path.time, 1.0, collision::contact_at_impact(features, start, path.gap)});
-  }
-  return hits;
+  return follow_features(a, b, {paths_[at(pair.a)].end, paths_[at(pair.b)].end, reach, spare, listed}, pair,
+                         spare);
 }
 
 // A body that turns far is followed through several straight parts.

@@ -8,26 +8,12 @@
 #include <memory>
 #include <vector>
 
-#include "engine/collision/contact.h"
 #include "engine/dynamics/contact_settings.h"
+#include "engine/dynamics/feature_paths.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/turned_box.h"
 
 namespace shatterbox::dynamics {
-
-/// Least separation after the continuous pass, share of the kept gap.
-inline constexpr double kSafe = 1e-3;
-
-struct PathHit {
-  double time = 1.0;           // share of the step that is certainly free
-  double knot = 1.0;           // share of the step at the end of the straight part in which they meet
-  collision::Contact contact;  // seen from the start
-};
-
-/// What a pair may come to within a step, m, that begins at `gap`: opening motion is always free, and what is
-/// closer than a direction can be told must not come closer at all; where the gap has a sign, but for
-/// rounding.
-double least_separation(double gap, const WorkPair& pair);
 
 class PathTest {
  public:

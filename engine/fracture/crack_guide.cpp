@@ -20,6 +20,7 @@ constexpr double kLeastShare = 0.02;  // of an element's volume that counts of o
 constexpr double kHold = 1e-9;        // of the diagonal, so that a potential without a border is one
 constexpr double kFaint = 1e-10;      // share of the greatest change below which a potential is but rounding
 constexpr double kToNode = 0.15;      // of the change over the elements about: a node as near is on the crack
+constexpr Size kGrain = 4096;         // elements to a task
 constexpr double kOnNode = 1e-6;      // likewise: what it then has, for nodes on the crack are positive
 
 /// Gradients of the four corners' shape functions, 1/m.
@@ -131,11 +132,14 @@ std::vector<double> CrackGuide::potential(int element, const Vec3& place, const 
   if (!factor_->factor) return std::vector<double>(mesh_.positions.size(), 0.0);
   const std::vector<int>& number = factor_->number();
   std::vector<double> source(at(factor_->tree->unknowns), 0.0);
-  for (const GuideElement& e : elements_) {
+  const auto near = core::find_where(elements_.size(), kGrain, [&](Size k) {
+    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(elements_[k].element)];
+    return std::any_of(t.begin(), t.end(),
+                       [&](int v) { return std::find(start.begin(), start.end(), v) != start.end(); });
+  });
+  for (const int k : near) {
+    const GuideElement& e = elements_[at(k)];
     const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
-    const bool is_near = std::any_of(
-        t.begin(), t.end(), [&](int v) { return std::find(start.begin(), start.end(), v) != start.end(); });
-    if (!is_near) continue;
     const std::array<Vec3, 4> gradients = shape_gradients(mesh_, e.element);
     const double volume = geometry::tetrahedron_volume(mesh_, e.element);
     for (Size i = 0; i < 4; ++i) source[at(number[at(t[i])])] += volume * gradients[i].dot(normal);
@@ -149,14 +153,19 @@ std::vector<double> CrackGuide::potential(int element, const Vec3& place, const 
   }
   // The change of the potential over the elements about each node is the measure of what is near zero.
   std::vector<double> values(mesh_.positions.size(), 0.0), change(values.size(), 0.0);
-  for (const GuideElement& e : elements_) {
+  std::vector<double> changes(elements_.size());
+  core::parallel_for(elements_.size(), kGrain, [&](Size k) {
+    const geometry::Tetrahedron& t = mesh_.tetrahedra[at(elements_[k].element)];
     double low = 1e300, high = -1e300;
-    for (const int v : mesh_.tetrahedra[at(e.element)]) {
+    for (const int v : t) {
       low = std::min(low, flow[at(number[at(v)])]);
       high = std::max(high, flow[at(number[at(v)])]);
     }
-    for (const int v : mesh_.tetrahedra[at(e.element)]) change[at(v)] = std::max(change[at(v)], high - low);
-  }
+    changes[k] = high - low;
+  });
+  for (Size k = 0; k < elements_.size(); ++k)
+    for (const int v : mesh_.tetrahedra[at(elements_[k].element)])
+      change[at(v)] = std::max(change[at(v)], changes[k]);
   const double faintest = kFaint * *std::max_element(change.begin(), change.end());
   for (Size v = 0; v < values.size(); ++v) {
     if (number[v] < 0 || !(change[v] > faintest)) continue;

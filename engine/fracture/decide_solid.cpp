@@ -223,13 +223,11 @@ class SolidDecider {
     std::vector<int> origins;
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
-        const std::vector<geometry::SolidContact> contacts = find_solid_contacts(*complex);
-        geometry::SolidMesh cut = make_solid_mesh(*complex, contacts);
-        const stress::SolidSkin skin = make_skin(*complex);
-        if (!force_.settle_again(cut, skin, origins, decision_, decision_.verdict.reason)) break;
-        mesh = std::move(cut);
+        SolidForm form = find_form(*complex);
+        if (!force_.settle_again(form.mesh, form.skin, origins, decision_, decision_.verdict.reason)) break;
+        mesh = std::move(form.mesh);
         force_.stays_on(mesh);
-        solve_stresses(mesh, contacts, false);
+        solve_stresses(mesh, form.contacts, false);
         candidates = find_candidates(*complex, false);
       }
       const auto start = core::Clock::now();

@@ -1,8 +1,10 @@
 #include "engine/fracture/solid_model.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/geometry/solid_surface.h"
 #include "engine/stress/stress_bound.h"
 
@@ -28,8 +30,8 @@ stress::SolidSkin make_skin(const geometry::SolidComplex& complex) {
   stress::SolidSkin skin;
   std::vector<int> number(complex.vertices.size(), -1);
   std::vector<int> corners;
-  for (const geometry::SolidFacet& facet : complex.facets) {
-    if (facet.parts[0] >= 0 || (facet.cells[0] < 0) == (facet.cells[1] < 0)) continue;
+  for (const int f : find_border_facets(complex)) {
+    const geometry::SolidFacet& facet = complex.facets[at(f)];
     const bool is_backwards = facet.cells[0] < 0;
     corners.clear();
     for (int i = 0; i < facet.side_count; ++i) {
@@ -47,6 +49,19 @@ stress::SolidSkin make_skin(const geometry::SolidComplex& complex) {
     }
   }
   return skin;
+}
+
+SolidForm find_form(const geometry::SolidComplex& complex) {
+  SolidForm form;
+  core::parallel_for(2, 1, [&](Size part) {
+    if (part == 1) {
+      form.skin = make_skin(complex);
+      return;
+    }
+    form.contacts = find_solid_contacts(complex);
+    form.mesh = make_solid_mesh(complex, form.contacts);
+  });
+  return form;
 }
 
 stress::SolidSupport support_of(const geometry::SolidMesh& mesh, const std::vector<int>& clamped) {
@@ -67,9 +82,10 @@ std::shared_ptr<const SolidModel> make_solid_model(std::shared_ptr<const geometr
   auto model = std::make_shared<SolidModel>();
   model->complex = std::move(complex);
   model->stiffness = std::move(stiffness);
-  model->contacts = find_solid_contacts(*model->complex);
-  model->mesh = make_solid_mesh(*model->complex, model->contacts);
-  model->skin = make_skin(*model->complex);
+  SolidForm form = find_form(*model->complex);
+  model->contacts = std::move(form.contacts);
+  model->mesh = std::move(form.mesh);
+  model->skin = std::move(form.skin);
   stress::SolidSystemOptions options;
   options.support = support_of(model->mesh, clamped);
   auto system = stress::SolidSystem::make(model->stiffness, model->mesh, options);

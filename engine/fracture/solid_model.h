@@ -51,6 +51,14 @@ class KeptSolidModel {
 /// The skin of a settled complex: what is left of the outer surface, and crack faces behind which nothing is.
 stress::SolidSkin make_skin(const geometry::SolidComplex& complex);
 
+/// What a settled complex is to the stress.
+struct SolidForm {
+  std::vector<geometry::SolidContact> contacts;
+  geometry::SolidMesh mesh;
+  stress::SolidSkin skin;
+};
+SolidForm find_form(const geometry::SolidComplex& complex);
+
 /// `clamped`: vertices of the element mesh that are held.
 std::shared_ptr<const SolidModel> make_solid_model(std::shared_ptr<const geometry::SolidComplex> complex,
                                                    std::shared_ptr<const stress::SolidStiffness> stiffness,

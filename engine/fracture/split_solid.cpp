@@ -7,6 +7,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/core/stop.h"
 
 namespace shatterbox::fracture {
@@ -58,6 +59,27 @@ std::vector<int> find_partners(Size piece_count, const std::map<std::pair<int, i
 struct OwnNumber {
   int piece = -1, number = -1;
 };
+
+/// These cells alone, with vertices of their own.
+geometry::SolidMesh part_of(const geometry::SolidMesh& whole, const std::vector<int>& cells, int number,
+                            std::vector<OwnNumber>& own_numbers) {
+  geometry::SolidMesh part;
+  part.elements = whole.elements;
+  part.cells.reserve(cells.size());
+  for (const int c : cells) {
+    geometry::SolidCell cell = whole.cells[at(c)];
+    for (int& v : cell.vertices) {
+      OwnNumber& own = own_numbers[at(v)];
+      if (own.piece != number) {
+        own = {number, static_cast<int>(part.vertex_source.size())};
+        part.vertex_source.push_back(whole.vertex_source[at(v)]);
+      }
+      v = own.number;
+    }
+    part.cells.push_back(cell);
+  }
+  return part;
+}
 
 }  // namespace
 
@@ -158,27 +180,18 @@ SolidSplit SolidSplitter::split() const {
   for (Size c = 0; c < piece_of_.size(); ++c) cells[at(piece_of_[c])].push_back(static_cast<int>(c));
   // No two pieces' cells share a copy of a node, but where nothing more than nodes ever joined them.
   const geometry::SolidMesh whole = make_solid_mesh(complex_, contacts_);
-  std::vector<OwnNumber> own_numbers(whole.vertex_source.size());
-  geometry::PieceExtractor extractor(complex_);
-  for (int p = 0; at(p) < cells.size(); ++p) {
-    core::stop_if_asked();
-    SolidPiece piece;
-    piece.complex = extractor.extract(cells[at(p)]);
-    piece.mesh.elements = whole.elements;
-    for (const int c : cells[at(p)]) {
-      geometry::SolidCell cell = whole.cells[at(c)];
-      for (int& v : cell.vertices) {
-        OwnNumber& own = own_numbers[at(v)];
-        if (own.piece != p) {
-          own = {p, static_cast<int>(piece.mesh.vertex_source.size())};
-          piece.mesh.vertex_source.push_back(whole.vertex_source[at(v)]);
-        }
-        v = own.number;
-      }
-      piece.mesh.cells.push_back(cell);
+  // The first is the greatest: beside it there is time for the others.
+  split.pieces.resize(cells.size());
+  core::parallel_for(std::min<Size>(cells.size(), 2), 1, [&](Size part) {
+    geometry::PieceExtractor extractor(complex_);
+    std::vector<OwnNumber> own_numbers(whole.vertex_source.size());
+    for (Size p = part; p < (part == 0 ? 1 : cells.size()); ++p) {
+      core::stop_if_asked();
+      SolidPiece& piece = split.pieces[p];
+      piece.complex = extractor.extract(cells[p]);
+      piece.mesh = part_of(whole, cells[p], static_cast<int>(p), own_numbers);
     }
-    split.pieces.push_back(std::move(piece));
-  }
+  });
   return split;
 }
 

@@ -117,6 +117,18 @@ void collect_cell_facets(SolidComplex& complex) {
     }
 }
 
+bool has_divided_edge(const SolidComplex& complex, const SolidFacet& facet) {
+  const int* sides = complex.sides_of(facet);
+  return std::any_of(sides, sides + facet.side_count,
+                     [&](int side) { return complex.edges[at(side / 2)].parts[0] >= 0; });
+}
+
+bool has_divided_facet(const SolidComplex& complex, const SolidPart& cell) {
+  const int* facets = complex.cell_facets.data() + cell.first_facet;
+  return std::any_of(facets, facets + cell.facet_count,
+                     [&](int facet) { return complex.facets[at(facet / 2)].parts[0] >= 0; });
+}
+
 }  // namespace
 
 SolidComplex make_solid_complex(std::shared_ptr<const SolidElements> elements) {
@@ -228,10 +240,7 @@ std::array<int, 2> divide_facet(SolidComplex& complex, int number, int begin, in
 void settle_facet(SolidComplex& complex, int number) {
   SolidFacet& facet = complex.facets[at(number)];
   const int old = facet.first_side;
-  const int* sides = complex.sides_of(facet);
-  if (std::none_of(sides, sides + facet.side_count,
-                   [&](int side) { return complex.edges[at(side / 2)].parts[0] >= 0; }))
-    return;
+  if (!has_divided_edge(complex, facet)) return;
   facet.first_side = static_cast<int>(complex.sides.size());
   for (int i = 0; i < facet.side_count; ++i) append_side(complex, complex.sides[at(old + i)], complex.sides);
   facet.side_count = static_cast<int>(complex.sides.size()) - facet.first_side;
@@ -240,10 +249,7 @@ void settle_facet(SolidComplex& complex, int number) {
 void settle_facet_list(SolidComplex& complex, int number) {
   SolidPart& cell = complex.cells[at(number)];
   const int old = cell.first_facet;
-  const int* facets = complex.cell_facets.data() + old;
-  if (std::none_of(facets, facets + cell.facet_count,
-                   [&](int facet) { return complex.facets[at(facet / 2)].parts[0] >= 0; }))
-    return;
+  if (!has_divided_facet(complex, cell)) return;
   cell.first_facet = static_cast<int>(complex.cell_facets.size());
   for (int i = 0; i < cell.facet_count; ++i)
     append_facet(complex, complex.cell_facets[at(old + i)], complex.cell_facets);
@@ -270,14 +276,28 @@ Vec3 facet_area_vector(const SolidComplex& complex, const SolidFacet& facet) {
   return 0.5 * twice;
 }
 
+std::vector<int> find_border_facets(const SolidComplex& complex) {
+  constexpr Size kGrain = 8192;
+  return core::find_where(complex.facets.size(), kGrain, [&](Size f) {
+    const SolidFacet& facet = complex.facets[f];
+    return facet.parts[0] < 0 && (facet.cells[0] < 0) != (facet.cells[1] < 0);
+  });
+}
+
 double cell_volume(const SolidComplex& complex, int number) {
   return cell_moments(complex, number).volume;
 }
 
 void settle(SolidComplex& complex) {
-  for (Size f = 0; f < complex.facets.size(); ++f)
-    if (complex.facets[f].parts[0] < 0) settle_facet(complex, static_cast<int>(f));
-  for (Size c = 0; c < complex.cells.size(); ++c) settle_facet_list(complex, static_cast<int>(c));
+  // Few have changed: they are found on all threads, and settled one after the other.
+  constexpr Size kGrain = 8192;
+  const auto stale_facets = core::find_where(complex.facets.size(), kGrain, [&](Size f) {
+    return complex.facets[f].parts[0] < 0 && has_divided_edge(complex, complex.facets[f]);
+  });
+  for (const int f : stale_facets) settle_facet(complex, f);
+  const auto stale_cells = core::find_where(
+      complex.cells.size(), kGrain, [&](Size c) { return has_divided_facet(complex, complex.cells[c]); });
+  for (const int c : stale_cells) settle_facet_list(complex, c);
   core::parallel_for(complex.cells.size(), 1024, [&](Size c) {
     if (!complex.cells[c].is_measured) measure_cell(complex, static_cast<int>(c));
   });

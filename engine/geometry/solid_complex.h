@@ -115,6 +115,9 @@ void settle_cell(SolidComplex& complex, int cell);
 /// Area vector of a settled facet, m2: its normal, pointing to the front, times its area.
 Vec3 facet_area_vector(const SolidComplex& complex, const SolidFacet& facet);
 
+/// Numbers of the facets with nothing on one of their sides, ascending.
+std::vector<int> find_border_facets(const SolidComplex& complex);
+
 /// Volume of a settled cell, m3, by the divergence theorem.
 double cell_volume(const SolidComplex& complex, int cell);
 

@@ -5,6 +5,7 @@
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -28,14 +29,18 @@ std::vector<char> find_nodes_at_cracks(const SolidComplex& complex) {
 }  // namespace
 
 std::vector<SolidContact> find_solid_contacts(const SolidComplex& complex) {
-  std::vector<SolidContact> contacts;
-  contacts.reserve(complex.facets.size());
-  for (const SolidFacet& facet : complex.facets) {
-    if (facet.parts[0] >= 0 || facet.kind == FacetKind::crack) continue;
+  constexpr Size kGrain = 8192;
+  const auto between = core::find_where(complex.facets.size(), kGrain, [&](Size f) {
+    const SolidFacet& facet = complex.facets[f];
+    return facet.parts[0] < 0 && facet.kind != FacetKind::crack && facet.cells[0] >= 0 &&
+           facet.cells[1] >= 0 && facet.cells[0] != facet.cells[1];
+  });
+  std::vector<SolidContact> contacts(between.size());
+  core::parallel_for(between.size(), kGrain, [&](Size k) {
+    const SolidFacet& facet = complex.facets[at(between[k])];
     const auto [a, b] = std::minmax(facet.cells[0], facet.cells[1]);
-    if (a < 0 || a == b) continue;
-    contacts.push_back({a, b, facet_area_vector(complex, facet).norm()});
-  }
+    contacts[k] = {a, b, facet_area_vector(complex, facet).norm()};
+  });
   // By cell_a in linear time, then each cell's few by cell_b; facets of one pair add up in their order.
   std::vector<int> next(complex.cells.size() + 1, 0);
   for (const SolidContact& contact : contacts) ++next[at(contact.cell_a) + 1];

@@ -69,10 +69,9 @@ class BorderBuilder {
   };
 
   void collect_border() {
-    for (Size f = 0; f < complex_.facets.size(); ++f) {
-      const SolidFacet& facet = complex_.facets[f];
-      if (facet.parts[0] >= 0 || (facet.cells[0] < 0) == (facet.cells[1] < 0)) continue;
-      borders_.push_back({static_cast<int>(f), corner_count_, facet.cells[0] < 0});
+    for (const int f : find_border_facets(complex_)) {
+      const SolidFacet& facet = complex_.facets[at(f)];
+      borders_.push_back({f, corner_count_, facet.cells[0] < 0});
       corner_count_ += facet.side_count;
     }
   }
@@ -504,9 +503,9 @@ SolidSurface extract_surface(const SolidComplex& piece) {
 }
 
 MassProperties solid_mass_properties(const SolidComplex& piece, double density) {
-  const auto for_border = [&piece](auto&& visit) {
-    for (const SolidFacet& facet : piece.facets)
-      if (facet.parts[0] < 0 && (facet.cells[0] < 0) != (facet.cells[1] < 0)) visit(facet);
+  const std::vector<int> border = find_border_facets(piece);
+  const auto for_border = [&](auto&& visit) {
+    for (const int f : border) visit(piece.facets[at(f)]);
   };
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for_border([&](const SolidFacet& facet) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <type_traits>
 
 #include "engine/core/elementary.h"
@@ -298,18 +297,17 @@ template <class Scalar>
 std::vector<GradientResult> solve_some(const BlockSystem& system, std::span<const Load> loads,
                                        const GradientSettings& settings) {
   constexpr Size kMost = 4;
-  std::vector<GradientResult> results;
-  results.reserve(loads.size());
-  for (Size first = 0; first < loads.size(); first += kMost) {
-    const auto some = loads.subspan(first, std::min(kMost, loads.size() - first));
+  std::vector<GradientResult> results(loads.size());
+  core::parallel_chunks(loads.size(), kMost, [&](Size first, Size last) {
+    const auto some = loads.subspan(first, last - first);
     // In single precision four lanes are one register, and cost less than two.
     constexpr Size kFew = std::is_same_v<Scalar, float> ? kMost : 2;
     std::vector<GradientResult> own = some.size() == 1 ? Solver<1, Scalar>(system, some).run(settings)
                                       : some.size() <= kFew
                                           ? Solver<kFew, Scalar>(system, some).run(settings)
                                           : Solver<kMost, Scalar>(system, some).run(settings);
-    std::move(own.begin(), own.end(), std::back_inserter(results));
-  }
+    std::move(own.begin(), own.end(), results.begin() + static_cast<std::ptrdiff_t>(first));
+  });
   return results;
 }
 

@@ -73,7 +73,7 @@ class Factorisation {
     // Disjoint subtrees at once, each in order by one thread; then what is above them, level by level. What
     // runs when depends on the tree alone, and nothing is summed across fronts but in the order of the
     // children.
-    const std::vector<int> roots = split();
+    const std::vector<int> roots = small_subtrees(tree_, 16);
     core::parallel_for(roots.size(), 1, [&](Size i) {
       const int root = roots[i];
       for (int f = tree_.fronts[at(root)].subtree_first; f <= root && !has_failed_; ++f) factor(f, false);
@@ -103,21 +103,6 @@ class Factorisation {
         }
       }
     for (double& pivot : least_pivots_) pivot *= kLeastPivot;
-  }
-
-  std::vector<int> split() const {
-    std::vector<int> roots;
-    double total = 0.0;
-    for (int f = 0; f < static_cast<int>(tree_.fronts.size()); ++f)
-      if (tree_.fronts[at(f)].parent < 0) total += tree_.fronts[at(f)].work;
-    // The highest fronts whose subtree is at most a sixteenth of the work.
-    for (int f = 0; f < static_cast<int>(tree_.fronts.size()); ++f) {
-      const Front& front = tree_.fronts[at(f)];
-      const auto is_small = [&](const Front& candidate) { return candidate.work <= total / 16.0; };
-      if (is_small(front) && (front.parent < 0 || !is_small(tree_.fronts[at(front.parent)])))
-        roots.push_back(f);
-    }
-    return roots;
   }
 
   /// The fronts that are in none of the subtrees, by the length of the longest way down to one that is.

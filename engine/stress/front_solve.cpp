@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/stress/front_tiles.h"
 
 namespace shatterbox::stress {
@@ -11,6 +12,8 @@ namespace {
 
 using Size = std::size_t;
 using core::at;
+
+constexpr double kSharedEntries = 1e6;  // of a factor from which on threads share a solve
 
 template <int kLanes>
 class LaneSolver {
@@ -29,18 +32,34 @@ class LaneSolver {
     }
   }
 
+  // What is above disjoint subtrees, then these at once: each reads what is above it, and writes its own.
   void run_backward() {
     std::vector<char> is_reached(tree_.fronts.size(), 0);
-    for (Size f = tree_.fronts.size(); f-- > 0;) {
-      const Front& front = tree_.fronts[f];
-      const bool has_parent = front.parent >= 0 && is_reached[at(front.parent)] != 0;
-      if (!has_parent && are_zero(pivot(front, 0), front.pivots)) continue;
-      is_reached[f] = 1;
-      backward(front, factor_.panel(f));
+    const std::vector<int> roots =
+        tree_.entries > kSharedEntries ? small_subtrees(tree_, 16) : std::vector<int>{};
+    auto root = roots.rbegin();
+    for (int f = static_cast<int>(tree_.fronts.size()) - 1; f >= 0;) {
+      if (root != roots.rend() && *root == f) {
+        f = tree_.fronts[at(f)].subtree_first - 1;
+        ++root;
+        continue;
+      }
+      go_back(f--, is_reached);
     }
+    core::parallel_for(roots.size(), 1, [&](Size i) {
+      for (int f = roots[i]; f >= tree_.fronts[at(roots[i])].subtree_first; --f) go_back(f, is_reached);
+    });
   }
 
  private:
+  void go_back(int f, std::vector<char>& is_reached) {
+    const Front& front = tree_.fronts[at(f)];
+    const bool has_parent = front.parent >= 0 && is_reached[at(front.parent)] != 0;
+    if (!has_parent && are_zero(pivot(front, 0), front.pivots)) return;
+    is_reached[at(f)] = 1;
+    backward(front, factor_.panel(at(f)));
+  }
+
   using Lanes = std::array<double, static_cast<Size>(kLanes)>;
 
   static bool are_zero(const double* x, int pivots) {

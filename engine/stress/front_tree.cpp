@@ -153,4 +153,17 @@ FrontTree build_front_tree(const NodeGraph& graph, const std::vector<int>& order
   return tree;
 }
 
+std::vector<int> small_subtrees(const FrontTree& tree, int share) {
+  std::vector<int> roots;
+  double total = 0.0;
+  for (const Front& front : tree.fronts)
+    if (front.parent < 0) total += front.work;
+  const auto is_small = [&](const Front& front) { return front.work <= total / share; };
+  for (int f = 0; f < static_cast<int>(tree.fronts.size()); ++f) {
+    const Front& front = tree.fronts[at(f)];
+    if (is_small(front) && (front.parent < 0 || !is_small(tree.fronts[at(front.parent)]))) roots.push_back(f);
+  }
+  return roots;
+}
+
 }  // namespace shatterbox::stress

@@ -48,4 +48,8 @@ struct FrontTree {
 /// Fronts for a given order of the nodes (all that occur in elements; others may be left out).
 FrontTree build_front_tree(const NodeGraph& graph, const std::vector<int>& order);
 
+/// The highest fronts whose subtrees are each at most 1 / `share` of the work, ascending: roots of disjoint
+/// subtrees that threads may take.
+std::vector<int> small_subtrees(const FrontTree& tree, int share);
+
 }  // namespace shatterbox::stress

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "engine/core/elementary.h"
+#include "engine/core/parallel.h"
 #include "engine/fracture/shell_subject.h"
 #include "engine/fracture/space_grains.h"
 #include "engine/geometry/mass_properties.h"
@@ -320,9 +321,16 @@ std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& m
 
 std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile) {
   auto shape = std::make_shared<body::Shape>();
-  const geometry::MassProperties mass = geometry::solid_mass_properties(piece, fragile.density);
-  geometry::SolidSurface surface = geometry::extract_surface(piece);
-  shape->least_gap = geometry::stand_back(surface, kKerf * fragile.size);
+  geometry::MassProperties mass;
+  geometry::SolidSurface surface;
+  core::parallel_for(2, 1, [&](Size part) {
+    if (part == 1) {
+      mass = geometry::solid_mass_properties(piece, fragile.density);
+      return;
+    }
+    surface = geometry::extract_surface(piece);
+    shape->least_gap = geometry::stand_back(surface, kKerf * fragile.size);
+  });
   geometry::keep_kerf(piece, surface);
   shape->kind = body::ShapeKind::solid;
   shape->surface = std::move(surface.mesh);

@@ -5,10 +5,13 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "engine/core/index.h"
 #include "engine/core/random.h"
 
 namespace shatterbox::collision {
 namespace {
+
+using core::at;
 
 Vec3 draw(core::Random& random) {
   const double x = random.uniform(-1, 1);
@@ -35,6 +38,21 @@ body::Shape sheet(core::Random& random, int n) {
   }
   return shape;
 }
+
+// Two rough sheets that stay where they are, one away from the other.
+struct StillSheets {
+  std::shared_ptr<const Collider> a, b;
+  PlacedCollider pa, pb;
+
+  StillSheets(core::Random& random, int n, const Vec3& away)
+      : a(make_collider(sheet(random, n))), b(make_collider(sheet(random, n))) {
+    pa.collider = a.get();
+    pb.collider = b.get();
+    pa.start = pb.start = a->vertices;
+    for (std::size_t v = 0; v < pb.start.size(); ++v) pb.start[v] = b->vertices[v] + away;
+    for (PlacedCollider* placed : {&pa, &pb}) refit_swept_boxes(*placed, placed->start, placed->start);
+  }
+};
 
 }  // namespace
 
@@ -67,6 +85,72 @@ TEST_CASE("a list holds every feature pair within the margin, each once") {
     must_have(FeatureKind::vertex_triangle, a->vertices.size(), b->triangles.size());
     must_have(FeatureKind::triangle_vertex, a->triangles.size(), b->vertices.size());
     must_have(FeatureKind::edge_edge, a->edges.size(), b->edges.size());
+  }
+}
+
+TEST_CASE("of great bodies, looked through in parts, a list holds every near vertex and triangle") {
+  core::Random random(31);
+  const StillSheets sheets(random, 33, Vec3(0.01, 0.2, 0.02));
+  const auto& [a, b, pa, pb] = sheets;
+  const double margin = 0.05;
+  FeatureList list;
+  list_swept_features(pa, pb, Vec3::Zero(), margin, list);
+  std::set<std::uint64_t> keys;
+  bool is_doubled = false;
+  for (const auto& f : list) is_doubled = !keys.insert(f.key()).second || is_doubled;
+  CHECK_FALSE(is_doubled);
+  int near = 0, missed = 0;
+  for (int v = 0; v < static_cast<int>(a->vertices.size()); ++v) {
+    for (int t = 0; t < static_cast<int>(b->triangles.size()); ++t) {
+      const FeaturePair pair{FeatureKind::vertex_triangle, 0.0F, v, t};
+      if (measure(gather(pair, *a, pa.start, *b, pb.start), Vec3::UnitY()).gap > margin) continue;
+      ++near;
+      missed += keys.count(pair.key()) == 0 ? 1 : 0;
+    }
+  }
+  CHECK(near > 100);
+  CHECK(missed == 0);
+}
+
+TEST_CASE("the blocks of a list follow each other, and their leaves hold what they list") {
+  core::Random random(37);
+  for (const int n : {4, 33}) {  // looked through at once and in parts
+    const StillSheets sheets(random, n, Vec3(0.1, 0.1, 0));
+    const auto& [a, b, pa, pb] = sheets;
+    FeatureList list, alone;
+    std::vector<FeatureBlock> blocks;
+    list_swept_features(pa, pb, Vec3::Zero(), 0.05, list, &blocks);
+    list_swept_features(pa, pb, Vec3::Zero(), 0.05, alone);
+    REQUIRE(list.size() == alone.size());
+    REQUIRE(!blocks.empty());
+    CHECK(blocks.front().begin == 0);
+    int strangers = 0, beyond = 0;
+    const auto is_of = [](const Collider& c, int leaf, int vertex) {
+      const auto first = c.leaf_vertices.begin();
+      const auto begin = first + c.leaf_vertex_begin[at(leaf)],
+                 end = first + c.leaf_vertex_begin[at(leaf) + 1];
+      return std::find(begin, end, vertex) != end;
+    };
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      const std::size_t begin = at(blocks[k].begin),
+                        end = k + 1 < blocks.size() ? at(blocks[k + 1].begin) : list.size();
+      CHECK(begin < end);
+      const Vec3 direction = draw(random).normalized();
+      const double apart = leaf_span(*a, blocks[k].leaf_a, pa.start, direction).least -
+                           leaf_span(*b, blocks[k].leaf_b, pb.start, direction).most;
+      for (std::size_t i = begin; i < end; ++i) {
+        const FeaturePair& f = list[i];
+        CHECK(f.key() == alone[i].key());
+        if (f.kind == FeatureKind::vertex_triangle) strangers += is_of(*a, blocks[k].leaf_a, f.a) ? 0 : 1;
+        if (f.kind == FeatureKind::triangle_vertex) strangers += is_of(*b, blocks[k].leaf_b, f.b) ? 0 : 1;
+        const FeaturePoints points = gather(f, *a, pa.start, *b, pb.start);
+        const double own = separation_along(f, *a, pa.start, *b, pb.start, direction);
+        CHECK(own == separation_along(points, direction));
+        beyond += own < apart ? 1 : 0;
+      }
+    }
+    CHECK(strangers == 0);
+    CHECK(beyond == 0);
   }
 }
 

@@ -61,6 +61,19 @@ TEST_CASE("a loop gives the same bits on any number of threads") {
   CHECK(results[0] == results[2]);
 }
 
+TEST_CASE("what a claim is true of is found in ascending order") {
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{64}, std::size_t{1000}}) {
+      std::vector<int> expected;
+      for (std::size_t i = 0; i < count; ++i)
+        if (i * i % 7 == 2) expected.push_back(static_cast<int>(i));
+      CHECK(find_where(count, 64, [](std::size_t i) { return i * i % 7 == 2; }) == expected);
+    }
+  }
+  set_thread_count(0);
+}
+
 TEST_CASE("a loop inside a loop ends, and a grain of zero counts as one") {
   set_thread_count(2);
   std::atomic<int> visits{0};
