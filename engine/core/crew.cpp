@@ -1,6 +1,5 @@
 #include "engine/core/crew.h"
 
-#include <algorithm>
 #include <thread>
 
 #include "engine/core/parallel.h"
@@ -27,10 +26,10 @@ class Wait {
 };
 
 struct Left {
-  std::uint64_t number, front, back;
+  std::uint64_t front, back;
 
-  static Left of(std::uint64_t packed) { return {packed >> 32, packed >> 16 & 0xffff, packed & 0xffff}; }
-  std::uint64_t packed() const { return number << 32 | front << 16 | back; }
+  static Left of(std::uint64_t packed) { return {packed >> 32, packed & 0xffffffff}; }
+  std::uint64_t packed() const { return front << 32 | back; }
 };
 
 }  // namespace
@@ -65,9 +64,7 @@ bool Crew::take(bool is_leader, std::size_t& index) {
 void Crew::share(std::size_t count, const Task& task) {
   task_ = task;
   done_.store(0, std::memory_order_relaxed);
-  const Left before = Left::of(left_.load(std::memory_order_relaxed));
-  left_.store(Left{(before.number + 1) & 0xffffffff, 0, std::min(count, kMost)}.packed(),
-              std::memory_order_release);
+  left_.store(Left{0, count}.packed(), std::memory_order_release);
   std::size_t own = 0;
   for (std::size_t i = 0; take(true, i); ++own) task_.call(task_.body, i);
   for (Wait wait; done_.load(std::memory_order_acquire) + own < count;) wait.once();

@@ -19,7 +19,7 @@ class Crew {
   static void run(const std::function<void(Crew&)>& lead);
 
   /// For `lead` alone: calls body(i) for each i in [0, count), in any order, possibly at once: each must
-  /// write only what is its own, and must not throw. At most kMost.
+  /// write only what is its own, and must not throw. `count` is below 2^32.
   template <class Body>
   void loop(std::size_t count, const Body& body) {
     if (!has_help_ || count < 2) {
@@ -28,8 +28,6 @@ class Crew {
     }
     share(count, {&body, [](const void* what, std::size_t i) { (*static_cast<const Body*>(what))(i); }});
   }
-
-  static constexpr std::size_t kMost = 65535;
 
  private:
   struct Task {
@@ -44,8 +42,8 @@ class Crew {
 
   const bool has_help_;
   Task task_;
-  // What is left of the loop: its number, and the first and the last index but one that nobody has taken. The
-  // leader takes from the front and helpers from the back, so that each has much the same share every time.
+  // What is left of the loop: the first index that nobody has taken, and the one behind the last. The leader
+  // takes from the front and helpers from the back, so that each has much the same share every time.
   std::atomic<std::uint64_t> left_{0};
   std::atomic<std::size_t> done_{0};
   std::atomic<bool> has_ended_{false};

@@ -12,25 +12,25 @@ using core::at;
 // What closes within this substep, and how fast it will be when it touches. From the energy at the
 // substep's start: gravity's share of the way down is in it, whatever the part of the substep.
 void IslandSolver::find_arrivals() {
-  has_arrivals_ = each([&](std::size_t, SolverContact& c, Found& found) {
-                    c.impulse.setZero();
-                    c.rolling_impulse.setZero();
-                    c.is_arriving = false;
-                    c.was_apart = !is_touching(c);
-                    work_.pairs[at(c.pair)].work = 0.0;
-                    const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
-                    const double after_kick = relative_velocity(c)[0];
-                    const double before = after_kick - 0.5 * drive * step_;
-                    const double way = std::max(0.0, c.slack);
-                    if (after_kick >= 0.0 || way + after_kick * step_ > kTouching * c.kept_gap) return;
-                    const double speed_squared =
-                        before * std::abs(before) + 2.0 * drive * way;  // closing is negative
-                    if (speed_squared >= 0.0) return;
-                    const double speed = std::sqrt(-speed_squared);
-                    if (speed <= c.threshold) return;
-                    arrive(c, speed, part_start_ + std::min(step_, way / -after_kick));
-                    found.is_any = true;
-                  }).is_any;
+  const Found arrivals = each([&](std::size_t, SolverContact& c, Found& found) {
+    c.impulse.setZero();
+    c.rolling_impulse.setZero();
+    c.is_arriving = false;
+    c.was_apart = !is_touching(c);
+    work_.pairs[at(c.pair)].work = 0.0;
+    const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
+    const double after_kick = relative_velocity(c)[0];
+    const double before = after_kick - 0.5 * drive * step_;
+    const double way = std::max(0.0, c.slack);
+    if (after_kick >= 0.0 || way + after_kick * step_ > kTouching * c.kept_gap) return;
+    const double speed_squared = before * std::abs(before) + 2.0 * drive * way;  // closing is negative
+    if (speed_squared >= 0.0) return;
+    const double speed = std::sqrt(-speed_squared);
+    if (speed <= c.threshold) return;
+    arrive(c, speed, part_start_ + std::min(step_, way / -after_kick));
+    found.is_any = true;
+  });
+  has_arrivals_ = arrivals.is_any;
 }
 
 // Normals and arms turn on the way: what did not seem to arrive in this part may have all the same. It has

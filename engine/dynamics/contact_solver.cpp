@@ -109,24 +109,25 @@ void IslandSolver::begin() {
   });
   joints_.begin();
   may_strike_on_ = strikes_one_by_one(island_, work_);
-  has_scripted_ = each([&](std::size_t, SolverContact& c, Found& found) {
-                    const WorkBody &a = body(c.a), &b = body(c.b);
-                    found.is_any = found.is_any || a.is_scripted || b.is_scripted;
-                    const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
-                    c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
-                    c.warm = c.warm_start;
-                    c.held_from = -c.creep_before;
-                    c.arrival_speed = c.arrival_before;
-                    c.impulse.setZero();
-                    reset_axes(c);
-                    c.total.setZero();
-                    c.moment_point.setZero();
-                    c.moment_a.setZero();
-                    c.moment_b.setZero();
-                    c.impulse_a.setZero();
-                    c.impulse_b.setZero();
-                    c.moment_weight = c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
-                  }).is_any;
+  const Found scripted = each([&](std::size_t, SolverContact& c, Found& found) {
+    const WorkBody &a = body(c.a), &b = body(c.b);
+    found.is_any = found.is_any || a.is_scripted || b.is_scripted;
+    const WorkBody& lighter = a.inverse_mass > b.inverse_mass ? a : b;
+    c.strained_from = kStrain * lighter.gravity.norm() * step_ / lighter.inverse_mass;
+    c.warm = c.warm_start;
+    c.held_from = -c.creep_before;
+    c.arrival_speed = c.arrival_before;
+    c.impulse.setZero();
+    reset_axes(c);
+    c.total.setZero();
+    c.moment_point.setZero();
+    c.moment_a.setZero();
+    c.moment_b.setZero();
+    c.impulse_a.setZero();
+    c.impulse_b.setZero();
+    c.moment_weight = c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
+  });
+  has_scripted_ = scripted.is_any;
 }
 
 // Scripted bodies have their own velocity in each substep. Islands that share one are solved one after the

@@ -62,6 +62,16 @@ TEST_CASE("a crew of one runs its loops by itself, and crews may run side by sid
   for (const int s : sums) CHECK(s == 1000);
 }
 
+TEST_CASE("a loop of a crew may be long") {
+  set_thread_count(2);
+  std::vector<int> cells(200000, 0);
+  Crew::run([&](Crew& crew) { crew.loop(cells.size(), [&](std::size_t i) { ++cells[i]; }); });
+  set_thread_count(0);
+  long sum = 0;
+  for (const int cell : cells) sum += cell;
+  CHECK(sum == 200000);
+}
+
 TEST_CASE("what the leader of a crew throws leaves it, and the others with it") {
   for (const int threads : {1, 3}) {
     set_thread_count(threads);
