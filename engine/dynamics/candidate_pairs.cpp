@@ -305,8 +305,10 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
     classify(bodies, settings, state.pairs[at(work.pairs[p].state)], work, work.pairs[p]);
   });
+  SearchShelf& shelf = *state.shelf;
+  if (shelf.keeps_part) begin_part(settings.time_step, state.pairs, shelf.former, work, shelf.part);
   for (const WorkPair& pair : work.pairs) {
-    if (pair.is_apart) continue;
+    if (pair.is_apart || pair.former >= 0) continue;
     for (const int i : {pair.a, pair.b}) {
       Needs& n = needs[at(i)];
       n.place = true;
@@ -325,8 +327,14 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     place_at(w, w.predicted, w.predicted_vertices);
   });
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
-    find_pair_contacts(settings, work, state.pairs[at(work.pairs[p].state)], work.pairs[p]);
+    WorkPair& pair = work.pairs[p];
+    PairState& memory = state.pairs[at(pair.state)];
+    if (pair.former >= 0)
+      meet_again(settings, shelf.former.pairs[at(pair.former)], work, memory, pair);
+    else
+      find_pair_contacts(settings, work, memory, pair);
   });
+  if (shelf.keeps_part) keep_meetings(state.pairs, work, shelf.part);
   forget_joined_contacts(work);
   find_sleepers_to_wake(bodies, settings, work);
   build_contact_graph(state, work);

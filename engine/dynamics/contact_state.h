@@ -14,6 +14,7 @@
 #include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
 #include "engine/dynamics/joint.h"
+#include "engine/dynamics/part_memory.h"
 
 namespace shatterbox::dynamics {
 
@@ -62,7 +63,9 @@ struct SearchShelf {
     body::BodyId body_a = 0, body_b = 0;
     std::shared_ptr<const FeatureSearch> search;
   };
-  std::vector<Row> pairs;  // ascending (body_a, body_b)
+  std::vector<Row> pairs;   // ascending (body_a, body_b)
+  PartMemory part, former;  // of a part that may be taken again; of its taking before, while it is
+  bool keeps_part = false;
 };
 
 struct ContactState {

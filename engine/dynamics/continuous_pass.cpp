@@ -49,6 +49,8 @@ class Guard {
         state_(state),
         work_(work),
         report_(report),
+        former_(state.shelf->former),
+        memory_(state.shelf->part),
         paths_(settings, work) {}
 
   void run() {
@@ -110,9 +112,15 @@ class Guard {
       // What crosses passes, unless it has sides: that may not cross deeper.
       if (must_test_[p] && is_exempt(p) && !work_.pairs[p].has_sides) must_test_[p] = 0;
     }
-    paths_.prepare(must_test_);
+    std::vector<char> must_go = must_test_;
+    if (!former_.pairs.empty()) {
+      for (std::size_t p = 0; p < must_go.size(); ++p)
+        if (must_go[p] && recall(p)) must_go[p] = 0;
+    }
+    paths_.prepare(must_go);
     core::parallel_for(work_.pairs.size(), 4, [&](std::size_t p) {
-      if (must_test_[p]) hits_[p] = paths_.find_hits(p, spare_[p]);
+      if (must_go[p]) hits_[p] = paths_.find_hits(p, spare_[p]);
+      if (must_test_[p] && p < memory_.pairs.size()) remember(p);
     });
     bool has_hits = false;
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
@@ -123,6 +131,30 @@ class Guard {
       was_hit_[p] = 1;
     }
     return has_hits;
+  }
+
+  // What the pair's test came to when the part was taken before, if the ends are the same in this as in all
+  // that came before it.
+  bool recall(std::size_t p) {
+    WorkPair& pair = work_.pairs[p];
+    if (pair.former < 0) return false;
+    const auto& tests = former_.pairs[at(pair.former)].tests;
+    const std::size_t next = memory_.pairs[p].tests.size();
+    const bool is_same = next < tests.size() && tests[next].a.is_of(work_.bodies[at(pair.a)]) &&
+                         tests[next].b.is_of(work_.bodies[at(pair.b)]);
+    if (is_same) {
+      hits_[p] = tests[next].hits;
+      spare_[p] = tests[next].spare;
+    } else {
+      pair.former = -1;
+    }
+    return is_same;
+  }
+
+  void remember(std::size_t p) {
+    const WorkBody &a = work_.bodies[at(work_.pairs[p].a)], &b = work_.bodies[at(work_.pairs[p].b)];
+    memory_.pairs[p].tests.push_back(
+        {{a.end, a.straight_parts, a.knots}, {b.end, b.straight_parts, b.knots}, hits_[p], spare_[p]});
   }
 
   bool open_in_rounds(bool has_hits) {
@@ -483,6 +515,8 @@ class Guard {
   ContactState& state_;
   MotionWork& work_;
   ContactReport& report_;
+  const PartMemory& former_;
+  PartMemory& memory_;
   PathTest paths_;
   std::optional<ImpactZones> zones_;  // once nothing else helped
   std::vector<char> must_test_, was_cut_, in_zone_, was_hit_;

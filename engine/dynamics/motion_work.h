@@ -158,6 +158,7 @@ struct WorkPair {
   PathMemory known;          // of its features
   double least_gap = 1e300;  // m, at the start; at least what was looked at if nothing is near
   std::vector<collision::Contact> contacts;
+  int former = -1;    // row of the part's former taking, which began alike for it; -1: none
   double work = 0.0;  // J, of its impulses in this substep
 };
 

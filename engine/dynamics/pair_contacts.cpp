@@ -215,6 +215,13 @@ void meet_plane(const MotionWork& work, WorkPair& pair) {
   }
 }
 
+void take_gap(const ContactSettings& settings, const MotionWork& work, double kept_gap, WorkPair& pair) {
+  pair.kept_gap = kept_gap;
+  pair.threshold = impact_threshold(settings, kept_gap);
+  const auto is_mesh = [&](int i) { return body::is_mesh(work.bodies[at(i)].shape->kind); };
+  pair.is_close = kept_gap < kClose * settings.kept_gap * pair.size && !is_mesh(pair.a) && !is_mesh(pair.b);
+}
+
 // The gap that is kept is the usual one unless the pair was found closer: it never pushes newborn pieces
 // apart.
 void adapt_gap(const ContactSettings& settings, const MotionWork& work, PairState& memory, WorkPair& pair) {
@@ -229,10 +236,7 @@ void adapt_gap(const ContactSettings& settings, const MotionWork& work, PairStat
   const bool is_raised = !is_new && (pair.is_plane || pair.is_analytic) && memory.is_touching;
   if (is_raised) least = std::max(least, memory.kept_gap + usual * settings.time_step / kRaiseTime);
   memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
-  pair.kept_gap = memory.kept_gap;
-  pair.threshold = impact_threshold(settings, memory.kept_gap);
-  const auto is_mesh = [&](int i) { return body::is_mesh(work.bodies[at(i)].shape->kind); };
-  pair.is_close = memory.kept_gap < kClose * usual && !is_mesh(pair.a) && !is_mesh(pair.b);
+  take_gap(settings, work, memory.kept_gap, pair);
 }
 
 bool is_crossing(const MotionWork& work, const PairState& memory, const WorkPair& pair) {
@@ -274,6 +278,18 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
   collision::reduce_manifold(pair.contacts, loaded, 2.0 * pair.kept_gap,
                              manifold.radius * pair.size * (is_in_trouble ? 0.5 : 1.0),
                              manifold.cap * (is_in_trouble ? 2 : 1));
+}
+
+void meet_again(const ContactSettings& settings, const PartMemory::Pair& former, const MotionWork& work,
+                PairState& memory, WorkPair& pair) {
+  pair.least_gap = former.least_gap;
+  pair.contacts = former.contacts;
+  pair.is_free_certified = former.is_free_certified;
+  pair.search = former.search;
+  memory.search = former.keeps_search ? former.search : nullptr;
+  memory.is_exempt = former.is_exempt;
+  memory.kept_gap = former.kept_gap;
+  take_gap(settings, work, memory.kept_gap, pair);
 }
 
 }  // namespace shatterbox::dynamics

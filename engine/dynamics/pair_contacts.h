@@ -13,4 +13,8 @@ namespace shatterbox::dynamics {
 void find_pair_contacts(const ContactSettings& settings, const MotionWork& work, PairState& memory,
                         WorkPair& pair);
 
+/// The same of a pair that begins as it did when the part was taken before.
+void meet_again(const ContactSettings& settings, const PartMemory::Pair& former, const MotionWork& work,
+                PairState& memory, WorkPair& pair);
+
 }  // namespace shatterbox::dynamics

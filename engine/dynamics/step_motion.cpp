@@ -236,6 +236,12 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
 
 namespace {
 
+void begin_taking(const ContactSettings& settings, const StepPart& part, SearchShelf& shelf) {
+  shelf.keeps_part = part.may_return && settings.has_caches;
+  shelf.former = part.is_again && shelf.keeps_part ? std::move(shelf.part) : PartMemory();
+  shelf.part = PartMemory();
+}
+
 // Where bodies were within the step: at the ends of the parts, and of the straight pieces of a turn.
 std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
   std::vector<body::Way> ways;
@@ -313,6 +319,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   ContactSettings own = settings;
   own.time_step /= part.count;
   own.substeps = std::max(1, settings.substeps / part.count);
+  begin_taking(own, part, *state.shelf);
   aim_scripted(bodies, own.time_step);
   wake_bodies(bodies, own, state);
   ContactReport report;
@@ -336,6 +343,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   count_near(settings, work, report);
   for (std::size_t i = first; i < log.size(); ++i) log[i].time += part.number * own.time_step;
   if (own.has_ways) report.ways = find_ways(work, part);
+  if (state.shelf->keeps_part) end_part(work, state.shelf->part);
   free_pairs(work);
   return report;
 }

@@ -54,6 +54,8 @@ void wake_bodies(std::vector<body::Body>& bodies, const ContactSettings& setting
 /// breaks bodies goes back no further than to its beginning.
 struct StepPart {
   int number = 0, count = 1;
+  bool may_return = false;  // it may be taken again
+  bool is_again = false;    // it is: from its beginning, but for bodies that broke and what they touched
 };
 
 /// In how many parts the step that begins here should be taken: several if pieces are newborn, which lie in

@@ -168,6 +168,8 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     tell_watcher("acts", part, pass);
     const std::vector<body::Body> before = s.moving.bodies;
     body::ImpulseLog log;
+    part.may_return = may_break;
+    part.is_again = pass > 0;
     dynamics::ContactReport moved = move_bodies(part, log);
     given.insert(given.end(), log.begin(), log.end());
     tell_watcher("motion", part, pass);

@@ -1,0 +1,94 @@
+// A part that is taken again: what was not changed comes to the same, from memory, and to the same bits as
+// without one.
+#include "engine/dynamics/part_memory.h"
+
+#include <catch2/catch.hpp>
+
+#include "engine/core/parallel.h"
+#include "tests/engine/dynamics/piles.h"
+
+namespace shatterbox {
+namespace {
+
+using dynamics::StepPart;
+
+struct Taken {
+  std::uint64_t hash = 0;
+  int searched = 0, recalled = 0;  // pairs whose features were listed, and of them those listed before
+  int hits = 0, cut = 0;
+};
+
+/// Boats that fall on each other, some of them turning far, at `change` of a step: one part of it, then the
+/// same again after `change` was made.
+template <class Change>
+Taken take_twice(bool has_caches, const Change& change) {
+  auto scene = test::boats_scene(30, 3);
+  scene.settings.has_caches = has_caches;
+  for (int i = 0; i < 45; ++i) scene.step();
+  for (std::size_t i = 5; i < scene.bodies.size(); i += 4)
+    scene.bodies[i].angular_velocity += Vec3(300.0, 0.0, 100.0);
+  for (std::size_t i = 6; i < scene.bodies.size(); i += 4) scene.bodies[i].velocity += Vec3(8.0, -9.0, 3.0);
+  const test::Scene before = scene;
+  dynamics::move_part(scene.bodies, scene.settings, {0, 2, true, false}, scene.state, scene.log);
+  scene = before;
+  change(scene.bodies);
+  const auto report =
+      dynamics::move_part(scene.bodies, scene.settings, {0, 2, true, true}, scene.state, scene.log);
+  Taken taken{scene.hash(), 0, 0, report.hits, report.failsafe_steps};
+  const dynamics::SearchShelf& shelf = *scene.state.shelf;
+  for (const auto& pair : shelf.part.pairs) {
+    taken.searched += pair.search ? 1 : 0;
+    for (const auto& former : shelf.former.pairs) {
+      if (former.body_a != pair.body_a || former.body_b != pair.body_b) continue;
+      taken.recalled += pair.search && pair.search == former.search ? 1 : 0;
+    }
+  }
+  return taken;
+}
+
+TEST_CASE("a part that is taken again with another body comes to the bits that it has without memory") {
+  const std::size_t changed = GENERATE(std::size_t{10}, std::size_t{17}, std::size_t{20});
+  const auto push = [&](std::vector<body::Body>& bodies) {
+    bodies[changed].velocity += Vec3(2.0, -9.0, -3.0);
+  };
+  const Taken expected = take_twice(false, push);
+  CHECK(expected.hits > 0);
+  CHECK(expected.recalled == 0);
+  for (const int threads : {1, 3}) {
+    core::set_thread_count(threads);
+    const Taken taken = take_twice(true, push);
+    CHECK(taken.hash == expected.hash);
+    CHECK(taken.hits == expected.hits);
+    CHECK(taken.cut == expected.cut);
+    // Most pairs are of others.
+    CHECK(2 * taken.recalled > taken.searched);
+    CHECK(taken.recalled < taken.searched);
+  }
+  core::set_thread_count(0);
+}
+
+TEST_CASE("a part that is taken again without a body, or with a new one, forgets only what was theirs") {
+  const auto replace = [](std::vector<body::Body>& bodies) {
+    body::Body born = bodies[12];
+    born.id = bodies.back().id + 1;
+    born.velocity += Vec3(0.0, 0.2, 0.0);
+    bodies.erase(bodies.begin() + 12);
+    bodies.push_back(born);
+  };
+  const Taken expected = take_twice(false, replace), taken = take_twice(true, replace);
+  CHECK(taken.hash == expected.hash);
+  CHECK(taken.recalled > 0);
+}
+
+TEST_CASE("what is not said to come from the same beginning remembers nothing") {
+  auto scene = test::boats_scene(10, 3);
+  for (int i = 0; i < 40; ++i) scene.step();
+  CHECK(scene.state.shelf->part.pairs.empty());
+  dynamics::move_part(scene.bodies, scene.settings, {0, 1, true, false}, scene.state, scene.log);
+  CHECK(!scene.state.shelf->part.pairs.empty());
+  dynamics::move_part(scene.bodies, scene.settings, {0, 1, true, false}, scene.state, scene.log);
+  CHECK(scene.state.shelf->former.pairs.empty());
+}
+
+}  // namespace
+}  // namespace shatterbox
