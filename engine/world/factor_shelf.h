@@ -12,7 +12,7 @@ namespace shatterbox::world {
 class FactorShelf {
  public:
   /// `most_bytes` of the factors of all pieces of shells together.
-  explicit FactorShelf(double most_bytes = 1e9) : most_bytes_(most_bytes) {}
+  explicit FactorShelf(double most_bytes = 2e9) : most_bytes_(most_bytes) {}
 
   void note_use(body::BodyId id, long step) { used_[id] = step; }
 
