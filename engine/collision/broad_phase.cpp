@@ -12,6 +12,7 @@ namespace {
 using core::at;
 
 constexpr std::size_t kChunk = 32;  // bodies that one thread looks about at once
+constexpr std::size_t kFew = 24;    // that move: to sort all for them would take longer
 
 // By a, then by b; both are below `count`.
 std::vector<IndexPair> sorted(const std::vector<std::vector<IndexPair>>& lists, std::size_t count) {
@@ -32,9 +33,27 @@ std::vector<IndexPair> sorted(const std::vector<std::vector<IndexPair>>& lists, 
   return pairs;
 }
 
+// Few that move, each against all.
+std::vector<IndexPair> find_pairs_of(const std::vector<int>& moving, const std::vector<SweptBound>& bounds) {
+  std::vector<std::vector<IndexPair>> lists(moving.size());
+  core::parallel_for(moving.size(), 1, [&](std::size_t k) {
+    const int mover = moving[k];
+    for (int i = 0; i < static_cast<int>(bounds.size()); ++i) {
+      const bool is_twice = bounds[at(i)].is_moving && i <= mover;  // of two that move, the first looks
+      if (!is_twice && geometry::overlaps(bounds[at(mover)].box, bounds[at(i)].box))
+        lists[k].push_back({std::min(mover, i), std::max(mover, i)});
+    }
+  });
+  return sorted(lists, bounds.size());
+}
+
 }  // namespace
 
 std::vector<IndexPair> find_overlapping_pairs(const std::vector<SweptBound>& bounds) {
+  std::vector<int> moving;
+  for (std::size_t i = 0; i < bounds.size() && moving.size() <= kFew; ++i)
+    if (bounds[i].is_moving) moving.push_back(static_cast<int>(i));
+  if (moving.size() <= kFew) return find_pairs_of(moving, bounds);
   std::vector<int> order(bounds.size());
   std::iota(order.begin(), order.end(), 0);
   const auto low = [&](int i) { return bounds[at(i)].box.low; };

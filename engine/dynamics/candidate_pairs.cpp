@@ -241,36 +241,61 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
   }
 }
 
-// A pair that was not thought of: without contacts, only to be kept from crossing.
-void add_pair(const std::vector<Body>& bodies, const ContactSettings& settings, const FoundPair& found,
-              ContactState& state, MotionWork& work) {
-  WorkPair pair;
-  pair.a = found.a;
-  pair.b = found.b;
-  PairState memory;
-  memory.body_a = bodies[at(pair.a)].id;
-  memory.body_b = bodies[at(pair.b)].id;
-  const auto place =
-      std::lower_bound(state.pairs.begin(), state.pairs.end(), memory, [](const auto& x, const auto& y) {
-        return std::pair(x.body_a, x.body_b) < std::pair(y.body_a, y.body_b);
-      });
-  pair.state = static_cast<int>(place - state.pairs.begin());
-  const bool is_known =
-      place != state.pairs.end() && place->body_a == memory.body_a && place->body_b == memory.body_b;
-  classify(bodies, settings, memory, work, pair);
-  memory.kept_gap = pair.kept_gap = settings.kept_gap * pair.size;
-  pair.threshold = impact_threshold(settings, pair.kept_gap);
-  pair.is_apart = pair.is_free_certified = false;
-  if (pair.is_analytic) {
+// Rows for these pairs among the others, where they have none; the pairs of `work` keep theirs.
+void make_room(const std::vector<WorkPair>& missed, const std::vector<body::BodyId>& ids, ContactState& state,
+               std::vector<WorkPair>& known) {
+  std::vector<PairState> rows;
+  rows.reserve(state.pairs.size() + missed.size());
+  std::vector<int> moved_to;
+  moved_to.reserve(state.pairs.size());
+  const auto take_until = [&](const std::pair<body::BodyId, body::BodyId>& key) {
+    for (std::size_t k = moved_to.size(); k < state.pairs.size(); ++k) {
+      PairState& row = state.pairs[k];
+      if (std::pair(row.body_a, row.body_b) >= key) break;
+      moved_to.push_back(static_cast<int>(rows.size()));
+      rows.push_back(std::move(row));
+    }
+  };
+  for (const WorkPair& pair : missed) {
+    const std::pair key(ids[at(pair.a)], ids[at(pair.b)]);
+    take_until(key);
+    const std::size_t next = moved_to.size();
+    const bool has_row = next < state.pairs.size() && state.pairs[next].body_a == key.first &&
+                         state.pairs[next].body_b == key.second;
+    if (has_row) continue;
+    rows.emplace_back();
+    rows.back().body_a = key.first;
+    rows.back().body_b = key.second;
+    rows.back().kept_gap = pair.kept_gap;
+  }
+  take_until({std::numeric_limits<body::BodyId>::max(), std::numeric_limits<body::BodyId>::max()});
+  for (WorkPair& pair : known) pair.state = moved_to[at(pair.state)];
+  state.pairs = std::move(rows);
+}
+
+// Pairs that were not thought of, ascending: without contacts, only to be kept from crossing.
+void add_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
+               const std::vector<FoundPair>& found, ContactState& state, MotionWork& work) {
+  std::vector<WorkPair> missed;
+  for (const FoundPair& next : found) {
+    WorkPair& pair = missed.emplace_back();
+    pair.a = next.a;
+    pair.b = next.b;
+    classify(bodies, settings, {}, work, pair);
+    pair.kept_gap = settings.kept_gap * pair.size;
+    pair.threshold = impact_threshold(settings, pair.kept_gap);
+    pair.is_apart = pair.is_free_certified = false;
+    if (!pair.is_analytic) continue;
     const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
     Vec3 normal;
     pair.least_gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
   }
-  if (!is_known) {
-    for (WorkPair& other : work.pairs) other.state += other.state >= pair.state ? 1 : 0;
-    state.pairs.insert(place, std::move(memory));
+  make_room(missed, work.ids, state, work.pairs);
+  for (WorkPair& pair : missed) {
+    const PairState* row = state.find_pair(work.ids[at(pair.a)], work.ids[at(pair.b)]);
+    pair.state = static_cast<int>(row - state.pairs.data());
+    work.pairs.push_back(std::move(pair));
   }
-  work.pairs.push_back(std::move(pair));
 }
 
 }  // namespace
@@ -362,16 +387,12 @@ void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& s
     look_about(settings, w.end, w);
   }
   if (!anyone) return;
-  std::vector<FoundPair> known;
-  for (const WorkPair& pair : work.pairs) known.push_back({pair.a, pair.b, 0.0});
-  const auto comes_before = [](const auto& x, const auto& y) {
-    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-  };
-  std::sort(known.begin(), known.end(), comes_before);
-  for (const auto& found : find_pairs(bodies, work, has_strayed)) {
-    if (!std::binary_search(known.begin(), known.end(), found, comes_before))
-      add_pair(bodies, settings, found, state, work);
-  }
+  std::vector<FoundPair> missed = find_pairs(bodies, work, has_strayed);
+  std::erase_if(missed, [&](const FoundPair& pair) { return work.has_pair(pair.a, pair.b); });
+  if (missed.empty()) return;
+  for (const FoundPair& pair : missed) work.missed_pairs.emplace_back(pair.a, pair.b);
+  std::sort(work.missed_pairs.begin(), work.missed_pairs.end());
+  add_pairs(bodies, settings, missed, state, work);
 }
 
 }  // namespace shatterbox::dynamics

@@ -12,6 +12,16 @@ void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out) {
   collision::place_vertices(*body.collider, pose, out);
 }
 
+bool MotionWork::has_pair(int a, int b) const {
+  const std::pair key(a, b);
+  const auto missed = static_cast<std::ptrdiff_t>(missed_pairs.size());
+  const auto found =
+      std::lower_bound(pairs.begin(), pairs.end() - missed, key,
+                       [](const WorkPair& p, const auto& k) { return std::pair(p.a, p.b) < k; });
+  if (found != pairs.end() - missed && std::pair(found->a, found->b) == key) return true;
+  return std::binary_search(missed_pairs.begin(), missed_pairs.end(), key);
+}
+
 void free_pairs(MotionWork& work) {
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) { work.pairs[p] = WorkPair(); });
 }

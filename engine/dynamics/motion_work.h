@@ -190,7 +190,8 @@ struct Island {
 class MotionWork {
  public:
   std::vector<WorkBody> bodies;  // as many as the world's, same order
-  std::vector<WorkPair> pairs;   // ascending
+  std::vector<WorkPair> pairs;   // ascending; behind them those that were missed, as they were found
+  std::vector<std::pair<int, int>> missed_pairs;  // these, ascending
   std::vector<SolverContact> contacts;
   std::vector<WorkJoint> joints;
   std::vector<std::pair<int, int>> joined, pivots;  // pairs of bodies, by area and about a point; ascending
@@ -203,6 +204,8 @@ class MotionWork {
   bool has_scripted = false;  // ones that move
   double substep = 0.0;       // s
   double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
+
+  bool has_pair(int a, int b) const;
 };
 
 /// Lets go of what pairs hold, on all threads: there is a list of every feature that is near.
