@@ -28,8 +28,8 @@ test_preset() {
   echo "== $preset passed in $((SECONDS - begin)) s"
 }
 
-test_preset asan unit robustness structure readers  # no picture is drawn here
-test_preset release unit structure physics program scene image robustness
+test_preset asan unit many robustness readers  # no picture is drawn here
+test_preset release many structure physics program scene image robustness
 
 seconds=$(($(date +%s) - start))
 echo "== all passed in $((seconds / 60)) min $((seconds % 60)) s"

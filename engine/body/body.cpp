@@ -14,6 +14,11 @@ auto* find_in(Bodies& bodies, BodyId id) {
 
 }  // namespace
 
+Mat3 Body::inverse_inertia_world() const {
+  const Mat3 r = pose.rotation.toRotationMatrix();
+  return r * inverse_inertia * r.transpose();
+}
+
 double kinetic_energy(const Body& body) {
   if (!body.is_dynamic()) return 0.0;
   const Vec3 spin_body = body.pose.rotation.conjugate() * body.angular_velocity;

@@ -65,10 +65,7 @@ struct Body {
   bool collides_with(const Body& other) const {
     return group < 0 || group != other.group || (family != 0 && family == other.family);
   }
-  Mat3 inverse_inertia_world() const {
-    const Mat3 r = pose.rotation.toRotationMatrix();
-    return r * inverse_inertia * r.transpose();
-  }
+  Mat3 inverse_inertia_world() const;
   /// m/s2, of the centre of mass, where nothing touches.
   Vec3 free_acceleration(const Vec3& gravity) const {
     return is_forced() ? Vec3(gravity + inverse_mass * force) : gravity;

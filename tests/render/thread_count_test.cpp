@@ -23,7 +23,7 @@ TEST_CASE("draws one picture to $SHATTERBOX_PICTURE", "[.draw-one]") {
 TEST_CASE("any number of threads draws the same picture") {
   std::vector<Image> images;
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-  for (const char* threads : {"0", "1", "2"}) {
+  for (const char* threads : {"0", "3"}) {
     const std::string path =
         (std::filesystem::temp_directory_path() / (std::string("shatterbox_threads_") + threads + ".png"))
             .string();
@@ -37,5 +37,4 @@ TEST_CASE("any number of threads draws the same picture") {
     std::filesystem::remove(path);
   }
   CHECK(images[0] == images[1]);
-  CHECK(images[0] == images[2]);
 }

@@ -314,15 +314,15 @@ TEST_CASE("light boxes carry one of a hundred or a thousand times their mass") {
     int cut = 0;
     for (const auto& b : scene.bodies)
       if (b.is_dynamic()) weight += b.shape->mass * 9.81;
-    for (int i = 0; i < 480; ++i) {
+    for (int i = 0; i < 300; ++i) {
       scene.step();
-      if (i >= 240) cut += scene.report.failsafe_steps;
+      if (i >= 180) cut += scene.report.failsafe_steps;
       for (const auto& entry : scene.log)
-        if (i >= 240 && (entry.body_a == 1 || entry.body_b == 1))
+        if (i >= 180 && (entry.body_a == 1 || entry.body_b == 1))
           carried += std::abs(entry.impulse_world.y());
     }
     CHECK(cut == 0);
-    CHECK(carried == Approx(weight).epsilon(1e-3));
+    CHECK(carried == Approx(0.5 * weight).epsilon(1e-3));  // in half a second
     for (int k = 0; k <= tower.light; ++k) {
       const Vec3 place = scene.bodies[static_cast<std::size_t>(k) + 1].pose.translation;
       INFO("box " << k << " at " << place.transpose());

@@ -466,7 +466,7 @@ TEST_CASE("decide solid: grains lead a crack along their boundaries, and it cost
   bar.material.grain_size = 0.05;
   bar.grains = std::make_shared<const SpaceGrains>(
       make_space_grains(bar.complex->elements->mesh, bar.material, bar.seed));
-  for (const double strength : {0.3, 0.8}) {
+  for (const double strength : test::kIsSanitized ? std::vector{0.3} : std::vector{0.3, 0.8}) {
     bar.material.grain_strength = strength;
     const SolidDecision grained = decide_solid(bar, impact);
     REQUIRE(grained.verdict.outcome == Outcome::broke);

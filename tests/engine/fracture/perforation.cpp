@@ -359,7 +359,7 @@ TEST_CASE("a stamp whose side lies in the side of a plate has nothing of it in i
   Striker striker =
       make_striker(Vec3::UnitZ(), 100.0, {{-half, -half}, {half, -half}, {half, half}, {-half, half}}, 0.0);
   for (const double across : {0.0, 0.15, 0.15 + half})  // the second: half of the side is beyond a corner
-    for (int digits = -64; digits <= 64; ++digits) {
+    for (int digits = -63; digits <= 63; digits += 3) {
       striker.centre = Vec3((0.2 + half) * (1.0 + 1e-16 * digits), across, 0.0);
       INFO(across << ", " << digits);
       const WayMaterial way = find_way_material(plate, cells, striker);

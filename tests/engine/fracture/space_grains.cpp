@@ -76,7 +76,8 @@ TEST_CASE("space grains: every node is in the grain of least energy, long ones a
     for (int n = 0; n < static_cast<int>(elements->mesh.positions.size()); ++n) {
       const Vec3& x = elements->mesh.positions[static_cast<std::size_t>(n)];
       const NodeGrain& own = grains.of_node(n).front();
-      for (const GrainSeed& seed : grains.seeds) REQUIRE(seed_energy(seed, squeeze, x) >= own.energy);
+      for (const GrainSeed& seed : grains.seeds)
+        if (seed_energy(seed, squeeze, x) < own.energy) FAIL("node " << n << " is nearer to another grain");
       members[static_cast<std::size_t>(own.grain)].push_back(x);
     }
     double along = 0.0, across = 0.0;

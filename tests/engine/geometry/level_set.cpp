@@ -71,9 +71,9 @@ TEST_CASE("level set: nodes near a surface have its distance and all nodes its s
     const auto [nx, ny, nz] = set.count();
     double worst_near = 0.0, worst_far = 0.0;
     long wrong_sides = 0, looked_at = 0;
-    for (int k = 0; k < nz; k += 3)
-      for (int j = 0; j < ny; j += 3)
-        for (int i = 0; i < nx; i += 3) {
+    for (int k = 0; k < nz; k += 4)
+      for (int j = 0; j < ny; j += 4)
+        for (int i = 0; i < nx; i += 4) {
           const Vec3 p = node_place(set, i, j, k);
           const double value = static_cast<double>(set.values()[at(i + nx * (j + ny * k))]);
           const double distance = exact.find(p, 1e3).distance;

@@ -87,27 +87,34 @@ TEST_CASE("a great factor solves its matrix, with the same bits for any number o
   const Network network(0.04);
   REQUIRE(network.tree.entries > 1e6);
   const std::vector<double> hold(at(network.tree.unknowns), Network::kHold);
-  for (const std::size_t count : {std::size_t{1}, std::size_t{4}}) {
-    std::vector<SolveLanes> answers;
-    SolveLanes load(network.tree, count);
+  const std::vector<std::size_t> counts = {1, 4};
+  std::vector<SolveLanes> loads;
+  for (const std::size_t count : counts) {
     core::Random random(8);
+    SolveLanes& load = loads.emplace_back(network.tree, count);
     for (std::size_t i = 0; i < load.values.size(); i += 7) load.values[i] = random.uniform(-1.0, 1.0);
-    for (const int threads : {1, 2, 5}) {
-      core::set_thread_count(threads);
-      const auto factor = FrontFactor::make(network.tree, hold, [&](int e) {
-        return ElementEntries{network.entries[at(e)].data(), 1.0};
-      });
-      REQUIRE(factor.has_value());
-      SolveLanes x = load;
+  }
+  std::vector<std::vector<SolveLanes>> answers(counts.size());  // of each load, by each number of threads
+  for (const int threads : {1, 2, 5}) {
+    core::set_thread_count(threads);
+    const auto factor = FrontFactor::make(network.tree, hold, [&](int e) {
+      return ElementEntries{network.entries[at(e)].data(), 1.0};
+    });
+    REQUIRE(factor.has_value());
+    for (std::size_t l = 0; l < loads.size(); ++l) {
+      SolveLanes x = loads[l];
       solve_forward(network.tree, *factor, x);
       solve_backward(network.tree, *factor, x);
-      answers.push_back(std::move(x));
+      answers[l].push_back(std::move(x));
     }
-    core::set_thread_count(0);
-    for (const SolveLanes& answer : answers) CHECK(answer.values == answers[0].values);
+  }
+  core::set_thread_count(0);
+  for (std::size_t l = 0; l < loads.size(); ++l) {
+    const SolveLanes &load = loads[l], &first = answers[l].front();
+    for (const SolveLanes& answer : answers[l]) CHECK(answer.values == first.values);
     double left = 0.0;
     for (int lane = 0; lane < load.lanes; ++lane) {
-      const std::vector<double> product = network.times(answers[0], lane);
+      const std::vector<double> product = network.times(first, lane);
       for (std::size_t i = 0; i < product.size(); ++i)
         left = std::max(left, std::abs(product[i] - load.values[at(load.lanes) * i + at(lane)]));
     }
