@@ -79,20 +79,13 @@ Measured stand(const Grain& grain, int count, double ratio) {
 
 // ---- balls
 
-/// Turns y to `way`, a unit, by the half of the way between them.
-Quat turn_from_y(const Vec3& way) {
-  if (way.y() < -1.0 + 1e-9) return {0.0, 1.0, 0.0, 0.0};
-  const Vec3 across = Vec3::UnitY().cross(way);
-  return Quat(1.0 + way.y(), across.x(), across.y(), across.z()).normalized();
-}
-
 /// Walls of a room `side` wide about the axis y, and its floor; a lid if it is closed.
 void add_room(world::World& world, double side, bool is_closed) {
   add_body(world, floor_description());
   for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, -1, 0)}) {
     if (normal.y() != 0.0 && !is_closed) continue;
     auto wall = floor_description();
-    wall.pose.rotation = turn_from_y(normal);
+    wall.pose.rotation = Quat::FromTwoVectors(Vec3::UnitY(), normal);
     wall.pose.translation = normal.y() != 0.0 ? Vec3(0.0, side, 0.0) : Vec3(-0.5 * side * normal);
     add_body(world, wall);
   }

@@ -24,13 +24,6 @@ inline body::Body make_body(std::shared_ptr<body::Shape> shape, const Vec3& posi
   return b;
 }
 
-/// Turns y to `way`, a unit, by the half of the way between them.
-inline Quat turn_from_y(const Vec3& way) {
-  if (way.y() < -1.0 + 1e-9) return {0.0, 1.0, 0.0, 0.0};
-  const Vec3 across = Vec3::UnitY().cross(way);
-  return Quat(1.0 + way.y(), across.x(), across.y(), across.z()).normalized();
-}
-
 inline body::Body make_plane() {
   auto shape = std::make_shared<body::Shape>();
   shape->kind = body::ShapeKind::plane;

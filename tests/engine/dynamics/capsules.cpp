@@ -25,6 +25,11 @@ body::Body make_capsule(const Vec3& position) {
   return test::make_body(shape, position, true);
 }
 
+/// With its axis along x or z.
+Quat lying(const Vec3& axis) {
+  return Quat::FromTwoVectors(Vec3::UnitY(), axis);
+}
+
 Vec3 end_of(const body::Body& b, double side) {
   return b.pose.apply(Vec3(0, side * b.shape->half_length, 0));
 }
@@ -42,7 +47,7 @@ test::Scene slope(double angle, double friction, const Vec3& axis) {
   const double gap = 2.0 * (kRadius + kHalf) * scene.settings.kept_gap;
   auto& capsule = scene.add(make_capsule(Vec3(0, kRadius + gap, 0)));
   capsule.friction = friction;
-  capsule.pose.rotation = test::turn_from_y(axis);
+  capsule.pose.rotation = lying(axis);
   return scene;
 }
 
@@ -58,7 +63,7 @@ Vec3 random_direction(core::Random& random) {
 body::Body& add_flying(test::Scene& scene, double side, double least, double most, core::Random& random) {
   scene.settings.gravity.setZero();
   auto& capsule = scene.add(make_capsule(Vec3(0.2 * side, 0, 0)));
-  capsule.pose.rotation = test::turn_from_y(random_direction(random));
+  capsule.pose.rotation = lying(random_direction(random));
   capsule.angular_velocity = random.uniform(least, most) * random_direction(random);
   return capsule;
 }
@@ -147,7 +152,7 @@ TEST_CASE("nothing gets into or through capsules in a heap of everything") {
                       : i % 6 == 5 ? test::make_sphere(0.06, place)
                       : i % 6 == 2 ? test::make_shell(test::bowl_mesh(0.1, 4, 12))
                                    : make_capsule(place);
-    made.pose = {test::turn_from_y(random_direction(random)), place};
+    made.pose = {lying(random_direction(random)), place};
     made.velocity = Vec3(0, -random.uniform(0.0, 20.0), 0);
     made.friction = 0.5;
     scene.add(made);

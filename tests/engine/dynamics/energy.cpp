@@ -14,7 +14,7 @@ const Vec3 kMiddle(0, 0.5, 0);
 /// The half space behind a wall that looks along `normal`, half a metre from the middle of the room.
 void add_wall(test::Scene& scene, const Vec3& normal) {
   auto wall = test::make_plane();
-  wall.pose.rotation = test::turn_from_y(normal);
+  wall.pose.rotation = Quat::FromTwoVectors(Vec3::UnitY(), normal);
   wall.pose.translation = kMiddle - 0.5 * normal;
   scene.add(wall);
 }
