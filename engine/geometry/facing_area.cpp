@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/core/symmetric_eigen.h"
+#include <Eigen/Eigenvalues>
+
 #include "engine/geometry/bvh.h"
 
 namespace shatterbox::geometry {
@@ -103,11 +104,11 @@ FacingArea measure(const std::vector<Patch>& parts, const Vec3& normal) {
     }
     second += part.area / 12.0 * (squares + sum * sum.transpose());
   }
-  const core::SymmetricEigen principal = core::symmetric_eigen(second);
-  const Vec2 along = principal.vectors.col(1);
+  const Eigen::SelfAdjointEigenSolver<Mat2> principal(second);
+  const Vec2 along = principal.eigenvectors().col(1);
   const Vec3 y = along.x() * u + along.y() * v;
   result.axes << x, y, x.cross(y);
-  result.moments = {principal.values[0], principal.values[1]};
+  result.moments = {principal.eigenvalues()[0], principal.eigenvalues()[1]};
   for (const Patch& part : parts) {
     for (const Vec3& corner : part.corners)
       result.outline.emplace_back(y.dot(corner - result.centre),

@@ -1,44 +1,21 @@
 #include "engine/stress/first_frequency.h"
 
+#include <Eigen/Eigenvalues>
+
 #include "engine/core/elementary.h"
 #include "engine/core/random.h"
-#include "engine/core/symmetric_eigen.h"
 
 namespace shatterbox::stress {
 namespace {
 
 using Size = std::size_t;
 
-constexpr int kVectors = 4;
-
-/// Of stiff x = w heavy x, where heavy has no null space: with heavy = L L^T, what L^-1 stiff L^-T has. The
-/// vectors' products by `heavy` are those of units.
-core::SymmetricEigen solve_ritz(const Eigen::Matrix4d& stiff, const Eigen::Matrix4d& heavy) {
-  Eigen::Matrix4d root = Eigen::Matrix4d::Zero(), inverse = Eigen::Matrix4d::Zero();
-  for (int j = 0; j < kVectors; ++j) {
-    for (int i = j; i < kVectors; ++i) {
-      double left = heavy(i, j);
-      for (int k = 0; k < j; ++k) left -= root(i, k) * root(j, k);
-      root(i, j) = i == j ? core::sqrt(left) : left / root(j, j);
-    }
-  }
-  for (int j = 0; j < kVectors; ++j) {
-    for (int i = j; i < kVectors; ++i) {
-      double left = i == j ? 1.0 : 0.0;
-      for (int k = j; k < i; ++k) left -= root(i, k) * inverse(k, j);
-      inverse(i, j) = left / root(i, i);
-    }
-  }
-  core::SymmetricEigen ritz = core::symmetric_eigen(Eigen::Matrix4d(inverse * stiff * inverse.transpose()));
-  ritz.vectors = Eigen::Matrix4d(inverse.transpose() * Eigen::Matrix4d(ritz.vectors));
-  return ritz;
-}
-
 }  // namespace
 
 FrequencyEstimate first_frequency(
     const ShellStructure& structure,
     const std::function<std::vector<VecX>(const std::vector<const VecX*>&)>& precondition, int steps) {
+  constexpr int kVectors = 4;
   const VecX& mass = structure.mass;
   core::Random random(1, 0);
   std::vector<VecX> basis(kVectors, VecX::Zero(mass.size()));
@@ -71,13 +48,13 @@ FrequencyEstimate first_frequency(
     }
     // The first step of a small body may leave fewer than four independent vectors.
     heavy.diagonal() *= 1.0 + 1e-12;
-    const core::SymmetricEigen ritz = solve_ritz(stiff, heavy);
-    frequency = {ritz.values(0), frequency.squared};
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d> ritz(stiff, heavy);
+    frequency = {ritz.eigenvalues()(0), frequency.squared};
     if (iteration + 1 == steps) break;
     std::vector<VecX> turned(kVectors, VecX::Zero(mass.size()));
     for (Size j = 0; j < kVectors; ++j)
       for (Size i = 0; i < kVectors; ++i)
-        turned[j] += ritz.vectors(static_cast<int>(i), static_cast<int>(j)) * basis[i];
+        turned[j] += ritz.eigenvectors()(static_cast<int>(i), static_cast<int>(j)) * basis[i];
     basis = std::move(turned);
     if (iteration > 2 &&
         std::abs(frequency.squared - frequency.previous) < 5e-3 * std::abs(frequency.squared))
