@@ -27,10 +27,6 @@ using core::at;
 
 constexpr double kOfTouch = 0.01;  // share of its momentum with which what only touches wakes further ones
 
-bool is_same_pose(const Pose& x, const Pose& y) {
-  return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
-}
-
 // Colliders and inertia of bodies that the state does not know: from a copy of the same shape, from the
 // shelf, or made now, one for all copies.
 void find_colliders(ContactState& state, const std::vector<std::size_t>& unknown) {

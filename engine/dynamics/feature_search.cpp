@@ -13,10 +13,6 @@ using core::at;
 
 constexpr std::size_t kBlock = 32;  // features of a list that is not swept
 
-bool is_same(const Pose& x, const Pose& y) {
-  return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
-}
-
 // How far the material of a body was moved: by `way` + `turn` (x - the centre) from x.
 struct Displacement {
   Vec3 way;
@@ -90,6 +86,10 @@ double moved_where_near(const FeatureSearch& search, const WorkBody& a, const Po
 
 }  // namespace
 
+bool is_same_pose(const Pose& x, const Pose& y) {
+  return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
+}
+
 std::size_t FeatureSearch::count_within(double bound) const {
   const auto last = std::partition_point(features.begin(), features.end(),
                                          [&](const collision::FeaturePair& f) { return f.bound <= bound; });
@@ -135,7 +135,7 @@ double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& e
     return std::min(most, std::max(moved_where_near(search, a, a.start, b, b.start, near + most),
                                    moved_where_near(search, a, end_a, b, end_b, near + most)));
   }
-  if (!is_same(search.start_a, a.start) || !is_same(search.start_b, b.start)) return 1e300;
+  if (!is_same_pose(search.start_a, a.start) || !is_same_pose(search.start_b, b.start)) return 1e300;
   const Displacement gone_a = displacement(a.start, end_a), gone_b = displacement(b.start, end_b),
                      looked_a = displacement(a.start, search.end_a),
                      looked_b = displacement(b.start, search.end_b);

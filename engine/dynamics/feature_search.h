@@ -52,6 +52,9 @@ struct PathMemory {
   void forget_ends();
 };
 
+/// To the bit.
+bool is_same_pose(const Pose& x, const Pose& y);
+
 /// No point within `reach` of the origin moves further than this by the turn from one rotation to the other,
 /// m.
 double turn_bound(const Quat& from, const Quat& to, double reach);

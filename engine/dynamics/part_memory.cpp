@@ -11,10 +11,6 @@ namespace {
 
 using core::at;
 
-bool is_same(const Pose& x, const Pose& y) {
-  return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
-}
-
 PartMemory::Begin begin_of(body::BodyId id, const WorkBody& w) {
   return {id,     w.collider,       w.start,      w.predicted,    w.velocity,
           w.spin, w.predicted_spin, w.turn_angle, w.inverse_mass, w.is_active};
@@ -53,7 +49,8 @@ bool is_same_before(const PartMemory::Pair& x, const PartMemory::Pair& y) {
 }  // namespace
 
 bool WayEnd::is_of(const WorkBody& body) const {
-  if (straight_parts != body.straight_parts || knots.size() != body.knots.size() || !is_same(end, body.end))
+  if (straight_parts != body.straight_parts || knots.size() != body.knots.size() ||
+      !is_same_pose(end, body.end))
     return false;
   for (std::size_t k = 0; k < knots.size(); ++k)
     if (knots[k].coeffs() != body.knots[k].coeffs()) return false;
@@ -61,8 +58,8 @@ bool WayEnd::is_of(const WorkBody& body) const {
 }
 
 bool PartMemory::Begin::operator==(const Begin& other) const {
-  return id == other.id && collider == other.collider && is_same(start, other.start) &&
-         is_same(predicted, other.predicted) && velocity == other.velocity && spin == other.spin &&
+  return id == other.id && collider == other.collider && is_same_pose(start, other.start) &&
+         is_same_pose(predicted, other.predicted) && velocity == other.velocity && spin == other.spin &&
          predicted_spin == other.predicted_spin && turn_angle == other.turn_angle &&
          inverse_mass == other.inverse_mass && is_active == other.is_active;
 }
