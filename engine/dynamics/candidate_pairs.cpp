@@ -1,6 +1,7 @@
 // Stage: from bodies to pairs, contacts and islands.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -237,8 +238,8 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
   }
 }
 
-// Rows for these pairs among the others, where they have none; the pairs of `work` keep theirs.
-void make_room(const std::vector<WorkPair>& missed, const std::vector<body::BodyId>& ids, ContactState& state,
+// Gives these pairs rows among the others, where they have none; the known pairs keep theirs.
+void make_room(std::vector<WorkPair>& missed, const std::vector<body::BodyId>& ids, ContactState& state,
                std::vector<WorkPair>& known) {
   std::vector<PairState> rows;
   rows.reserve(state.pairs.size() + missed.size());
@@ -252,9 +253,10 @@ void make_room(const std::vector<WorkPair>& missed, const std::vector<body::Body
       rows.push_back(std::move(row));
     }
   };
-  for (const WorkPair& pair : missed) {
+  for (WorkPair& pair : missed) {
     const std::pair key(ids[at(pair.a)], ids[at(pair.b)]);
     take_until(key);
+    pair.state = static_cast<int>(rows.size());
     const std::size_t next = moved_to.size();
     const bool has_row = next < state.pairs.size() && state.pairs[next].body_a == key.first &&
                          state.pairs[next].body_b == key.second;
@@ -287,11 +289,8 @@ void add_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
     pair.least_gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
   }
   make_room(missed, work.ids, state, work.pairs);
-  for (WorkPair& pair : missed) {
-    const PairState* row = state.find_pair(work.ids[at(pair.a)], work.ids[at(pair.b)]);
-    pair.state = static_cast<int>(row - state.pairs.data());
-    work.pairs.push_back(std::move(pair));
-  }
+  work.pairs.insert(work.pairs.end(), std::make_move_iterator(missed.begin()),
+                    std::make_move_iterator(missed.end()));
 }
 
 }  // namespace

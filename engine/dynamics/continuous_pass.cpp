@@ -112,11 +112,8 @@ class Guard {
       // What crosses passes, unless it has sides: that may not cross deeper.
       if (must_test_[p] && is_exempt(p) && !work_.pairs[p].has_sides) must_test_[p] = 0;
     }
-    std::vector<char> must_go = must_test_;
-    if (!former_.pairs.empty()) {
-      for (std::size_t p = 0; p < must_go.size(); ++p)
-        if (must_go[p] && recall(p)) must_go[p] = 0;
-    }
+    const std::vector<char> unknown = former_.pairs.empty() ? std::vector<char>{} : recall_all();
+    const std::vector<char>& must_go = former_.pairs.empty() ? must_test_ : unknown;
     paths_.prepare(must_go);
     core::parallel_for(work_.pairs.size(), 4, [&](std::size_t p) {
       if (must_go[p]) hits_[p] = paths_.find_hits(p, spare_[p]);
@@ -131,6 +128,14 @@ class Guard {
       was_hit_[p] = 1;
     }
     return has_hits;
+  }
+
+  // Of the pairs that are due, those whose tests cannot be recalled.
+  std::vector<char> recall_all() {
+    std::vector<char> unknown = must_test_;
+    for (std::size_t p = 0; p < unknown.size(); ++p)
+      if (unknown[p] && recall(p)) unknown[p] = 0;
+    return unknown;
   }
 
   // What the pair's test came to when the part was taken before, if the ends are the same in this as in all

@@ -123,9 +123,7 @@ void shorten(WorkBody& body, double share) {
 }
 
 void sweep(WorkBody& body, const Pose& end) {
-  const bool is_done = body.is_swept && body.swept_end.translation == end.translation &&
-                       body.swept_end.rotation.coeffs() == end.rotation.coeffs();
-  if (is_done) return;
+  if (body.is_swept && is_same_pose(body.swept_end, end)) return;
   place(body);
   std::vector<Vec3> turned;
   place_at(body, {end.rotation, body.start.translation}, turned);

@@ -41,8 +41,7 @@ void keep_first(std::vector<PathHit>& hits, double size) {
 
 // Where a body began is free.
 bool stays(const WorkBody& w) {
-  return w.end.translation == w.start.translation && w.end.rotation.coeffs() == w.start.rotation.coeffs() &&
-         w.knots.empty();
+  return is_same_pose(w.start, w.end) && w.knots.empty();
 }
 
 // The centres do not come closer than this on a straight part.
