@@ -67,7 +67,7 @@ std::optional<TipEntry> CourseFinder::enter(const CrackTip& tip) const {
   const CutCell& cell = cutter_.cell(stretch->cell);
   TipEntry entry;
   entry.stretch = *stretch;
-  entry.plane = &(*setup_.planes)[at(cell.element)];
+  entry.plane = &setup_.planes->of(cell.element);
   const Size n = cell.polygon.size();
   const geometry::ShellCorner& corner = cell.polygon[at(stretch->side)];
   entry.start = {stretch->side, false,

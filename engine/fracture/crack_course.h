@@ -27,7 +27,7 @@ struct LoadCentre {
 
 /// What does not change while the cracks of a generation run.
 struct TracerSetup {
-  const std::vector<ElementPlane>* planes = nullptr;
+  const ElementPlanes* planes = nullptr;
   /// Pa, per cell of the mesh that the cutter was made from.
   const std::vector<stress::CellStress>* stresses = nullptr;
   const material::Material* material = nullptr;

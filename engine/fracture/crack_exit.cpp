@@ -23,7 +23,7 @@ double edge_length(const geometry::ShellElements& elements, int edge) {
 
 }  // namespace
 
-ExitFinder::ExitFinder(const ShellCutter& cutter, const std::vector<ElementPlane>& planes, double thickness)
+ExitFinder::ExitFinder(const ShellCutter& cutter, const ElementPlanes& planes, double thickness)
     : cutter_(cutter), planes_(planes), elements_(cutter.elements()), thickness_(thickness) {}
 
 double ExitFinder::join_share(double length) const {
@@ -66,7 +66,7 @@ CrackExit ExitFinder::settle_on_edge(int cell_number, int side, double parameter
 
 CrackExit ExitFinder::settle_on_cut(int cell_number, int side, double share) const {
   const CutCell& cell = cutter_.cell(cell_number);
-  const ElementPlane& plane = planes_[at(cell.element)];
+  const ElementPlane& plane = planes_.of(cell.element);
   const Size next = (at(side) + 1) % cell.polygon.size();
   const Vec2& from = cell.polygon[at(side)].barycentric;
   const Vec2& to = cell.polygon[next].barycentric;
@@ -88,7 +88,7 @@ CrackExit ExitFinder::settle_on_cut(int cell_number, int side, double share) con
 std::optional<CrackExit> ExitFinder::find_exit(int cell_number, int entry_side, const Vec2& start,
                                                const Vec2& heading) const {
   const CutCell& cell = cutter_.cell(cell_number);
-  const ElementPlane& plane = planes_[at(cell.element)];
+  const ElementPlane& plane = planes_.of(cell.element);
   const Size n = cell.polygon.size();
   for (Size s = 0; s < n; ++s) {
     if (static_cast<int>(s) == entry_side) continue;

@@ -21,7 +21,7 @@ struct CrackExit {
 /// that it is given must outlive it.
 class ExitFinder {
  public:
-  ExitFinder(const ShellCutter& cutter, const std::vector<ElementPlane>& planes, double thickness);
+  ExitFinder(const ShellCutter& cutter, const ElementPlanes& planes, double thickness);
 
   /// Where a straight line from `start` (plane coordinates) leaves the cell, other than by `entry_side` (-1:
   /// it starts inside).
@@ -34,7 +34,7 @@ class ExitFinder {
   double join_share(double length) const;
 
   const ShellCutter& cutter_;
-  const std::vector<ElementPlane>& planes_;
+  const ElementPlanes& planes_;
   const geometry::ShellElements& elements_;
   double thickness_;  // m
 };

@@ -180,7 +180,7 @@ bool CrackTracer::is_shielded(const Candidate& candidate) const {
 bool CrackTracer::try_start(const Candidate& candidate) {
   const int number = cutter_.find_cell(candidate.element, candidate.barycentric);
   if (number < 0) return false;
-  const ElementPlane& plane = (*setup_.planes)[at(candidate.element)];
+  const ElementPlane& plane = setup_.planes->of(candidate.element);
   if (!(plane.scale > 0.0)) return false;
   const auto& stress_here = (*setup_.stresses)[at(cutter_.cell(number).origin)];
   const stress::WorstStress worst = stress::worst_stress(stress_here);

@@ -102,7 +102,7 @@ std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>&
 
 }  // namespace
 
-CellCracks crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup) {
+CellCracks crush_core(ShellCutter& cutter, const ElementPlanes& planes, const CoreSetup& setup) {
   if (!(setup.radius > 0.0) || !(setup.cell_size > 0.0) || !(setup.patch_radius > 0.0)) return {};
   CellSetup cells;
   cells.elements = elements_in_reach(cutter, setup);

@@ -21,7 +21,7 @@ struct CoreSetup {
 };
 
 /// Cells are cut out of what is within reach of the centre along the surface.
-CellCracks crush_core(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CoreSetup& setup);
+CellCracks crush_core(ShellCutter& cutter, const ElementPlanes& planes, const CoreSetup& setup);
 
 /// How far the material is crushed about a point: the radius of the disc with as much area as the elements
 /// (|T|: their stress over what crushes) that are above one there, within `reach` m. 0 if nothing is.

@@ -145,7 +145,7 @@ class Decider {
 
   TracerSetup tracer_setup(int generation) const {
     TracerSetup setup;
-    setup.planes = &planes_;
+    setup.planes = &*planes_;
     setup.stresses = &stresses_;
     setup.material = &subject_.material;
     setup.grains = subject_.grains.get();
@@ -163,16 +163,25 @@ class Decider {
 
   /// sqrt(R t), m, from how much the normals about a load differ from the one at it.
   double bending_length(const ContactPress& press) const {
-    const auto distance = [&](const ElementPlane& plane) {
-      return plane.scale > 0.0 ? (plane.middle() - press.point).norm() : 1e300;
+    const auto& triangles = elements().mesh.triangles;
+    const auto& positions = elements().mesh.positions;
+    std::vector<double> distances_squared;
+    distances_squared.reserve(triangles.size());
+    for (const geometry::Triangle& t : triangles) {
+      const Vec3 middle = (positions[at(t[0])] + positions[at(t[1])] + positions[at(t[2])]) / 3.0;
+      distances_squared.push_back((middle - press.point).squaredNorm());
+    }
+    const auto nearest = std::min_element(distances_squared.begin(), distances_squared.end());
+    const auto element_of = [&](const auto& place) {
+      return static_cast<int>(place - distances_squared.begin());
     };
-    const ElementPlane& here = *std::min_element(
-        planes_.begin(), planes_.end(),
-        [&](const ElementPlane& a, const ElementPlane& b) { return distance(a) < distance(b); });
-    const double reach = kCurvatureReach * std::max(press.radius, distance(here));
+    const ElementPlane& here = planes_->of(element_of(nearest));
+    const double reach = kCurvatureReach * std::max(press.radius, core::sqrt(*nearest));
     double turn = 0.0, way = 0.0;
-    for (const ElementPlane& plane : planes_) {
-      if (distance(plane) > reach) continue;
+    for (auto place = distances_squared.begin(); place != distances_squared.end(); ++place) {
+      if (*place > reach * reach) continue;
+      const ElementPlane& plane = planes_->of(element_of(place));
+      if (!(plane.scale > 0.0) || !(here.scale > 0.0)) continue;
       turn += (plane.frame.col(2) - here.frame.col(2)).norm();
       way += (plane.middle() - here.middle()).norm();
     }
@@ -181,7 +190,7 @@ class Decider {
   }
 
   void run_generations() {
-    planes_ = make_element_planes(elements());
+    planes_.emplace(elements());
     noise_.emplace(kWaveLength * size(), settings_.waviness, subject_.seed);
     for (const CrackTip& tip : subject_.tips) next_crack_ = std::max(next_crack_, tip.crack + 1);
     std::vector<CrackTip> tips = subject_.tips;
@@ -248,7 +257,7 @@ class Decider {
         core.most_length = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy) /
                            (subject_.material.fracture_energy * subject_.thickness);
       if (!cutter) cutter.emplace(*mesh_);
-      const CellCracks crushed = crush_core(*cutter, planes_, core);
+      const CellCracks crushed = crush_core(*cutter, *planes_, core);
       take_over(crushed);
       decision_.core_cells += crushed.cells;
     }
@@ -268,7 +277,7 @@ class Decider {
     double area = 0.0;
     for (const geometry::ShellCell& cell : mesh_->cells) area += cell.area;
     ShellCutter cutter(*mesh_);
-    const CellCracks cut = cut_dice(cutter, planes_,
+    const CellCracks cut = cut_dice(cutter, *planes_,
                                     {std::max(die_area, area / kMostDice), next_crack_, decision_.generations,
                                      core::mix(subject_.seed + 0x64696365)});
     if (cut.cells == 0) return;
@@ -320,7 +329,7 @@ class Decider {
   const FractureSettings& settings_;
   ImpactForce force_;
   Decision decision_;
-  std::vector<ElementPlane> planes_;
+  std::optional<ElementPlanes> planes_;
   std::optional<PathNoise> noise_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;  // as it is in this generation
   std::vector<geometry::CellContact> contacts_;      // of the cracked mesh

@@ -45,7 +45,7 @@ std::vector<CellSeed> thin_out(const geometry::ShellElements& elements, std::vec
 
 }  // namespace
 
-CellCracks cut_dice(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const DiceSetup& setup) {
+CellCracks cut_dice(ShellCutter& cutter, const ElementPlanes& planes, const DiceSetup& setup) {
   if (!(setup.area > 0.0)) return {};
   const geometry::ShellElements& elements = cutter.elements();
   const double least = kApart * core::sqrt(setup.area);

@@ -15,6 +15,6 @@ struct DiceSetup {
 };
 
 /// Voronoi cells of seeds that keep apart, over all there is. The seeds do not depend on the elements.
-CellCracks cut_dice(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const DiceSetup& setup);
+CellCracks cut_dice(ShellCutter& cutter, const ElementPlanes& planes, const DiceSetup& setup);
 
 }  // namespace shatterbox::fracture

@@ -2,6 +2,7 @@
 // space.
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "engine/core/elementary.h"
@@ -48,13 +49,27 @@ inline ElementPlane make_element_plane(const geometry::ShellElements& elements, 
   return plane;
 }
 
-inline std::vector<ElementPlane> make_element_planes(const geometry::ShellElements& elements) {
-  std::vector<ElementPlane> planes;
-  planes.reserve(elements.mesh.triangles.size());
-  for (std::size_t t = 0; t < elements.mesh.triangles.size(); ++t)
-    planes.push_back(make_element_plane(elements, static_cast<int>(t)));
-  return planes;
-}
+/// The planes of a mesh, each made when it is first asked for: cracks go through few elements. The elements
+/// must outlive it; one thread at a time.
+class ElementPlanes {
+ public:
+  explicit ElementPlanes(const geometry::ShellElements& elements)
+      : elements_(elements), places_(elements.mesh.triangles.size(), -1) {}
+
+  const ElementPlane& of(int element) const {
+    int& place = places_[static_cast<std::size_t>(element)];
+    if (place < 0) {
+      place = static_cast<int>(made_.size());
+      made_.push_back(make_element_plane(elements_, element));
+    }
+    return made_[static_cast<std::size_t>(place)];
+  }
+
+ private:
+  const geometry::ShellElements& elements_;
+  mutable std::vector<int> places_;  // in `made_`; -1: not made
+  mutable std::deque<ElementPlane> made_;
+};
 
 /// `d` turned by a right angle to its left.
 inline Vec2 left_of(const Vec2& d) {

@@ -33,7 +33,7 @@ double value_at(const std::array<double, 3>& corners, const Vec2& b) {
 
 class CellMaker {
  public:
-  CellMaker(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CellSetup& setup)
+  CellMaker(ShellCutter& cutter, const ElementPlanes& planes, const CellSetup& setup)
       : cutter_(cutter), planes_(planes), setup_(setup), seeds_(setup.seeds), cubes_(setup.reach) {
     for (Size i = 0; i < seeds_.size(); ++i) cubes_.add(seeds_[i].position, static_cast<int>(i));
   }
@@ -44,7 +44,7 @@ class CellMaker {
     std::vector<char> is_used(seeds_.size(), 0);
     for (const int element : setup_.elements) {
       core::stop_if_asked();
-      if (!(planes_[at(element)].scale > 0.0) || cutter_.cells_of(element).empty()) continue;
+      if (!(planes_.of(element).scale > 0.0) || cutter_.cells_of(element).empty()) continue;
       const std::vector<Energy> energies = energies_of(element);
       const auto is_inside = [this](const Energy& e) { return seeds_[at(e.seed)].is_open; };
       if (std::none_of(energies.begin(), energies.end(), is_inside)) continue;
@@ -101,7 +101,7 @@ class CellMaker {
       if (lead.seed < 0 || squared_distance(vertex, seed) < squared_distance(vertex, lead.seed))
         lead.seed = seed;
     if (lead.seed < 0) return lead;
-    const double edge = planes_[at(setup_.elements.front())].scale;
+    const double edge = planes_.of(setup_.elements.front()).scale;
     const double least = squared_distance(vertex, lead.seed);
     for (const int seed : near) {
       if (seed == lead.seed) continue;
@@ -239,7 +239,7 @@ class CellMaker {
   /// Each facet is written down once, from the first of its two cells.
   void add_segments(int element, const std::map<std::pair<int, int>, int>& ids,
                     const std::vector<std::vector<ShellCorner>>& parts, CellCracks& cracks) const {
-    const ElementPlane& plane = planes_[at(element)];
+    const ElementPlane& plane = planes_.of(element);
     std::map<int, char> is_written;
     std::map<int, char> is_own;
     for (const auto& [pair, id] : ids) is_own[id] = 1;
@@ -256,7 +256,7 @@ class CellMaker {
   }
 
   ShellCutter& cutter_;
-  const std::vector<ElementPlane>& planes_;
+  const ElementPlanes& planes_;
   const CellSetup& setup_;
   const std::vector<CellSeed>& seeds_;
   PointCubes cubes_;
@@ -265,7 +265,7 @@ class CellMaker {
 
 }  // namespace
 
-CellCracks cut_cells(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CellSetup& setup) {
+CellCracks cut_cells(ShellCutter& cutter, const ElementPlanes& planes, const CellSetup& setup) {
   if (setup.seeds.size() < 2 || setup.elements.empty()) return {};
   return CellMaker(cutter, planes, setup).cut();
 }

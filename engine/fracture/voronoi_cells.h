@@ -31,6 +31,6 @@ struct CellCracks {
   bool is_out_of_energy = false;  // nothing was cut then
 };
 
-CellCracks cut_cells(ShellCutter& cutter, const std::vector<ElementPlane>& planes, const CellSetup& setup);
+CellCracks cut_cells(ShellCutter& cutter, const ElementPlanes& planes, const CellSetup& setup);
 
 }  // namespace shatterbox::fracture

@@ -18,9 +18,10 @@ class Sheet {
   Sheet(double width, double height, double edge, const std::function<Vec3(const Vec3&)>& field)
       : elements_(test::make_elements(geometry::make_pane(width, height, {edge, 0.3, 1}).value())),
         mesh_(geometry::make_shell_mesh(elements_)),
-        planes_(fracture::make_element_planes(*elements_)) {
+        planes_(*elements_) {
     std::vector<stress::CellStress> stresses;
-    for (const fracture::ElementPlane& plane : planes_) {
+    for (int t = 0; t < element_count(); ++t) {
+      const fracture::ElementPlane& plane = planes_.of(t);
       const Vec3 s = field(plane.middle());
       Mat2 tensor;
       tensor << s.x(), s.z(), s.z(), s.y();
@@ -46,9 +47,10 @@ class Sheet {
   }
 
   fracture::Candidate candidate(const Vec3& p, double overload, int number, int piece = 0) const {
-    for (std::size_t t = 0; t < planes_.size(); ++t) {
-      const Vec2 b = planes_[t].weights(planes_[t].flat_direction(p - planes_[t].origin));
-      if (b.minCoeff() > 0.0 && b.sum() < 1.0) return {static_cast<int>(t), b, overload, number, piece};
+    for (int t = 0; t < element_count(); ++t) {
+      const fracture::ElementPlane& plane = planes_.of(t);
+      const Vec2 b = plane.weights(plane.flat_direction(p - plane.origin));
+      if (b.minCoeff() > 0.0 && b.sum() < 1.0) return {t, b, overload, number, piece};
     }
     FAIL("no element there");
     return {};
@@ -57,9 +59,11 @@ class Sheet {
   const geometry::ShellMesh& mesh() const { return mesh_; }
 
  private:
+  int element_count() const { return static_cast<int>(elements_->mesh.triangles.size()); }
+
   std::shared_ptr<const geometry::ShellElements> elements_;
   geometry::ShellMesh mesh_;
-  std::vector<fracture::ElementPlane> planes_;
+  fracture::ElementPlanes planes_;
   std::vector<stress::CellStress> stresses_;
   material::Material material_;
   fracture::PathNoise still_{1.0, 0.0, 1};
