@@ -42,6 +42,10 @@ void IslandSolver::run() {
         body(k).substep_rotations.push_back(body(k).rotation);
   }
   set_step(substep_);
+  // The log asks for it.
+  each([&](std::size_t, SolverContact& c, Found&) {
+    if (c.impulse_a.squaredNorm() > 0.0) respond(c);
+  });
 }
 
 void IslandSolver::take_part(int substeps) {
@@ -173,8 +177,8 @@ void IslandSolver::drift() {
   });
 }
 
-// Arms, gap and response at the present pose. Both bodies feel the impulse at one and the same point:
-// angular momentum is kept to rounding.
+// Arms and gap at the present pose. Both bodies feel the impulse at one and the same point: angular momentum
+// is kept to rounding.
 void IslandSolver::prepare(int substeps) {
   joints_.place(substeps);
   each([&](std::size_t, SolverContact& c, Found&) {
@@ -189,24 +193,30 @@ void IslandSolver::prepare(int substeps) {
     c.point = c.found.lean * (centre_a + now.arm_a) + (1.0 - c.found.lean) * (centre_b + now.arm_b);
     c.arm_a = c.point - centre_a;
     c.arm_b = c.point - centre_b;
-    const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
-    Vec3 moment_a[3], moment_b[3];
-    for (int k = 0; k < 3; ++k) {
-      moment_a[k] = c.arm_a.cross(axes[k]);
-      moment_b[k] = c.arm_b.cross(axes[k]);
-    }
-    const double both = a.inverse_mass + b.inverse_mass;
-    for (int k = 0; k < 3; ++k) {
-      Vec3 spin_a = Vec3::Zero(), spin_b = Vec3::Zero();
-      if (a.inverse_mass > 0.0) spin_a = a.inverse_inertia * moment_a[k];
-      if (b.inverse_mass > 0.0) spin_b = b.inverse_inertia * moment_b[k];
-      for (int l = 0; l <= k; ++l) {
-        const double value = spin_a.dot(moment_a[l]) + spin_b.dot(moment_b[l]) + (k == l ? both : 0.0);
-        c.response(k, l) = c.response(l, k) = value;
-      }
-      c.weights[k] = 1.0 / c.response(k, k);
-    }
+    c.has_response = false;
   });
+}
+
+void IslandSolver::find_response(SolverContact& c) {
+  const WorkBody &a = body(c.a), &b = body(c.b);
+  const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
+  Vec3 moment_a[3], moment_b[3];
+  for (int k = 0; k < 3; ++k) {
+    moment_a[k] = c.arm_a.cross(axes[k]);
+    moment_b[k] = c.arm_b.cross(axes[k]);
+  }
+  const double both = a.inverse_mass + b.inverse_mass;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 spin_a = Vec3::Zero(), spin_b = Vec3::Zero();
+    if (a.inverse_mass > 0.0) spin_a = a.inverse_inertia * moment_a[k];
+    if (b.inverse_mass > 0.0) spin_b = b.inverse_inertia * moment_b[k];
+    for (int l = 0; l <= k; ++l) {
+      const double value = spin_a.dot(moment_a[l]) + spin_b.dot(moment_b[l]) + (k == l ? both : 0.0);
+      c.response(k, l) = c.response(l, k) = value;
+    }
+    c.weights[k] = 1.0 / c.response(k, k);
+  }
+  c.has_response = true;
 }
 
 // An impact's impulse says nothing about the next substep: the bodies in it start that one from what was

@@ -41,6 +41,7 @@ class IslandSolver {
   void kick();
   void drift();
   void prepare(int substeps);
+  void find_response(SolverContact& c);
   void book();
   void keep_impulse(SolverContact& c);
 
@@ -109,6 +110,11 @@ class IslandSolver {
     b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
   }
 
+  // Before an impulse is given. Most contacts are ahead of their bodies and never get one.
+  void respond(SolverContact& c) {
+    if (!c.has_response) find_response(c);
+  }
+
   WorkBody& body(int i) { return work_.bodies[core::at(i)]; }
   SolverContact& contact(std::size_t k) { return work_.contacts[core::at(order_.contacts[k])]; }
   Vec3 relative_velocity(const SolverContact& c) {
@@ -126,6 +132,7 @@ class IslandSolver {
 
   // `impulse` in the contact's axes; books its work, from the relative velocity before it.
   void apply(SolverContact& c, const Vec3& impulse, const Vec3& velocity_before) {
+    respond(c);
     const Vec3 p = impulse[0] * c.normal + impulse[1] * c.tangent_u + impulse[2] * c.tangent_v;
     WorkBody &a = body(c.a), &b = body(c.b);
     if (a.inverse_mass > 0.0) push(a, p, c.arm_a);
@@ -160,6 +167,7 @@ class IslandSolver {
     const Vec3 before = relative_velocity(c);
     c.left_over = 0.0;
     if (before[0] >= target && c.impulse[0] <= 0.0) return 0.0;
+    respond(c);
     Vec3 change = Vec3::Zero(), u = before;
     change[0] = std::max(-c.impulse[0], (target - u[0]) * c.weights[0]);
     u += c.response.col(0) * change[0];
@@ -180,6 +188,7 @@ class IslandSolver {
   }
 
   double visit_bounce(SolverContact& c) {
+    respond(c);
     const Vec3 before = relative_velocity(c);
     const double wanted = std::max(-c.impulse[0], (c.target - before[0]) * c.weights[0]);
     Vec3 change(wanted, 0.0, 0.0);
