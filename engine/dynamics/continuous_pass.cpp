@@ -25,7 +25,7 @@ namespace {
 using collision::Contact;
 using core::at;
 
-constexpr int kLastRounds = 6;  // in which bodies only keep what they have
+constexpr int kLastRounds = 24;  // in which bodies only keep what they have
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 // Share of the kept gap to which hits are opened: less would be used up in the next steps.
@@ -49,6 +49,7 @@ class Guard {
         state_(state),
         work_(work),
         report_(report),
+        first_contacts_(work.contacts.size()),
         former_(state.shelf->former),
         memory_(state.shelf->part),
         paths_(settings, work) {}
@@ -305,13 +306,22 @@ class Guard {
   void add_contact(int pair_number, const Contact& found) {
     const PairState& memory = state_.pairs[at(work_.pairs[at(pair_number)].state)];
     const SolverContact fresh = make_solver_contact(memory, work_, pair_number, found);
-    const auto same = std::find_if(work_.contacts.begin(), work_.contacts.end(), [&](const SolverContact& c) {
-      return c.pair == pair_number && c.found.key == found.key;
-    });
+    const auto same = find_contact(pair_number, found.key);
     if (same != work_.contacts.end())
       *same = fresh;
     else
       work_.contacts.push_back(fresh);
+  }
+
+  // The first of them ascend by pair, as the graph gave them; behind them are those that were added here.
+  std::vector<SolverContact>::iterator find_contact(int pair_number, std::uint64_t key) {
+    const auto is_it = [&](const SolverContact& c) { return c.pair == pair_number && c.found.key == key; };
+    const auto added = work_.contacts.begin() + static_cast<std::ptrdiff_t>(first_contacts_);
+    const auto by_pair = [](const SolverContact& c, int number) { return c.pair < number; };
+    auto place = std::lower_bound(work_.contacts.begin(), added, pair_number, by_pair);
+    for (; place != added && place->pair == pair_number; ++place)
+      if (is_it(*place)) return place;
+    return std::find_if(added, work_.contacts.end(), is_it);
   }
 
   // Opens all hits again in position, to at least this share of the kept gap, together with the contacts of
@@ -347,7 +357,7 @@ class Guard {
       if (!is_to_open(pair)) continue;
       for (const PathHit& hit : known_[p]) {
         const double wanted =
-            std::max(wanted_separation(hit.contact.gap, pair.kept_gap), least_wanted * pair.kept_gap);
+            std::max(wanted_separation(hit.start_gap, pair.kept_gap), least_wanted * pair.kept_gap);
         openings.push_back(make_opening(pair, work_, hit.contact, hit.knot, wanted));
       }
       for (const Contact& c : pair.contacts)
@@ -520,6 +530,7 @@ class Guard {
   ContactState& state_;
   MotionWork& work_;
   ContactReport& report_;
+  const std::size_t first_contacts_;  // before any was added here
   const PartMemory& former_;
   PartMemory& memory_;
   PathTest paths_;

@@ -106,7 +106,7 @@ class Follower {
     known.free_until = path.has_hit ? -1.0 : known_.moved + path.spare;
     all_free_until_ = std::min(all_free_until_, known.free_until);
     if (path.has_hit)
-      hits_.push_back({path.time, 1.0, collision::contact_at_impact(features, start, path.gap)});
+      hits_.push_back({path.time, 1.0, collision::contact_at_impact(features, start, path.gap), gap.gap});
   }
 
   // Along one direction the features are apart at both ends.

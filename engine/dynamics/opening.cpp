@@ -45,6 +45,15 @@ Moved moved_to(const WorkBody& w, const Pose& pose) {
   return {way, pose.rotation.toRotationMatrix() * w.start.rotation.toRotationMatrix().transpose()};
 }
 
+// Where a point of the surface that is at `point` at the start is at the share `time` of the step: vertices
+// go straight from knot to knot.
+Vec3 on_straight_way(const WorkBody& w, const Vec3& point, double time) {
+  const double parts = w.straight_parts, part = std::min(std::floor(time * parts), parts - 1.0);
+  const Vec3 from = carry(w, point, w.start, pose_on_way(w, part / parts));
+  const Vec3 to = carry(w, point, w.start, pose_on_way(w, (part + 1.0) / parts));
+  return from + (time * parts - part) * (to - from);
+}
+
 struct PlaceOnWay {
   Vec3 centre_a, centre_b, on_a, on_b, normal;
   double gap = 0.0;  // m
@@ -64,8 +73,20 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
     return {pose_a.translation, pose_b.translation, found.on_a, found.on_b, found.normal, found.gap};
   }
   const PlacedContact there = place_contact(a, moved_to(a, pose_a), b, moved_to(b, pose_b), contact);
-  const Vec3 on_a = pose_a.translation + there.arm_a, on_b = pose_b.translation + there.arm_b;
-  return {pose_a.translation, pose_b.translation, on_a, on_b, there.normal, there.gap};
+  PlaceOnWay place{pose_a.translation,
+                   pose_b.translation,
+                   pose_a.translation + there.arm_a,
+                   pose_b.translation + there.arm_b,
+                   there.normal,
+                   there.gap};
+  if (pair.is_plane || pair.is_analytic || knot == 1.0) return place;
+  // A knot of the one is none of the other, if that turns less.
+  const Vec3 there_a = on_straight_way(a, contact.on_a, knot),
+             there_b = on_straight_way(b, contact.on_b, knot);
+  place.gap += place.normal.dot((there_a - place.on_a) - (there_b - place.on_b));
+  place.on_a = there_a;
+  place.on_b = there_b;
+  return place;
 }
 
 }  // namespace

@@ -232,7 +232,7 @@ std::vector<PathHit> PathTest::test_plane(const WorkPair& pair, double& spare) c
       hit.time = begin + share * (height > end ? std::clamp(height / (height - end), 0.0, 1.0) : 0.0);
       hit.knot = begin + share;
       hit.contact.key = v;
-      hit.contact.gap = start;
+      hit.contact.gap = hit.start_gap = start;
       hit.contact.is_time_of_impact = true;
       const Vec3 on_other = other.placed.start[v] - other.collider->radius * normal;
       hit.contact.on_a = pair.is_flipped ? Vec3(on_other - start * normal) : on_other;
@@ -257,7 +257,7 @@ std::vector<PathHit> PathTest::test_solids(const WorkPair& pair) const {
         find_first_touch({a, pose_on_way(a, begin), pose_on_way(a, end)},
                          {b, pose_on_way(b, begin), pose_on_way(b, end)}, least, pair.kept_gap);
     if (!touch.has_touched) continue;
-    for (const auto& c : touch.contacts) hits.push_back({begin + touch.time / parts, end, c});
+    for (const auto& c : touch.contacts) hits.push_back({begin + touch.time / parts, end, c, c.gap});
   }
   return hits;
 }
@@ -303,11 +303,12 @@ std::vector<PathHit> PathTest::test_in_parts(const WorkPair& pair, double& spare
       if (path.has_hit) {  // unless they began closer than that
         const auto start =
             collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-        const double least = least_separation(collision::measure(start, hint).gap, pair);
+        const double start_gap = collision::measure(start, hint).gap;
+        const double least = least_separation(start_gap, pair);
         if (least < safe) path = collision::follow_paths(from, to, least, hint);
         if (path.has_hit)
           hits.push_back({begin + share * path.time, begin + share,
-                          collision::contact_at_impact(features, start, path.gap)});
+                          collision::contact_at_impact(features, start, path.gap), start_gap});
       }
       spare = std::min(spare, path.spare);
     }
