@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
@@ -19,14 +20,15 @@ using body::Body;
 using body::ImpulseKind;
 using core::at;
 
-// A step with newborn pieces is taken in at least so many parts, none longer than this; and one after which,
-// of so many bodies that are near others, more than one turns far and, of so many, more than one pair was
-// hit.
+// A step with newborn pieces is taken in at least so many parts, none longer than this. It is divided as far
+// as that, but no further than it takes, after one in which, of so many bodies that are near others, more
+// than one turns far and, of so many, more than one pair was hit.
 constexpr int kLeastParts = 4;
 constexpr double kPartTime = 1.0 / 960.0;  // s
 constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
-constexpr int kManyCut = 500;   // one after which, of so many of them, more than one was cut short
+constexpr int kManyCut = 200;   // a part in which, of so many of them, more than one was cut short
+constexpr int kFiner = 4;       // goes on in so many times as many, as does the step after it
 constexpr int kCrowdParts = 2;  // of one after which, of so many of them, more than one pair was hit,
 constexpr int kCrowdHits = 5;   // and at least so many in all
 constexpr int kLeastHits = 50;
@@ -271,13 +273,18 @@ void count_near(const ContactSettings& settings, const MotionWork& work, Contact
   std::vector<char> is_near(work.bodies.size(), 0);
   for (const WorkPair& pair : work.pairs)
     if (!pair.is_apart) is_near[at(pair.a)] = is_near[at(pair.b)] = 1;
+  std::vector<double> turns;
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const WorkBody& w = work.bodies[i];
     if (!is_near[i] || !w.is_active || w.inverse_mass == 0.0) continue;
     ++report.near_bodies;
-    const bool turns_far = w.spin.norm() * settings.time_step > kStraightTurn;
-    report.spinning_bodies += w.shape->kind != body::ShapeKind::sphere && turns_far ? 1 : 0;
+    if (w.shape->kind != body::ShapeKind::sphere) turns.push_back(w.spin.norm() * settings.time_step);
   }
+  const std::size_t few = at(report.near_bodies / kManySpin);
+  if (few >= turns.size()) return;
+  const auto place = turns.begin() + static_cast<std::ptrdiff_t>(few);
+  std::nth_element(turns.begin(), place, turns.end(), std::greater<>());
+  report.crowd_turn = *place;
 }
 
 // Who was cut stood still for the whole part: short parts cost less of the motion.
@@ -285,12 +292,21 @@ bool were_many_cut(const ContactSettings& settings, const ContactReport& report)
   return kManyCut * report.failsafe_steps > report.near_bodies && settings.time_step > kPartTime;
 }
 
+int count_spin_parts(const ContactSettings& settings, const ContactReport& report) {
+  const int most = lively_parts(settings);
+  int parts = 1;
+  while (parts < most && report.crowd_turn > kStraightTurn * parts) parts *= 2;
+  return std::min(parts, most);
+}
+
 // What is hit on its way did not see it coming: over shorter ways more does.
-int find_next_parts(const ContactSettings& settings, const ContactReport& report) {
+int find_next_parts(const ContactSettings& settings, const ContactReport& report, int parts) {
   const int near = report.near_bodies, hits = report.hits;
-  if (were_many_cut(settings, report)) return lively_parts(settings);
-  if (kManySpin * report.spinning_bodies > near && kManyHits * hits > near) return lively_parts(settings);
-  return hits >= kLeastHits && kCrowdHits * hits > near ? kCrowdParts : 1;
+  const int spin_parts = kManyHits * hits > near ? count_spin_parts(settings, report) : 1;
+  const int crowd_parts = hits >= kLeastHits && kCrowdHits * hits > near ? kCrowdParts : 1;
+  const int most = lively_parts(settings);
+  const int finer_parts = were_many_cut(settings, report) ? std::min(most, kFiner * parts) : 1;
+  return std::max({spin_parts, crowd_parts, finer_parts});
 }
 
 }  // namespace
@@ -309,7 +325,7 @@ int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings
 
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,
                                          const ContactReport& moved) {
-  const int finer = (lively_parts(settings) + part.count - 1) / part.count;
+  const int finer = std::min(kFiner, (lively_parts(settings) + part.count - 1) / part.count);
   if (finer < 2 || !were_many_cut(settings, moved)) return std::nullopt;
   return StepPart{part.number * finer, part.count * finer};
 }
@@ -379,11 +395,11 @@ void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step) 
   step.drift = std::max(step.drift, moved.drift);
   step.awake_bodies = moved.awake_bodies;
   step.near_bodies = moved.near_bodies;
-  step.spinning_bodies = moved.spinning_bodies;
+  step.crowd_turn = moved.crowd_turn;
 }
 
-void end_step(const ContactSettings& settings, const ContactReport& step, ContactState& state) {
-  state.next_parts = find_next_parts(settings, step);
+void end_step(const ContactSettings& settings, const ContactReport& step, int parts, ContactState& state) {
+  state.next_parts = find_next_parts(settings, step, parts);
 }
 
 ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
@@ -392,7 +408,7 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
   StepPart part{0, count_parts(bodies, settings, state)};
   for (; part.number < part.count; ++part.number)
     add_part(part, move_part(bodies, settings, part, state, log), step);
-  end_step(settings, step, state);
+  end_step(settings, step, part.count, state);
   return step;
 }
 

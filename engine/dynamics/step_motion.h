@@ -38,7 +38,7 @@ struct ContactReport {
   double residual = 0.0;      // m/s: greatest closing speed left in a touching contact
   int awake_bodies = 0;
   int near_bodies = 0;          // of them: in a pair that had to be looked at
-  int spinning_bodies = 0;      // of these, spheres apart: turn far in a step
+  double crowd_turn = 0.0;      // rad in a step: more than one in twenty of these turn so far, spheres apart
   std::vector<body::Way> ways;  // ascending id; if asked for: of bodies that did not go straight
   double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone
 };
@@ -59,9 +59,9 @@ struct StepPart {
 };
 
 /// In how many parts the step that begins here should be taken: several if pieces are newborn, which lie in
-/// each other's way and go far against their own size while they part, and after that while many spin and
-/// collide; or if many were hit on their ways in the step before. Many of those that are near others: who is
-/// far from all does not matter.
+/// each other's way and go far against their own size while they part, and after that while many spin so fast
+/// and collide; or if many were hit on their ways in the step before. Many of those that are near others: who
+/// is far from all does not matter.
 int count_parts(const std::vector<body::Body>& bodies, const ContactSettings& settings,
                 const ContactState& state);
 
@@ -79,8 +79,8 @@ std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const 
 /// Adds what a part reports to the report of its step.
 void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step);
 
-/// After the last part: decides whether the next step is one that is taken in parts too.
-void end_step(const ContactSettings& settings, const ContactReport& step, ContactState& state);
+/// After the last of so many parts: decides whether the next step is one that is taken in parts too.
+void end_step(const ContactSettings& settings, const ContactReport& step, int parts, ContactState& state);
 
 /// All parts of a step, one after the other.
 ContactReport step_motion(std::vector<body::Body>& bodies, const ContactSettings& settings,

@@ -221,7 +221,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   if (may_yield) timer.time("dents", [&] { dent_bodies(snapshot); });
   if (may_yield) tell_watcher("dents", {part.count - 1, part.count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
-    dynamics::end_step(s.contact_settings, contact, s.moving.contact);
+    dynamics::end_step(s.contact_settings, contact, part.count, s.moving.contact);
     timer.time("sleep",
                [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   }

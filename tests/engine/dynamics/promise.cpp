@@ -139,9 +139,10 @@ TEST_CASE("a step in which many were cut goes on in shorter parts, from the part
   moved.failsafe_steps = 5;
   const auto finer = dynamics::divide_where_cut(settings, {1, 2}, moved);
   REQUIRE(finer);
-  CHECK(finer->number == 8);
-  CHECK(finer->count == 16);
-  CHECK(dynamics::divide_where_cut(settings, {2, 3}, moved)->number == 12);
+  CHECK(finer->number == 4);
+  CHECK(finer->count == 8);
+  CHECK(dynamics::divide_where_cut(settings, *finer, moved)->count == 16);
+  CHECK(dynamics::divide_where_cut(settings, {2, 3}, moved)->number == 8);
   CHECK(!dynamics::divide_where_cut(settings, {9, 16}, moved));
 }
 
@@ -154,30 +155,41 @@ TEST_CASE("the share of a step that was cut is that of its time, however it was 
   CHECK(step.frozen_share == Approx(0.25));
 }
 
-TEST_CASE("a crowd of which a fifth was hit takes its next step in two parts, spinning ones in short ones") {
+TEST_CASE(
+    "a crowd of which a fifth was hit takes its next step in two parts, one that spins in as many as it "
+    "takes") {
   test::Scene scene;
-  const auto parts_after = [&](int hits, int spinning, int failsafe_steps = 0) {
+  constexpr double kHalf = 0.5, kMore = 0.501;  // rad
+  const auto parts_after = [&](int hits, double crowd_turn, int failsafe_steps = 0, int parts = 1) {
     dynamics::ContactReport step;
     step.near_bodies = 300;
-    step.spinning_bodies = spinning;
+    step.crowd_turn = crowd_turn;
     step.failsafe_steps = failsafe_steps;
     step.hits = hits;
-    dynamics::end_step(scene.settings, step, scene.state);
+    dynamics::end_step(scene.settings, step, parts, scene.state);
     scene.state.bodies.resize(1);  // no world that only begins
     return dynamics::count_parts({}, scene.settings, scene.state);
   };
-  CHECK(parts_after(0, 0) == 1);
-  CHECK(parts_after(60, 0) == 1);
-  CHECK(parts_after(61, 0) == 2);
-  CHECK(parts_after(0, 16) == 1);
-  CHECK(parts_after(61, 15) == 2);
-  CHECK(parts_after(61, 16) == 4);
-  CHECK(parts_after(0, 0, 1) == 4);
+  CHECK(parts_after(0, 0.0) == 1);
+  CHECK(parts_after(60, 0.0) == 1);
+  CHECK(parts_after(61, 0.0) == 2);
+  CHECK(parts_after(0, 10.0) == 1);  // who spins and hits nobody is in nobody's way
+  CHECK(parts_after(10, kMore) == 1);
+  CHECK(parts_after(11, kHalf) == 1);
+  CHECK(parts_after(11, kMore) == 2);
+  CHECK(parts_after(11, 2.0 * kMore) == 4);
+  CHECK(parts_after(11, 100.0) == 4);
+  CHECK(parts_after(0, 0.0, 1) == 1);
+  CHECK(parts_after(0, 0.0, 2) == 4);
+  CHECK(parts_after(0, 0.0, 2, 4) == 4);
   scene.settings.time_step = 1.0 / 960.0;
-  CHECK(parts_after(0, 0, 1) == 1);
+  CHECK(parts_after(0, 0.0, 2) == 1);
   scene.settings.time_step = 1.0 / 60.0;
-  CHECK(parts_after(61, 16) == 16);
-  CHECK(parts_after(0, 0, 1) == 16);
+  CHECK(parts_after(11, 2.0 * kMore) == 4);
+  CHECK(parts_after(11, 100.0) == 16);
+  CHECK(parts_after(0, 0.0, 2) == 4);
+  CHECK(parts_after(0, 0.0, 2, 2) == 8);
+  CHECK(parts_after(0, 0.0, 2, 8) == 16);
 }
 
 TEST_CASE("of those who count for the parts of a step each is near another, spheres do not spin") {
@@ -192,7 +204,7 @@ TEST_CASE("of those who count for the parts of a step each is near another, sphe
   scene.step();
   CHECK(scene.report.awake_bodies == 4);
   CHECK(scene.report.near_bodies == 3);
-  CHECK(scene.report.spinning_bodies == 1);
+  CHECK(scene.report.crowd_turn == Approx(1.0).epsilon(0.01));
 }
 
 TEST_CASE(
