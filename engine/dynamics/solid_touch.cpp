@@ -82,12 +82,25 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
                                         margin + std::max({0.0, least, gap}), result.contacts);
       if (result.contacts.empty())
         result.contacts.push_back(meet_at_corner(a, corners_a, b, corners_b, normal, time));
-      for (Contact& c : result.contacts) {
-        c.on_a = carry(a.body, c.on_a, pose_a, a.body.start);
-        c.on_b = carry(b.body, c.on_b, pose_b, b.body.start);
+      const auto see_from_start = [&](Contact& c, const Pose& then_a, const Pose& then_b) {
+        c.on_a = carry(a.body, c.on_a, then_a, a.body.start);
+        c.on_b = carry(b.body, c.on_b, then_b, b.body.start);
         c.gap = c.normal.dot(c.on_a - c.on_b);
         c.is_time_of_impact = true;
         c.normal_of = collision::NormalOf::place;
+      };
+      for (Contact& c : result.contacts) see_from_start(c, pose_a, pose_b);
+      // What touched may have come apart again at the end, and other corners be too near along the same
+      // normal.
+      const auto is_open = [&](const Contact& c) {
+        const Vec3 then_a = carry(a.body, c.on_a, a.body.start, a.to),
+                   then_b = carry(b.body, c.on_b, b.body.start, b.to);
+        return c.normal.dot(then_a - then_b) > least;
+      };
+      if (time < 1.0 && std::all_of(result.contacts.begin(), result.contacts.end(), is_open)) {
+        Contact c = meet_at_corner(a, corners_a, b, corners_b, normal, 1.0);
+        see_from_start(c, a.to, b.to);
+        result.contacts.push_back(c);
       }
       result.has_touched = true;
       result.time = time;
