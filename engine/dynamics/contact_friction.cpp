@@ -12,6 +12,12 @@ constexpr double kPatch = 2.0 / 3.0;  // mean arm of friction over a patch, of i
 
 }  // namespace
 
+void slide_on(SolverContact& c) {
+  const Vec3 crept = c.change - c.held_from;
+  const double length = crept.norm(), most = kMostBack * c.kept_gap;
+  if (length > most) c.held_from = c.change - crept * (most / length);
+}
+
 Vec2 way_back(const SolverContact& c, double step) {
   if (!c.can_creep) return Vec2::Zero();
   const Vec3 crept = c.change - c.held_from;

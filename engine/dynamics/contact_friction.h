@@ -10,6 +10,10 @@ namespace shatterbox::dynamics {
 /// m/s: what sweeps leave over would add up. `step` in s.
 Vec2 way_back(const SolverContact& contact, double step);
 
+/// What slides takes along the place from which it would be held, a little behind: where some contacts of a
+/// pair slide and others hold, those that slide must not be in the way of what brings the others back.
+void slide_on(SolverContact& contact);
+
 /// By how much friction's impulse along the tangents changes, N s, against this slip (m/s) and on this normal
 /// impulse (N s), in a circular cone.
 Vec2 friction_change(const SolverContact& contact, const Vec2& slip, double normal_impulse);

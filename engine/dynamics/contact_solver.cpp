@@ -234,8 +234,10 @@ void IslandSolver::book() {
   each([&](std::size_t, SolverContact& c, Found&) {
     const bool was_impact = body(c.a).is_struck || body(c.b).is_struck;
     if (!was_impact) c.warm = c.impulse;
-    if (!c.can_creep || was_impact || c.impulse.tail<2>().norm() >= kSliding * c.friction * c.impulse[0])
+    if (!c.can_creep || was_impact)
       c.held_from = c.change;
+    else if (slides(c))
+      slide_on(c);
     keep_impulse(c);
   });
 }

@@ -183,6 +183,10 @@ class IslandSolver {
     c.left_over = std::abs(c.response(0, 1) * change[1] + c.response(0, 2) * change[2]);
   }
 
+  static bool slides(const SolverContact& c) {
+    return c.impulse.tail<2>().norm() >= kSliding * c.friction * c.impulse[0];
+  }
+
   static bool is_touching(const SolverContact& c) {
     return c.slack <= kTouching * c.kept_gap || (c.impulse[0] > 0.0 && c.slack <= c.kept_gap);
   }
