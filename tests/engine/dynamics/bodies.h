@@ -8,6 +8,7 @@
 #include "engine/body/body.h"
 #include "engine/core/elementary.h"
 #include "engine/core/random.h"
+#include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/step_motion.h"
 
 namespace shatterbox::test {
@@ -143,6 +144,14 @@ struct Scene {
     dynamics::wake_bodies(bodies, settings, state);
     report = dynamics::step_motion(bodies, settings, state, log);
     dynamics::put_to_sleep(bodies, settings, state);
+  }
+  /// The ways of one step as if nothing touched; `work` knows the pairs.
+  void fly(dynamics::MotionWork& work) {
+    dynamics::find_candidate_pairs(bodies, settings, state, work);
+    work.contacts.clear();
+    work.islands.clear();
+    for (auto& b : work.bodies) b.is_free = true;
+    dynamics::solve_motion(bodies, settings, work);
   }
   double kinetic() const {
     double sum = 0.0;

@@ -25,11 +25,7 @@ struct Flight {
       box.angular_velocity = Vec3(3.0, 4.0 * k, -2.0);
       scene.add(box);
     }
-    dynamics::find_candidate_pairs(scene.bodies, scene.settings, scene.state, work);
-    work.contacts.clear();
-    work.islands.clear();
-    for (auto& body : work.bodies) body.is_free = true;
-    dynamics::solve_motion(scene.bodies, scene.settings, work);
+    scene.fly(work);
   }
 
   /// Of the ways of two bodies, about the origin: mass times way, and angular momentum times time.

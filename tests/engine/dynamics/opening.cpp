@@ -29,11 +29,7 @@ struct Meeting {
     below.angular_velocity = Vec3(0, 0, 54.0);
     scene.add(above);
     scene.add(below);
-    dynamics::find_candidate_pairs(scene.bodies, scene.settings, scene.state, work);
-    work.contacts.clear();
-    work.islands.clear();
-    for (auto& body : work.bodies) body.is_free = true;
-    dynamics::solve_motion(scene.bodies, scene.settings, work);
+    scene.fly(work);
     dynamics::PathTest paths(scene.settings, work);
     paths.prepare(std::vector<char>(work.pairs.size(), 1));
     double spare = 0.0;
