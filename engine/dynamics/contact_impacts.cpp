@@ -47,11 +47,11 @@ void IslandSolver::find_late_arrivals() {
 }
 
 void IslandSolver::arrive(SolverContact& c, double speed, double time) {
-  respond(c);
   c.is_arriving = true;
   c.arrival_speed = std::max(c.arrival_speed, speed);
   if (c.closing_speed == 0.0) c.arrival_time = time;
   if (speed > c.closing_speed) {
+    respond(c);
     c.closing_speed = speed;
     c.effective_mass = c.weights[0];
   }
@@ -70,9 +70,10 @@ void IslandSolver::strike() {
       if (round == 0) {
         if (!c.is_arriving || !is_touching(c)) continue;
         // Arms turn on the way: what counts is how fast it closes now, and what it was stopped by.
-        respond(c);
-        if (ends_with_arrival_)
+        if (ends_with_arrival_) {
+          respond(c);
           speed = std::max(0.0, c.impulse[0] * c.response(0, 0) - relative_velocity(c)[0]);
+        }
       } else {
         if (c.slack > kStruck * c.kept_gap) continue;
         speed = -relative_velocity(c)[0];

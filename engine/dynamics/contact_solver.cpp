@@ -42,9 +42,9 @@ void IslandSolver::run() {
         body(k).substep_rotations.push_back(body(k).rotation);
   }
   set_step(substep_);
-  // The log asks for it.
+  // What bore and was not hit is logged with its effective mass at the end.
   each([&](std::size_t, SolverContact& c, Found&) {
-    if (c.impulse_a.squaredNorm() > 0.0) respond(c);
+    if (c.effective_mass == 0.0 && c.impulse_a.squaredNorm() > 0.0) respond(c);
   });
 }
 

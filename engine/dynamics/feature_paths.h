@@ -21,7 +21,7 @@ struct PathHit {
   double time = 1.0;           // share of the step that is certainly free
   double knot = 1.0;           // share of the step at the end of the straight part in which they meet
   collision::Contact contact;  // seen from the start, along its normal at the hit
-  double start_gap = 0.0;      // m, between the two at the start
+  double start_gap = 0.0;      // m, between the two at the start; of solids along that normal
 };
 
 /// What a pair may come to within a step, m, that begins at `gap`: opening motion is always free, and what is

@@ -91,7 +91,7 @@ struct alignas(64) SolverContact {
   bool can_creep = false;  // both are quiet, and no sphere rolls
   bool is_arriving = false;
   bool has_response = false;  // `response` and `weights` are those of the present pose
-  double slack = 0.0;  // m: gap less kept gap
+  double slack = 0.0;         // m: gap less kept gap
   Vec3 normal = Vec3::UnitY();
   Vec3 impulse = Vec3::Zero();  // of this substep, in (normal, tangents), N s
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();

@@ -57,6 +57,22 @@ Contact meet_at_corner(const SolidWay& a, const Corners& corners_a, const SolidW
   return c;
 }
 
+/// A contact of these two poses as the bodies have it where the step begins.
+void see_from_start(const SolidWay& a, const Pose& pose_a, const SolidWay& b, const Pose& pose_b,
+                    Contact& c) {
+  c.on_a = carry(a.body, c.on_a, pose_a, a.body.start);
+  c.on_b = carry(b.body, c.on_b, pose_b, b.body.start);
+  c.gap = c.normal.dot(c.on_a - c.on_b);
+  c.is_time_of_impact = true;
+  c.normal_of = collision::NormalOf::place;
+}
+
+/// m, along its normal, of a contact seen from the start, where the ways end.
+double gap_at_end(const SolidWay& a, const SolidWay& b, const Contact& c) {
+  const Vec3 on_a = carry(a.body, c.on_a, a.body.start, a.to);
+  return c.normal.dot(on_a - carry(b.body, c.on_b, b.body.start, b.to));
+}
+
 }  // namespace
 
 SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, double margin) {
@@ -82,25 +98,13 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
                                         margin + std::max({0.0, least, gap}), result.contacts);
       if (result.contacts.empty())
         result.contacts.push_back(meet_at_corner(a, corners_a, b, corners_b, normal, time));
-      const auto see_from_start = [&](Contact& c, const Pose& then_a, const Pose& then_b) {
-        c.on_a = carry(a.body, c.on_a, then_a, a.body.start);
-        c.on_b = carry(b.body, c.on_b, then_b, b.body.start);
-        c.gap = c.normal.dot(c.on_a - c.on_b);
-        c.is_time_of_impact = true;
-        c.normal_of = collision::NormalOf::place;
-      };
-      for (Contact& c : result.contacts) see_from_start(c, pose_a, pose_b);
+      for (Contact& c : result.contacts) see_from_start(a, pose_a, b, pose_b, c);
       // What touched may have come apart again at the end, and other corners be too near along the same
       // normal.
-      const auto is_open = [&](const Contact& c) {
-        const Vec3 then_a = carry(a.body, c.on_a, a.body.start, a.to),
-                   then_b = carry(b.body, c.on_b, b.body.start, b.to);
-        return c.normal.dot(then_a - then_b) > least;
-      };
+      const auto is_open = [&](const Contact& c) { return gap_at_end(a, b, c) > least; };
       if (time < 1.0 && std::all_of(result.contacts.begin(), result.contacts.end(), is_open)) {
-        Contact c = meet_at_corner(a, corners_a, b, corners_b, normal, 1.0);
-        see_from_start(c, a.to, b.to);
-        result.contacts.push_back(c);
+        result.contacts.push_back(meet_at_corner(a, corners_a, b, corners_b, normal, 1.0));
+        see_from_start(a, a.to, b, b.to, result.contacts.back());
       }
       result.has_touched = true;
       result.time = time;

@@ -150,8 +150,7 @@ class Decider {
     setup.material = &subject_.material;
     setup.grains = subject_.grains.get();
     setup.noise = &*noise_;
-    for (const Press& press : force_.presses())
-      setup.centres.push_back({press.contact.point, press.contact.radius, bending_length(press.contact)});
+    setup.centres = centres_;
     setup.thickness = subject_.thickness;
     setup.energy_budget = settings_.has_energy_guard
                               ? std::max(0.0, decision_.elastic_energy - decision_.fracture_energy)
@@ -163,25 +162,20 @@ class Decider {
 
   /// sqrt(R t), m, from how much the normals about a load differ from the one at it.
   double bending_length(const ContactPress& press) const {
-    const auto& triangles = elements().mesh.triangles;
-    const auto& positions = elements().mesh.positions;
-    std::vector<double> distances_squared;
-    distances_squared.reserve(triangles.size());
-    for (const geometry::Triangle& t : triangles) {
-      const Vec3 middle = (positions[at(t[0])] + positions[at(t[1])] + positions[at(t[2])]) / 3.0;
-      distances_squared.push_back((middle - press.point).squaredNorm());
+    std::vector<double> distances_squared(elements().mesh.triangles.size());
+    for (Size t = 0; t < distances_squared.size(); ++t) {
+      const Vec3 middle =
+          geometry::position_in_element(elements(), static_cast<int>(t), Vec2(1.0 / 3.0, 1.0 / 3.0));
+      distances_squared[t] = (middle - press.point).squaredNorm();
     }
     const auto nearest = std::min_element(distances_squared.begin(), distances_squared.end());
-    const auto element_of = [&](const auto& place) {
-      return static_cast<int>(place - distances_squared.begin());
-    };
-    const ElementPlane& here = planes_->of(element_of(nearest));
+    const ElementPlane& here = planes_->of(static_cast<int>(nearest - distances_squared.begin()));
     const double reach = kCurvatureReach * std::max(press.radius, core::sqrt(*nearest));
     double turn = 0.0, way = 0.0;
-    for (auto place = distances_squared.begin(); place != distances_squared.end(); ++place) {
-      if (*place > reach * reach) continue;
-      const ElementPlane& plane = planes_->of(element_of(place));
-      if (!(plane.scale > 0.0) || !(here.scale > 0.0)) continue;
+    for (Size t = 0; here.scale > 0.0 && t < distances_squared.size(); ++t) {
+      if (distances_squared[t] > reach * reach) continue;
+      const ElementPlane& plane = planes_->of(static_cast<int>(t));
+      if (!(plane.scale > 0.0)) continue;
       turn += (plane.frame.col(2) - here.frame.col(2)).norm();
       way += (plane.middle() - here.middle()).norm();
     }
@@ -191,6 +185,8 @@ class Decider {
 
   void run_generations() {
     planes_.emplace(elements());
+    for (const Press& press : force_.presses())
+      centres_.push_back({press.contact.point, press.contact.radius, bending_length(press.contact)});
     noise_.emplace(kWaveLength * size(), settings_.waviness, subject_.seed);
     for (const CrackTip& tip : subject_.tips) next_crack_ = std::max(next_crack_, tip.crack + 1);
     std::vector<CrackTip> tips = subject_.tips;
@@ -330,6 +326,7 @@ class Decider {
   ImpactForce force_;
   Decision decision_;
   std::optional<ElementPlanes> planes_;
+  std::vector<LoadCentre> centres_;
   std::optional<PathNoise> noise_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;  // as it is in this generation
   std::vector<geometry::CellContact> contacts_;      // of the cracked mesh
