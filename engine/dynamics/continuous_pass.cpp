@@ -34,6 +34,8 @@ constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with th
 constexpr int kMostSolves = 8;        // of islands that got contacts on their ways
 constexpr int kPatience = 2;          // rounds without fewer hits
 constexpr int kMostZoneRounds = 8;    // before whole steps are taken back
+constexpr int kZoneOpenings = 12;     // after bodies were united, before more are
+constexpr int kZonePatience = 4;      // of these, without fewer hits
 
 double wanted_separation(double gap, double kept_gap) {
   const double safe = kSafe * kept_gap;
@@ -80,11 +82,9 @@ class Guard {
     note_trouble();
     if (has_hits) zones_.emplace(work_);
     for (int round = 0; has_hits; ++round) {
-      if (round < kMostZoneRounds && round % 2 == 1 && zones_->has_wholes())
-        open_zones();
-      else
-        go_in_zones(round >= kMostZoneRounds);
+      go_in_zones(round >= kMostZoneRounds);
       has_hits = test();
+      if (round < kMostZoneRounds && zones_->has_wholes()) has_hits = open_zones_in_rounds(has_hits);
     }
     if (zones_) settle_zones();
     note_stuck_pairs();
@@ -280,6 +280,7 @@ class Guard {
     if (std::find(is_dirty.begin(), is_dirty.end(), 1) == is_dirty.end()) return false;
     build_islands(work_);
     const std::vector<Way> before = note_ways();
+    work_.is_again = true;
     solve_islands(bodies_, settings_, is_dirty, work_);
     mark_due_since(before);
     return true;
@@ -440,6 +441,20 @@ class Guard {
     mark_due_with(has_moved);
   }
 
+  // Who meets a zone gives way to it first: if all that two united bodies came upon went with them, so would
+  // soon all that lies close.
+  bool open_zones_in_rounds(bool has_hits) {
+    int fewest = 1 << 30, since = 0;
+    for (int round = 0; has_hits && round < kZoneOpenings && since < kZonePatience; ++round) {
+      open_zones();
+      has_hits = test();
+      const int hits = count_hits();
+      since = hits < fewest ? 0 : since + 1;
+      fewest = std::min(fewest, hits);
+    }
+    return has_hits;
+  }
+
   // What zones meet on their ways is opened as other hits are, with them as wholes.
   void open_zones() {
     std::vector<char> is_due(work_.bodies.size(), 0);  // zones
@@ -453,7 +468,8 @@ class Guard {
       return a != b && (is_due[at(a)] || is_due[at(b)]);
     };
     std::vector<Opening> openings = find_openings(kLastOpening, is_to_open);
-    mark_due_with(zones_->open(openings));
+    const std::vector<double> moves = zones_->open(openings);
+    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
     std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
     remove_approach(openings, settings_.time_step, body::ImpulseKind::continuous, 1, work_);
   }

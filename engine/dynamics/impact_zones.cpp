@@ -117,7 +117,7 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
   }
 }
 
-std::vector<char> ImpactZones::open(std::vector<Opening>& openings) {
+std::vector<double> ImpactZones::open(std::vector<Opening>& openings) {
   std::vector<std::vector<int>> members(work_.bodies.size());
   for (int i = 0; at(i) < members.size(); ++i)
     if (work_.bodies[at(i)].inverse_mass > 0.0 && share(i) >= 1.0) members[at(zone_of(i))].push_back(i);
@@ -140,17 +140,17 @@ std::vector<char> ImpactZones::open(std::vector<Opening>& openings) {
   }
   const Moves moves = relax(of_zones, movers, Yielding::by_mass);
   for (std::size_t k = 0; k < openings.size(); ++k) openings[k].impulse = of_zones[k].impulse;
-  std::vector<char> has_moved(work_.bodies.size(), 0);
+  std::vector<double> moved(work_.bodies.size(), 0.0);
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
     if (moves.shifts[zone].isZero(0.0) && moves.turns[zone].isZero(0.0)) continue;
     const Quat rotation = rotation_by(moves.turns[zone]);
     for (const int i : members[zone]) {
-      const Vec3 arm = work_.bodies[at(i)].end.translation - centres[zone];
-      shift_end(work_.bodies[at(i)], moves.shifts[zone] + (rotation * arm - arm), moves.turns[zone]);
-      has_moved[at(i)] = 1;
+      WorkBody& w = work_.bodies[at(i)];
+      const Vec3 arm = w.end.translation - centres[zone];
+      moved[at(i)] = move_end(w, moves.shifts[zone] + (rotation * arm - arm), moves.turns[zone]);
     }
   }
-  return has_moved;
+  return moved;
 }
 
 }  // namespace shatterbox::dynamics

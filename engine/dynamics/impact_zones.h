@@ -35,8 +35,8 @@ class ImpactZones {
   std::vector<char> go();
 
   /// Opens gaps between zones, which give way as wholes by their masses; those that were stopped do not. Sets
-  /// the impulses of the openings. True per body that ends elsewhere now.
-  std::vector<char> open(std::vector<Opening>& openings);
+  /// the impulses of the openings. Returns by how much the points of each body were moved at most, m.
+  std::vector<double> open(std::vector<Opening>& openings);
 
   /// The least body of the zone that this one is in.
   int zone_of(int body) { return zones_.find(body); }

@@ -197,6 +197,8 @@ class MotionWork {
   std::vector<WorkJoint> joints;
   std::vector<std::pair<int, int>> joined, pivots;  // pairs of bodies, by area and about a point; ascending
   std::vector<Island> islands;
+  bool may_break = false;            // what is hit
+  bool is_again = false;             // islands are solved with what met on its way
   std::vector<Disturbance> to_wake;  // sleepers that something comes down on
   std::vector<body::BodyId> ids;
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
@@ -89,6 +90,22 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
   return place;
 }
 
+// Where the features of a contact are at the ends, if they do not meet on straight ways to them.
+std::optional<PlaceOnWay> pass_by(const WorkPair& pair, const MotionWork& work, const Contact& contact) {
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  if (pair.is_plane || pair.is_analytic || a.straight_parts > 1 || b.straight_parts > 1) return std::nullopt;
+  const auto features = collision::FeaturePair::of_key(contact.key);
+  const auto start = collision::gather(features, *a.collider, a.start, *b.collider, b.start);
+  const auto end = collision::gather(features, *a.collider, a.end, *b.collider, b.end);
+  const Vec3 hint = direction_hint(a, b, start);
+  const collision::FeatureGap began = collision::measure(start, hint);
+  const double least = least_separation(began.gap, pair);
+  // Which side is which is known of what was apart.
+  if (!(least > 0.0) || collision::follow_paths(start, end, least, hint, &began).has_hit) return std::nullopt;
+  const collision::FeatureGap found = collision::measure(end, hint);
+  return PlaceOnWay{a.end.translation, b.end.translation, found.on_a, found.on_b, found.normal, found.gap};
+}
+
 }  // namespace
 
 double opening_weight(const Opening& o, const Mover& a, const Mover& b, Yielding yielding) {
@@ -143,7 +160,8 @@ double gap_on_way(const WorkPair& pair, const MotionWork& work, const Contact& c
 
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact& contact, double knot,
                      double wanted) {
-  const PlaceOnWay there = meet_on_way(pair, work, contact, knot);
+  PlaceOnWay there = meet_on_way(pair, work, contact, knot);
+  if (there.gap < wanted) there = pass_by(pair, work, contact).value_or(there);
   Opening o;
   o.a = pair.a;
   o.b = pair.b;
@@ -159,6 +177,13 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   return o;
 }
 
+double move_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
+  const double moved = shift.norm() + turn.norm() * body.reach;
+  if (moved == 0.0) return 0.0;
+  shift_end(body, shift, turn);
+  return moved * (1.0 + 1e-9) + 1e-300;
+}
+
 std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
                               MotionWork& work) {
   std::vector<Mover> movers;
@@ -171,12 +196,8 @@ std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, 
   else
     remove_approach(openings, std::nullopt, body::ImpulseKind::continuous, kSweepsAlike, work);
   std::vector<double> moved(work.bodies.size(), 0.0);
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    moved[i] = moves.shifts[i].norm() + moves.turns[i].norm() * work.bodies[i].reach;
-    if (moved[i] == 0.0) continue;
-    moved[i] = moved[i] * (1.0 + 1e-9) + 1e-300;
-    shift_end(work.bodies[i], moves.shifts[i], moves.turns[i]);
-  }
+  for (std::size_t i = 0; i < work.bodies.size(); ++i)
+    moved[i] = move_end(work.bodies[i], moves.shifts[i], moves.turns[i]);
   return moved;
 }
 

@@ -35,7 +35,9 @@ struct Moves {
   std::vector<Vec3> shifts, turns;  // m; rotation vectors about the centre of mass, rad
 };
 
-/// The constraint of a contact that was seen from the start, at the share `knot` of the step.
+/// The constraint of a contact that was seen from the start, at the share `knot` of the step: surfaces go on
+/// as planes, but where features would be in each other's way so and are not, because they pass each other
+/// by, it is that of their places at the ends.
 Opening make_opening(const WorkPair& pair, const MotionWork& work, const collision::Contact& contact,
                      double knot, double wanted);
 
@@ -50,6 +52,9 @@ double opening_weight(const Opening& opening, const Mover& a, const Mover& b, Yi
 /// Finds moves after which the gaps are as wanted, as far as that goes, and the impulses that make them. `a`,
 /// `b`, the arms and the weights (by mass) of the openings are those of movers.
 Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yielding yielding);
+
+/// Moves a body's end pose; no point of it was moved further than what this returns, m.
+double move_end(WorkBody& body, const Vec3& shift, const Vec3& turn);
 
 /// Moves end poses until the gaps are as wanted, as far as that goes; takes away the approach of those that
 /// pushed and logs it: by no more than what opened them if they yield by mass. Returns by how much the points

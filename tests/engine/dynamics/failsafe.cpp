@@ -51,6 +51,26 @@ Outcome run(test::Scene& scene, int steps) {
 
 }  // namespace
 
+TEST_CASE("what two that go as one come upon, and what that pushes on, gives way to them") {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  // The first goes through the second, and both as one through the others that lie close above.
+  for (const double height : {0.0, 0.02, 0.032, 0.0325, 0.033}) {
+    body::Body sheet = test::make_shell(test::square_mesh(0.1, 2));
+    sheet.pose.translation.y() = height;
+    if (scene.bodies.empty()) sheet.velocity = Vec3(0, 7.2, 0);
+    scene.add(sheet);
+  }
+  const auto start = scene.bodies;
+  step_by_failsafe(scene);
+  CHECK(scene.report.failsafe_steps == 2);
+  CHECK(test::count_crossings(scene) == 0);
+  for (std::size_t i = 0; i < start.size(); ++i)
+    CHECK(scene.bodies[i].pose.translation.y() > start[i].pose.translation.y() + 1e-4);
+  for (std::size_t i = 1; i < start.size(); ++i)
+    CHECK(scene.bodies[i].pose.translation.y() > scene.bodies[i - 1].pose.translation.y());
+}
+
 TEST_CASE("free fall does not know of the failsafe until something is hit") {
   int cut = 0;
   for (const double height : test::kIsSanitized ? std::vector{0.54} : std::vector{0.5, 0.52, 0.54}) {

@@ -82,3 +82,43 @@ TEST_CASE("a hit tells how far apart its features were at the start, whichever w
   }
   CHECK(has_turned);
 }
+
+TEST_CASE("features that pass each other by are not held where their surfaces would meet if they went on") {
+  test::Scene scene;
+  scene.settings.time_step = 1.0 / 240.0;
+  scene.settings.gravity.setZero();
+  body::Body plate = test::make_shell(test::square_mesh(0.05, 1)),
+             chip = test::make_shell(test::square_mesh(0.004, 1));
+  chip.pose = {Quat(core::sqrt(0.75), 0, 0, 0.5), Vec3(0.0495, 4.2e-3, 0.0)};
+  scene.add(plate);
+  for (const double aside : {12.0, 0.0}) {  // m/s: past the edge of the plate, or down on it
+    chip.velocity = Vec3(aside, -1.5, 0.0);
+    test::Scene both = scene;
+    both.add(chip);
+    dynamics::MotionWork work;
+    both.fly(work);
+    REQUIRE(work.pairs.size() == 1);
+    const dynamics::WorkPair& pair = work.pairs.front();
+    const auto &a = work.bodies[0], &b = work.bodies[1];
+    collision::FeatureList features;
+    collision::list_near_features(collision::place_collider(*a.collider, a.start),
+                                  collision::place_collider(*b.collider, b.start), 1e-3, features);
+    int close = 0;
+    for (const collision::FeaturePair& f : features) {
+      const auto here = collision::gather(f, *a.collider, a.start, *b.collider, b.start);
+      const auto contact = collision::contact_here(f, here, collision::measure(here, Vec3::UnitY()));
+      const double as_planes = dynamics::gap_on_way(pair, work, contact, 1.0);
+      if (as_planes > 0.0) continue;
+      ++close;
+      const dynamics::Opening opening = dynamics::make_opening(pair, work, contact, 1.0, 1e-5);
+      if (aside == 0.0) {
+        CHECK(opening.gap == as_planes);
+        continue;
+      }
+      const auto there = collision::gather(f, *a.collider, a.end, *b.collider, b.end);
+      CHECK(opening.gap == collision::measure(there, Vec3::UnitY()).gap);
+      CHECK(opening.gap > 1e-3);
+    }
+    CHECK(close > 0);
+  }
+}
