@@ -108,10 +108,10 @@ double IslandSolver::target_before_drift(const SolverContact& c) const {
 }
 
 // Small islands are swept until nothing is left to do, for large ones few sweeps a substep must do: what
-// they leave the next substep finds, which starts from their impulses. What met on its
-// way and may break for it does not wait for that.
+// they leave the next substep finds, which starts from their impulses. What met on its way and may break for
+// it does not wait for that.
 int IslandSolver::most_sweeps(int of_small) const {
-  if (work_.is_again && work_.may_break) return of_small;
+  if (work_.sweeps_in_full) return of_small;
   const auto affordable = static_cast<int>(kVisits / (order_.contacts.size() + 1));
   return std::clamp(affordable, kFewSweeps, of_small);
 }

@@ -280,7 +280,7 @@ class Guard {
     if (std::find(is_dirty.begin(), is_dirty.end(), 1) == is_dirty.end()) return false;
     build_islands(work_);
     const std::vector<Way> before = note_ways();
-    work_.is_again = true;
+    work_.sweeps_in_full = work_.may_break;
     solve_islands(bodies_, settings_, is_dirty, work_);
     mark_due_since(before);
     return true;
@@ -337,9 +337,7 @@ class Guard {
     }
     std::vector<Opening> openings = find_openings(
         least_wanted, [&](const WorkPair& pair) { return is_dirty[at(pair.a)] || is_dirty[at(pair.b)]; });
-    // Pairs whose last test leaves more than both bodies moved are free still.
-    const std::vector<double> moves = open_gaps(openings, settings_.time_step, yielding, work_);
-    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+    mark_due_by(open_gaps(openings, settings_.time_step, yielding, work_));
   }
 
   void add_to_known(std::size_t p) {
@@ -417,6 +415,11 @@ class Guard {
     resize();
   }
 
+  // Pairs whose last test leaves more than both bodies were moved (m) are free still.
+  void mark_due_by(const std::vector<double>& moves) {
+    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+  }
+
   void mark_due_with(const std::vector<char>& has_moved) {
     mark_due([&](const WorkPair& pair) {
       return has_moved[at(pair.a)] || has_moved[at(pair.b)] ? kElsewhere : 0.0;
@@ -468,8 +471,7 @@ class Guard {
       return a != b && (is_due[at(a)] || is_due[at(b)]);
     };
     std::vector<Opening> openings = find_openings(kLastOpening, is_to_open);
-    const std::vector<double> moves = zones_->open(openings);
-    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+    mark_due_by(zones_->open(openings));
     std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
     remove_approach(openings, settings_.time_step, body::ImpulseKind::continuous, 1, work_);
   }

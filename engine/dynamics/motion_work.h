@@ -197,16 +197,16 @@ class MotionWork {
   std::vector<WorkJoint> joints;
   std::vector<std::pair<int, int>> joined, pivots;  // pairs of bodies, by area and about a point; ascending
   std::vector<Island> islands;
-  bool may_break = false;            // what is hit
-  bool is_again = false;             // islands are solved with what met on its way
   std::vector<Disturbance> to_wake;  // sleepers that something comes down on
   std::vector<body::BodyId> ids;
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
-  bool has_scripted = false;  // ones that move
-  double substep = 0.0;       // s
-  double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
+  bool has_scripted = false;    // ones that move
+  bool may_break = false;       // something may, where it is hit
+  bool sweeps_in_full = false;  // large islands as well, as small ones
+  double substep = 0.0;         // s
+  double warm_scale = 1.0;      // of remembered impulses: this step's substep over the last one's
 
   bool has_pair(int a, int b) const;
 };
