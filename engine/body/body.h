@@ -47,9 +47,10 @@ struct Body {
   double restitution = 0.3;
   double young = 70e9;  // Pa, for the contact's own compliance
   double poisson = 0.22;
-  int group = -1;     // bodies of one group >= 0 do not collide with each other: see collides_with
-  BodyId family = 0;  // the body of the scene that this one is, or was, a part of; 0: of none
-  int material = 0;   // number in the world's list of materials
+  int group = -1;          // bodies of one group >= 0 do not collide with each other: see collides_with
+  BodyId family = 0;       // the body of the scene that this one is, or was, a part of; 0: of none
+  int material = 0;        // number in the world's list of materials
+  bool may_break = false;  // somebody judges the hits on it
 
   Script script;  // of scripted bodies
 

@@ -40,13 +40,15 @@ class Crew {
   bool take(bool is_leader, std::size_t& index);
   void help();
 
+  static constexpr std::size_t kLine = 64;  // bytes of memory that threads hand to each other at once
+
   const bool has_help_;
   Task task_;
   // What is left of the loop: the first index that nobody has taken, and the one behind the last. The leader
   // takes from the front and helpers from the back, so that each has much the same share every time.
-  std::atomic<std::uint64_t> left_{0};
-  std::atomic<std::size_t> done_{0};
-  std::atomic<bool> has_ended_{false};
+  alignas(kLine) std::atomic<std::uint64_t> left_{0};
+  alignas(kLine) std::atomic<std::size_t> done_{0};
+  alignas(kLine) std::atomic<bool> has_ended_{false};
 };
 
 }  // namespace shatterbox::core

@@ -88,6 +88,7 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   w.rotation = b.pose.rotation;
   const double dt = settings.time_step;
   w.placed.collider = w.collider;
+  w.may_break = b.may_break;
   w.is_quiet = is_quiet(settings, b.velocity, b.angular_velocity, w.reach);
   if (b.motion == body::Motion::scripted) {
     w.is_scripted = true;

@@ -99,11 +99,15 @@ void build_islands(MotionWork& work) {
   for (std::size_t i = 0; i < work.contacts.size(); ++i) {
     const SolverContact& c = work.contacts[i];
     const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
-    work.islands[at(number[at(joined.find(member))])].contacts.push_back(static_cast<int>(i));
+    Island& island = work.islands[at(number[at(joined.find(member))])];
+    island.contacts.push_back(static_cast<int>(i));
+    if (work.bodies[at(c.a)].may_break || work.bodies[at(c.b)].may_break) island.may_break = true;
   }
   for (std::size_t i = 0; i < work.joints.size(); ++i) {
     const int member = work.bodies[at(work.joints[i].a)].is_free ? work.joints[i].b : work.joints[i].a;
-    work.islands[at(number[at(joined.find(member))])].joints.push_back(static_cast<int>(i));
+    Island& island = work.islands[at(number[at(joined.find(member))])];
+    island.joints.push_back(static_cast<int>(i));
+    island.may_break = true;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <numeric>
 
 #include "engine/core/index.h"
 
@@ -51,15 +52,44 @@ class Palette {
   std::vector<std::uint64_t> taken_;  // per body, a bit a colour
 };
 
+// Where bodies, and what lies between two, are along the direction in which an island is longest.
+class Along {
+ public:
+  Along(const Island& island, const MotionWork& work) : work_(work) {
+    geometry::Box box;
+    for (const int i : island.bodies) box.include(work.bodies[at(i)].start.translation);
+    if (!island.bodies.empty()) (box.high - box.low).maxCoeff(&axis_);
+  }
+
+  double of(int body) const { return work_.bodies[at(body)].start.translation[axis_]; }
+  // What holds still may be anywhere.
+  double of(const SolverContact& c) const {
+    const bool a_moves = work_.bodies[at(c.a)].inverse_mass > 0.0,
+               b_moves = work_.bodies[at(c.b)].inverse_mass > 0.0;
+    return a_moves && b_moves ? 0.5 * (of(c.a) + of(c.b)) : of(a_moves ? c.a : c.b);
+  }
+
+ private:
+  const MotionWork& work_;
+  int axis_ = 0;
+};
+
+template <class Item, class Key>
+void sort_along(std::vector<Item>& items, const Key& key) {
+  std::stable_sort(items.begin(), items.end(), [&](const Item& x, const Item& y) { return key(x) < key(y); });
+}
+
 }  // namespace
 
 ContactOrder order_contacts(const Island& island, const MotionWork& work) {
   ContactOrder order;
   const std::size_t count = island.contacts.size();
-  if (count <= ContactOrder::kMany) {
+  if (!island.is_large()) {
     order.contacts = island.contacts;
     order.chunks = {{0, count}};
     order.rounds = {{0, 1}};
+    order.chunks_along = {0};
+    order.bodies_along = island.bodies;
     return order;
   }
   // What was found on the way lies behind all others.
@@ -72,9 +102,15 @@ ContactOrder order_contacts(const Island& island, const MotionWork& work) {
     const SolverContact& c = work.contacts[at(contacts[pair.begin])];
     by_colour[palette.take(c.a, c.b)].push_back(pair);
   }
+  const Along along(island, work);
   order.contacts.reserve(count);
   for (std::size_t colour = 0; colour <= kColours; ++colour) {
     if (by_colour[colour].empty()) continue;
+    if (colour < kColours) {
+      sort_along(by_colour[colour], [&](const ContactOrder::Range& pair) {
+        return along.of(work.contacts[at(contacts[pair.begin])]);
+      });
+    }
     const std::size_t first = order.chunks.size();
     order.chunks.push_back({order.contacts.size(), order.contacts.size()});
     for (const ContactOrder::Range& pair : by_colour[colour]) {
@@ -86,6 +122,13 @@ ContactOrder order_contacts(const Island& island, const MotionWork& work) {
     }
     order.rounds.push_back({first, order.chunks.size()});
   }
+  order.chunks_along.resize(order.chunks.size());
+  std::iota(order.chunks_along.begin(), order.chunks_along.end(), std::size_t{0});
+  sort_along(order.chunks_along, [&](std::size_t chunk) {
+    return along.of(work.contacts[at(order.contacts[order.chunks[chunk].begin])]);
+  });
+  order.bodies_along = island.bodies;
+  sort_along(order.bodies_along, [&](int body) { return along.of(body); });
   return order;
 }
 

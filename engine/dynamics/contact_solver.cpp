@@ -268,7 +268,7 @@ bool strikes_one_by_one(const Island& island, const MotionWork& work) {
 
 void solve_island(const ContactSettings& settings, const Island& island, MotionWork& work) {
   const auto solve = [&](core::Crew& crew) { IslandSolver(settings, island, work, crew).run(); };
-  if (island.contacts.size() > ContactOrder::kMany) return core::Crew::run(solve);
+  if (island.is_large()) return core::Crew::run(solve);
   core::Crew alone;
   solve(alone);
 }

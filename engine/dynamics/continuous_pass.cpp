@@ -28,6 +28,7 @@ using core::at;
 constexpr int kLastRounds = 24;  // in which bodies only keep what they have
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
+constexpr double kDeepInHeap = 0.1;  // the same, of the pair's size, where a heap would be solved for it
 // Share of the kept gap to which hits are opened: less would be used up in the next steps.
 constexpr double kOpening = 0.5, kLastOpening = 0.05;
 constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with the one before
@@ -103,6 +104,7 @@ class Guard {
     in_zone_.resize(work_.pairs.size(), 0);
     was_hit_.resize(work_.pairs.size(), 0);
     is_known_.resize(work_.pairs.size(), 0);
+    bounces_.resize(work_.pairs.size(), 0);
     spare_.resize(work_.pairs.size(), 0.0);
   }
 
@@ -261,18 +263,20 @@ class Guard {
   bool solve_again(bool is_first) {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
     const std::vector<char> strikes_on = is_first ? std::vector<char>{} : find_striking();
+    const std::vector<char> in_heap = find_heaped();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
       if (!must_test_[p] || hits_[p].empty() || is_known_[p]) continue;
       if (!is_first && !may_strike_on(pair, strikes_on)) continue;
       const bool can_act =
           work_.bodies[at(pair.a)].inverse_mass > 0.0 || work_.bodies[at(pair.b)].inverse_mass > 0.0;
+      const double depth = find_depth(p);
       // Solids roll and slip on from where they met; surfaces that lie on each other only need room.
-      const double deep = pair.is_analytic ? kSafe * pair.kept_gap : -kDeep * pair.kept_gap;
-      const bool is_deep = std::any_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
-        return gap_on_way(pair, work_, hit.contact, hit.knot) < deep;
-      });
-      if (!can_act || !is_deep) continue;
+      if (!can_act || depth <= (pair.is_analytic ? -kSafe : kDeep) * pair.kept_gap) continue;
+      const bool is_heaped =
+          !pair.is_analytic && !may_break(pair) && (in_heap[at(pair.a)] || in_heap[at(pair.b)]);
+      bounces_[p] = is_heaped && depth <= kDeepInHeap * pair.size ? 1 : 0;
+      if (bounces_[p]) continue;
       is_known_[p] = 1;
       for (const PathHit& hit : hits_[p]) add_contact(static_cast<int>(p), hit.contact);
       is_dirty[at(pair.a)] = is_dirty[at(pair.b)] = 1;
@@ -280,10 +284,33 @@ class Guard {
     if (std::find(is_dirty.begin(), is_dirty.end(), 1) == is_dirty.end()) return false;
     build_islands(work_);
     const std::vector<Way> before = note_ways();
-    work_.sweeps_in_full = work_.may_break;
+    work_.is_again = true;
     solve_islands(bodies_, settings_, is_dirty, work_);
     mark_due_since(before);
     return true;
+  }
+
+  bool may_break(const WorkPair& pair) const {
+    return work_.bodies[at(pair.a)].may_break || work_.bodies[at(pair.b)].may_break;
+  }
+
+  // m, by which the hits of a pair overshoot at most.
+  double find_depth(std::size_t p) const {
+    double depth = -1e300;
+    for (const PathHit& hit : hits_[p])
+      depth = std::max(depth, -gap_on_way(work_.pairs[p], work_, hit.contact, hit.knot));
+    return depth;
+  }
+
+  // The bodies in islands that are too large to be solved anew for every hit in them, of which there are some
+  // in each step. They are opened as they are, and bounce; but of what may break all that a hit does counts.
+  std::vector<char> find_heaped() const {
+    std::vector<char> in_heap(work_.bodies.size(), 0);
+    for (const Island& island : work_.islands) {
+      if (!island.is_large() || island.may_break) continue;
+      for (const int i : island.bodies) in_heap[at(i)] = 1;
+    }
+    return in_heap;
   }
 
   // The bodies, of those in islands, whose hits run on.
@@ -358,6 +385,7 @@ class Guard {
         const double wanted =
             std::max(wanted_separation(hit.start_gap, pair.kept_gap), least_wanted * pair.kept_gap);
         openings.push_back(make_opening(pair, work_, hit.contact, hit.knot, wanted));
+        openings.back().bounces = bounces_[p] != 0;
       }
       for (const Contact& c : pair.contacts)
         openings.push_back(make_opening(pair, work_, c, 1.0, wanted_separation(c.gap, pair.kept_gap)));
@@ -555,6 +583,7 @@ class Guard {
   std::optional<ImpactZones> zones_;  // once nothing else helped
   std::vector<char> must_test_, was_cut_, in_zone_, was_hit_;
   std::vector<char> is_known_;              // per pair: the solver was given its hits
+  std::vector<char> bounces_;               // per pair: it was not, and bounces where its hits are opened
   std::vector<char> is_squeezed_;           // per body, by a scripted one that was held up; empty: nobody
   std::vector<double> spare_;               // per pair, m: ways this close to those that were tested are free
   std::vector<std::vector<PathHit>> hits_;  // per pair, earliest first

@@ -67,8 +67,11 @@ class IslandSolver {
   Found each(const Visit& visit);
   template <class Visit>
   void each_body(const Visit& visit);
+  // visit_chunk(i, found by it) for each i below `count`, possibly at once.
+  template <class VisitChunk>
+  Found gather(std::size_t count, const VisitChunk& visit_chunk);
   template <class Visit>
-  Found visit_chunks(const ContactOrder::Range& chunks, const Visit& visit);
+  void visit_chunk(std::size_t chunk, const Visit& visit, Found& found);
 
   // contact_sweeps.cpp
   // How much closing may be left, as a share of what `visit` measures it by.
@@ -226,7 +229,7 @@ class IslandSolver {
   static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
-  static constexpr std::size_t kCourseSize = ContactOrder::kMany;
+  static constexpr std::size_t kCourseSize = Island::kLarge;
   static constexpr double kProgress = 0.8;      // a course that in so many rounds has not come so much nearer
   static constexpr int kCoursePatience = 500;   // is given up
   static constexpr int kScriptedPatience = 50;  // the same, where a scripted body may squeeze
@@ -269,22 +272,31 @@ class IslandSolver {
 template <class Visit>
 IslandSolver::Found IslandSolver::in_turn(const Visit& visit) {
   Found all;
-  for (const ContactOrder::Range& round : order_.rounds) all.add(visit_chunks(round, visit));
+  for (const ContactOrder::Range& round : order_.rounds) {
+    all.add(gather(round.end - round.begin,
+                   [&](std::size_t i, Found& found) { visit_chunk(round.begin + i, visit, found); }));
+  }
   return all;
 }
 
 template <class Visit>
 IslandSolver::Found IslandSolver::each(const Visit& visit) {
-  return visit_chunks({0, order_.chunks.size()}, visit);
+  return gather(order_.chunks.size(),
+                [&](std::size_t i, Found& found) { visit_chunk(order_.chunks_along[i], visit, found); });
 }
 
 template <class Visit>
-IslandSolver::Found IslandSolver::visit_chunks(const ContactOrder::Range& chunks, const Visit& visit) {
-  found_.assign(chunks.end - chunks.begin, {});
-  crew_.loop(found_.size(), [&](std::size_t i) {
-    const ContactOrder::Range& own = order_.chunks[chunks.begin + i];
+void IslandSolver::visit_chunk(std::size_t chunk, const Visit& visit, Found& found) {
+  const ContactOrder::Range& own = order_.chunks[chunk];
+  for (std::size_t k = own.begin; k < own.end; ++k) visit(k, contact(k), found);
+}
+
+template <class VisitChunk>
+IslandSolver::Found IslandSolver::gather(std::size_t count, const VisitChunk& visit_chunk) {
+  found_.assign(count, {});
+  crew_.loop(count, [&](std::size_t i) {
     Found found;
-    for (std::size_t k = own.begin; k < own.end; ++k) visit(k, contact(k), found);
+    visit_chunk(i, found);
     found_[i] = found;
   });
   Found all;
@@ -294,7 +306,7 @@ IslandSolver::Found IslandSolver::visit_chunks(const ContactOrder::Range& chunks
 
 template <class Visit>
 void IslandSolver::each_body(const Visit& visit) {
-  const std::vector<int>& bodies = island_.bodies;
+  const std::vector<int>& bodies = order_.bodies_along;
   const std::size_t chunks = (bodies.size() + kBodies - 1) / kBodies;
   crew_.loop(chunks, [&](std::size_t chunk) {
     const std::size_t end = std::min(bodies.size(), (chunk + 1) * kBodies);

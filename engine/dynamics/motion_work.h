@@ -36,7 +36,8 @@ struct alignas(64) WorkBody {
   Vec3 inverse_moments = Vec3::Zero();  // about the principal axes; zero if nothing can turn it
   bool is_active = false;               // moves in this step: awake dynamic, or scripted with a velocity
   bool is_quiet = false;                // at the step's start
-  bool is_struck = false;               // something arrives at it in this substep
+  bool may_break = false;
+  bool is_struck = false;  // something arrives at it in this substep
 
   Pose start, end;
   Vec3 torque = Vec3::Zero();  // N m; zero unless dynamic and awake
@@ -186,6 +187,11 @@ struct Island {
   std::vector<int> bodies;    // dynamic ones, ascending
   std::vector<int> contacts;  // ascending
   std::vector<int> joints;    // ascending
+  bool may_break = false;     // one of its bodies, what holds them still included, or a joint
+
+  // It has so many contacts that few sweeps a substep must do.
+  bool is_large() const { return contacts.size() > kLarge; }
+  static constexpr std::size_t kLarge = 1200;
 };
 
 class MotionWork {
@@ -202,11 +208,10 @@ class MotionWork {
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
-  bool has_scripted = false;    // ones that move
-  bool may_break = false;       // something may, where it is hit
-  bool sweeps_in_full = false;  // large islands as well, as small ones
-  double substep = 0.0;         // s
-  double warm_scale = 1.0;      // of remembered impulses: this step's substep over the last one's
+  bool has_scripted = false;  // ones that move
+  bool is_again = false;      // islands are solved with what met on its way
+  double substep = 0.0;       // s
+  double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
 
   bool has_pair(int a, int b) const;
 };

@@ -169,6 +169,8 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   o.share = knot;
   o.gap = there.gap;
   o.wanted = wanted;
+  o.restitution = pair.material.restitution;
+  o.threshold = pair.threshold;
   const Vec3 middle = contact.lean * there.on_a + (1.0 - contact.lean) * there.on_b;
   o.arm_a = middle - there.centre_a;
   o.arm_b = middle - there.centre_b;
@@ -208,8 +210,9 @@ void remove_approach(const std::vector<Opening>& openings, std::optional<double>
       const WorkBody &a = work.bodies[at(o.a)], &b = work.bodies[at(o.b)];
       const double closing =
           -o.normal.dot(a.velocity + a.spin.cross(o.arm_a) - b.velocity - b.spin.cross(o.arm_b));
-      const double most = time_step ? o.impulse / *time_step : 1e300;
-      const double size = std::min(std::max(0.0, closing) * o.weight, most);
+      const double most = time_step && !o.bounces ? o.impulse / *time_step : 1e300;
+      const double parting = o.bounces && closing > o.threshold ? o.restitution * closing : 0.0;
+      const double size = std::min((std::max(0.0, closing) + parting) * o.weight, most);
       if (size > 0.0) give(work, o, size, closing, kind);
     }
   }

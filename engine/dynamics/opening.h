@@ -19,6 +19,9 @@ struct Opening {
   double wanted = 0.0;        // m
   double weight = 0.0;        // kg
   double impulse = 0.0;       // kg m, of the displacement
+  bool bounces = false;       // a hit that nobody solved: what closes there is turned round
+  double restitution = 0.0;   // by as much, if it closes faster than
+  double threshold = 0.0;     // this, m/s
 };
 
 /// Who gives way: the lighter by its mass, or all as if their masses were one.
@@ -62,8 +65,9 @@ double move_end(WorkBody& body, const Vec3& shift, const Vec3& turn);
 std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
                               MotionWork& work);
 
-/// Removes what closes along these constraints by impulses between the pairs, `sweeps` times over, and logs
-/// them as `kind`. With a time step (s) each is at most what the opening took over it.
+/// Removes what closes along these constraints by impulses between the pairs, or turns it round by their
+/// restitution, `sweeps` times over, and logs them as `kind`. With a time step (s) each is at most what the
+/// opening took over it.
 void remove_approach(const std::vector<Opening>& openings, std::optional<double> time_step,
                      body::ImpulseKind kind, int sweeps, MotionWork& work);
 

@@ -352,7 +352,6 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     find_candidate_pairs(bodies, own, state, work);
   }
   put_on_shelf(work, state);
-  work.may_break = part.may_return;
   solve_motion(bodies, own, work);
   guard_motion(bodies, own, state, work, report);
   const std::size_t first = log.size();

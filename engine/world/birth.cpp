@@ -124,6 +124,7 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     own->contact_duration = description.contact_duration;
     s.moving.fragiles[born.id] = std::move(own);
     s.moving.memories[born.id] = {};
+    born.may_break = true;
   }
   s.ancestry[born.id] = {0, born.id, time()};
   const body::BodyId id = born.id;

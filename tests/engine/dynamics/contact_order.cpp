@@ -18,8 +18,12 @@ using core::at;
 MotionWork draw_work(int bodies, int contacts, bool all_with_one) {
   MotionWork work;
   work.bodies.resize(at(bodies));
-  for (int i = 1; i < bodies; ++i) work.bodies[at(i)].inverse_mass = 1.0;
   core::Random random(7);
+  for (int i = 1; i < bodies; ++i) {
+    work.bodies[at(i)].inverse_mass = 1.0;
+    work.bodies[at(i)].start.translation =
+        Vec3(random.uniform(0, 1), random.uniform(0, 3), random.uniform(0, 2));
+  }
   const auto draw = [&](int most) {
     return std::min(most - 1, static_cast<int>(random.uniform(0, static_cast<double>(most))));
   };
@@ -38,6 +42,8 @@ MotionWork draw_work(int bodies, int contacts, bool all_with_one) {
 Island island_of(const MotionWork& work) {
   Island island;
   for (std::size_t i = 0; i < work.contacts.size(); ++i) island.contacts.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < work.bodies.size(); ++i)
+    if (work.bodies[i].inverse_mass > 0.0) island.bodies.push_back(static_cast<int>(i));
   return island;
 }
 
@@ -67,6 +73,18 @@ void check_order(const MotionWork& work, const ContactOrder& order) {
   }
   CHECK(next_contact == order.contacts.size());
   CHECK(next_chunk == order.chunks.size());
+  std::vector<std::size_t> chunks = order.chunks_along;
+  std::sort(chunks.begin(), chunks.end());
+  for (std::size_t k = 0; k < chunks.size(); ++k) CHECK(chunks[k] == k);
+  CHECK(chunks.size() == order.chunks.size());
+  std::vector<int> bodies = order.bodies_along;
+  std::sort(bodies.begin(), bodies.end());
+  CHECK(bodies == island_of(work).bodies);
+}
+
+// The island is longest along y.
+double place_of(const MotionWork& work, int body) {
+  return work.bodies[at(body)].start.translation.y();
 }
 
 }  // namespace
@@ -79,6 +97,22 @@ TEST_CASE("contacts that are visited at once share no body that moves, and no pa
   CHECK(order.chunks.size() > 100);
 }
 
+TEST_CASE("loops over a large island go through it from end to end") {
+  const MotionWork work = draw_work(300, 3000, false);
+  const ContactOrder order = order_contacts(island_of(work), work);
+  for (std::size_t i = 1; i < order.bodies_along.size(); ++i)
+    CHECK(place_of(work, order.bodies_along[i - 1]) <= place_of(work, order.bodies_along[i]));
+  const auto place_of_chunk = [&](std::size_t chunk) {
+    const SolverContact& c = work.contacts[at(order.contacts[order.chunks[chunk].begin])];
+    return c.a == 0 ? place_of(work, c.b) : 0.5 * (place_of(work, c.a) + place_of(work, c.b));
+  };
+  for (std::size_t i = 1; i < order.chunks_along.size(); ++i)
+    CHECK(place_of_chunk(order.chunks_along[i - 1]) <= place_of_chunk(order.chunks_along[i]));
+  for (const ContactOrder::Range& round : order.rounds)
+    for (std::size_t k = round.begin + 1; k < round.end; ++k)
+      CHECK(place_of_chunk(k - 1) <= place_of_chunk(k));
+}
+
 TEST_CASE("more neighbours of one body than there are colours are visited one by one") {
   const MotionWork work = draw_work(1500, 2000, true);
   const ContactOrder order = order_contacts(island_of(work), work);
@@ -87,7 +121,7 @@ TEST_CASE("more neighbours of one body than there are colours are visited one by
 }
 
 TEST_CASE("the contacts of a small island keep their order") {
-  const MotionWork work = draw_work(50, static_cast<int>(ContactOrder::kMany), false);
+  const MotionWork work = draw_work(50, static_cast<int>(Island::kLarge), false);
   const ContactOrder order = order_contacts(island_of(work), work);
   CHECK(order.contacts == island_of(work).contacts);
   CHECK(order.chunks.size() == 1);
@@ -110,7 +144,7 @@ TEST_CASE("a heap that is one island has the same bits on any number of threads"
       scene.step();
       most = std::max(most, scene.report.solver_contacts);
     }
-    CHECK(most > 2 * static_cast<int>(ContactOrder::kMany));
+    CHECK(most > 2 * static_cast<int>(Island::kLarge));
     hashes.push_back(scene.hash());
   }
   core::set_thread_count(0);
