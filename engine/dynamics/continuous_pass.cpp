@@ -69,6 +69,8 @@ class Guard {
     // One who is hit may hit the next: that is followed where hits are taken one by one.
     const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
     for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) has_hits = test();
+    report_.is_unfinished = has_hits && work_.is_trial;
+    if (report_.is_unfinished) return;
     has_hits = open_in_rounds(has_hits);
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
     content_with_less();

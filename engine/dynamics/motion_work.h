@@ -210,6 +210,7 @@ class MotionWork {
   int failsafe_bodies = 0;
   bool has_scripted = false;  // ones that move
   bool is_again = false;      // islands are solved with what met on its way
+  bool is_trial = false;      // ways that are not free are left so
   double substep = 0.0;       // s
   double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
 

@@ -269,6 +269,11 @@ int lively_parts(const ContactSettings& settings) {
   return std::max(kLeastParts, static_cast<int>(std::ceil(settings.time_step / kPartTime - 1e-9)));
 }
 
+// In how many times as many parts a step may go on at most.
+int finer_parts(const ContactSettings& settings, const StepPart& part) {
+  return std::min(kFiner, (lively_parts(settings) + part.count - 1) / part.count);
+}
+
 void count_near(const ContactSettings& settings, const MotionWork& work, ContactReport& report) {
   std::vector<char> is_near(work.bodies.size(), 0);
   for (const WorkPair& pair : work.pairs)
@@ -323,9 +328,13 @@ int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings
                                                : state.next_parts;
 }
 
+bool may_be_tried(const ContactSettings& settings, const StepPart& part) {
+  return finer_parts(settings, part) < 2;
+}
+
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,
                                          const ContactReport& moved) {
-  const int finer = std::min(kFiner, (lively_parts(settings) + part.count - 1) / part.count);
+  const int finer = finer_parts(settings, part);
   if (finer < 2 || !were_many_cut(settings, moved)) return std::nullopt;
   return StepPart{part.number * finer, part.count * finer};
 }
@@ -352,6 +361,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     find_candidate_pairs(bodies, own, state, work);
   }
   put_on_shelf(work, state);
+  work.is_trial = part.is_trial;
   solve_motion(bodies, own, work);
   guard_motion(bodies, own, state, work, report);
   const std::size_t first = log.size();

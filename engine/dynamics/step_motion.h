@@ -41,6 +41,7 @@ struct ContactReport {
   double crowd_turn = 0.0;      // rad in a step: more than one in twenty of these turn so far, spheres apart
   std::vector<body::Way> ways;  // ascending id; if asked for: of bodies that did not go straight
   double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone
+  bool is_unfinished = false;   // a trial found ways that are not free: its end poses are good for nothing
 };
 
 /// Scratch of one step, handed from stage to stage. Holds no state: a new one gives the same results.
@@ -56,6 +57,8 @@ struct StepPart {
   int number = 0, count = 1;
   bool may_return = false;  // it may be taken again
   bool is_again = false;    // it is: from its beginning, but for bodies that broke and what they touched
+  // It ends where ways would have to be opened: who breaks is known by then, and pieces go other ways.
+  bool is_trial = false;
 };
 
 /// In how many parts the step that begins here should be taken: several if pieces are newborn, which lie in
@@ -75,6 +78,10 @@ ContactReport move_part(std::vector<body::Body>& bodies, const ContactSettings& 
 /// several that are shorter, if many stood still in it because they found no room; else none.
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,
                                          const ContactReport& moved);
+
+/// Whether a trial of the part may tell who breaks in it: it is as short as parts get, so that it would not
+/// be divided whatever comes of it.
+bool may_be_tried(const ContactSettings& settings, const StepPart& part);
 
 /// Adds what a part reports to the report of its step.
 void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step);

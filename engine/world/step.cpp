@@ -161,7 +161,10 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   core::StageTimer& timer = s.report.stages;
   const bool has_joints = !s.moving.contact.joints.empty();
   const bool may_break = !s.moving.fragiles.empty() || has_joints;
+  const bool may_try = may_break && s.settings.after_break == AfterBreak::go_back &&
+                       s.settings.contact == ContactScheme::standard;
   dynamics::StepPart part{0, count_parts()};
+  bool was_tried = false;  // nothing broke by it
   for (int pass = 0; part.number < part.count;) {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     body::ImpulseLog given = act(part);
@@ -169,7 +172,11 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     const std::vector<body::Body> before = s.moving.bodies;
     body::ImpulseLog log;
     part.may_return = may_break;
-    part.is_again = pass > 0;
+    part.is_again = pass > 0 || was_tried;
+    // Pieces that were just born in it often break as well.
+    part.is_trial = may_try && !was_tried && pass > 0 && pass + 1 < kMostPasses &&
+                    dynamics::may_be_tried(s.contact_settings, part);
+    was_tried = false;
     dynamics::ContactReport moved = move_bodies(part, log);
     given.insert(given.end(), log.begin(), log.end());
     tell_watcher("motion", part, pass);
@@ -205,6 +212,11 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
           divide_ways(before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies,
                       static_cast<double>(part.number) / part.count, contact.ways, s.ended_ways);
         if (part.number == 0) part.count = std::max(part.count, count_parts());
+        continue;
+      }
+      if (moved.is_unfinished) {
+        s.moving = std::move(snapshot);
+        was_tried = true;
         continue;
       }
     }
