@@ -96,16 +96,18 @@ void build_islands(MotionWork& work) {
     }
     work.islands[at(island)].bodies.push_back(static_cast<int>(i));
   }
+  const auto island_of = [&](int a, int b) -> Island& {
+    const int member = work.bodies[at(a)].is_free ? b : a;
+    return work.islands[at(number[at(joined.find(member))])];
+  };
   for (std::size_t i = 0; i < work.contacts.size(); ++i) {
     const SolverContact& c = work.contacts[i];
-    const int member = work.bodies[at(c.a)].is_free ? c.b : c.a;
-    Island& island = work.islands[at(number[at(joined.find(member))])];
+    Island& island = island_of(c.a, c.b);
     island.contacts.push_back(static_cast<int>(i));
     if (work.bodies[at(c.a)].may_break || work.bodies[at(c.b)].may_break) island.may_break = true;
   }
   for (std::size_t i = 0; i < work.joints.size(); ++i) {
-    const int member = work.bodies[at(work.joints[i].a)].is_free ? work.joints[i].b : work.joints[i].a;
-    Island& island = work.islands[at(number[at(joined.find(member))])];
+    Island& island = island_of(work.joints[i].a, work.joints[i].b);
     island.joints.push_back(static_cast<int>(i));
     island.may_break = true;
   }

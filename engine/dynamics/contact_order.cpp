@@ -88,8 +88,6 @@ ContactOrder order_contacts(const Island& island, const MotionWork& work) {
     order.contacts = island.contacts;
     order.chunks = {{0, count}};
     order.rounds = {{0, 1}};
-    order.chunks_along = {0};
-    order.bodies_along = island.bodies;
     return order;
   }
   // What was found on the way lies behind all others.

@@ -18,8 +18,9 @@ struct ContactOrder {
   std::vector<int> contacts;  // numbers in MotionWork::contacts, as they are visited
   std::vector<Range> chunks;  // of `contacts`; the contacts of a pair are in one, those of a round together
   std::vector<Range> rounds;  // of `chunks`: those of one have no body in common that an impulse could move
-  std::vector<std::size_t> chunks_along;  // numbers of all chunks, from end to end
-  std::vector<int> bodies_along;          // those of the island, from end to end
+  // Of large islands only, from end to end: the numbers of all chunks, and the island's bodies.
+  std::vector<std::size_t> chunks_along;
+  std::vector<int> bodies_along;
 };
 
 /// The same for any number of threads. Small islands are visited pair by pair. In large ones pairs get the

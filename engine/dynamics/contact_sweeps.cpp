@@ -111,7 +111,7 @@ double IslandSolver::target_before_drift(const SolverContact& c) const {
 // they leave the next substep finds, which starts from their impulses. What met on its way and may break for
 // it does not wait for that.
 int IslandSolver::most_sweeps(int of_small) const {
-  if (work_.is_again && island_.may_break) return of_small;
+  if (work_.is_solved_again && island_.may_break) return of_small;
   const auto affordable = static_cast<int>(kVisits / (order_.contacts.size() + 1));
   return std::clamp(affordable, kFewSweeps, of_small);
 }

@@ -265,7 +265,7 @@ class Guard {
   bool solve_again(bool is_first) {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
     const std::vector<char> strikes_on = is_first ? std::vector<char>{} : find_striking();
-    const std::vector<char> in_heap = find_heaped();
+    const std::vector<char> is_heaped = find_heaped();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       const WorkPair& pair = work_.pairs[p];
       if (!must_test_[p] || hits_[p].empty() || is_known_[p]) continue;
@@ -275,9 +275,7 @@ class Guard {
       const double depth = find_depth(p);
       // Solids roll and slip on from where they met; surfaces that lie on each other only need room.
       if (!can_act || depth <= (pair.is_analytic ? -kSafe : kDeep) * pair.kept_gap) continue;
-      const bool is_heaped =
-          !pair.is_analytic && !may_break(pair) && (in_heap[at(pair.a)] || in_heap[at(pair.b)]);
-      bounces_[p] = is_heaped && depth <= kDeepInHeap * pair.size ? 1 : 0;
+      bounces_[p] = is_heaped[p] && depth <= kDeepInHeap * pair.size;
       if (bounces_[p]) continue;
       is_known_[p] = 1;
       for (const PathHit& hit : hits_[p]) add_contact(static_cast<int>(p), hit.contact);
@@ -286,14 +284,10 @@ class Guard {
     if (std::find(is_dirty.begin(), is_dirty.end(), 1) == is_dirty.end()) return false;
     build_islands(work_);
     const std::vector<Way> before = note_ways();
-    work_.is_again = true;
+    work_.is_solved_again = true;
     solve_islands(bodies_, settings_, is_dirty, work_);
     mark_due_since(before);
     return true;
-  }
-
-  bool may_break(const WorkPair& pair) const {
-    return work_.bodies[at(pair.a)].may_break || work_.bodies[at(pair.b)].may_break;
   }
 
   // m, by which the hits of a pair overshoot at most.
@@ -304,25 +298,36 @@ class Guard {
     return depth;
   }
 
-  // The bodies in islands that are too large to be solved anew for every hit in them, of which there are some
-  // in each step. They are opened as they are, and bounce; but of what may break all that a hit does counts.
-  std::vector<char> find_heaped() const {
-    std::vector<char> in_heap(work_.bodies.size(), 0);
+  // The bodies in those islands of which this is claimed.
+  template <class Claim>
+  std::vector<char> find_in_islands(const Claim& claim) const {
+    std::vector<char> is_in(work_.bodies.size(), 0);
     for (const Island& island : work_.islands) {
-      if (!island.is_large() || island.may_break) continue;
-      for (const int i : island.bodies) in_heap[at(i)] = 1;
+      if (!claim(island)) continue;
+      for (const int i : island.bodies) is_in[at(i)] = 1;
     }
-    return in_heap;
+    return is_in;
   }
 
   // The bodies, of those in islands, whose hits run on.
   std::vector<char> find_striking() const {
-    std::vector<char> strikes_on(work_.bodies.size(), 0);
-    for (const Island& island : work_.islands) {
-      if (!strikes_one_by_one(island, work_)) continue;
-      for (const int i : island.bodies) strikes_on[at(i)] = 1;
+    return find_in_islands([&](const Island& island) { return strikes_one_by_one(island, work_); });
+  }
+
+  // Pairs with a body in an island that is too large to be solved anew for every hit in it, of which there
+  // are some in each step: they are opened as they are, and bounce. But of what may break all that a hit does
+  // counts, and solids roll and slip on.
+  std::vector<char> find_heaped() const {
+    const auto in_heap = find_in_islands([](const Island& i) { return i.is_large() && !i.may_break; });
+    const auto may_break = find_in_islands([](const Island& i) { return i.may_break; });
+    std::vector<char> is_heaped(work_.pairs.size(), 0);
+    for (std::size_t p = 0; p < is_heaped.size(); ++p) {
+      const WorkPair& pair = work_.pairs[p];
+      const auto breaks = [&](int i) { return work_.bodies[at(i)].may_break || may_break[at(i)]; };
+      is_heaped[p] = (in_heap[at(pair.a)] || in_heap[at(pair.b)]) && !pair.is_analytic && !breaks(pair.a) &&
+                     !breaks(pair.b);
     }
-    return strikes_on;
+    return is_heaped;
   }
 
   bool may_strike_on(const WorkPair& pair, const std::vector<char>& strikes_on) const {

@@ -281,8 +281,9 @@ IslandSolver::Found IslandSolver::in_turn(const Visit& visit) {
 
 template <class Visit>
 IslandSolver::Found IslandSolver::each(const Visit& visit) {
-  return gather(order_.chunks.size(),
-                [&](std::size_t i, Found& found) { visit_chunk(order_.chunks_along[i], visit, found); });
+  return gather(order_.chunks.size(), [&](std::size_t i, Found& found) {
+    visit_chunk(island_.is_large() ? order_.chunks_along[i] : i, visit, found);
+  });
 }
 
 template <class Visit>
@@ -306,7 +307,7 @@ IslandSolver::Found IslandSolver::gather(std::size_t count, const VisitChunk& vi
 
 template <class Visit>
 void IslandSolver::each_body(const Visit& visit) {
-  const std::vector<int>& bodies = order_.bodies_along;
+  const std::vector<int>& bodies = island_.is_large() ? order_.bodies_along : island_.bodies;
   const std::size_t chunks = (bodies.size() + kBodies - 1) / kBodies;
   crew_.loop(chunks, [&](std::size_t chunk) {
     const std::size_t end = std::min(bodies.size(), (chunk + 1) * kBodies);

@@ -208,11 +208,11 @@ class MotionWork {
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass
   int failsafe_bodies = 0;
-  bool has_scripted = false;  // ones that move
-  bool is_again = false;      // islands are solved with what met on its way
-  bool is_trial = false;      // ways that are not free are left so
-  double substep = 0.0;       // s
-  double warm_scale = 1.0;    // of remembered impulses: this step's substep over the last one's
+  bool has_scripted = false;     // ones that move
+  bool is_solved_again = false;  // islands are, with what met on its way
+  bool is_trial = false;         // ways that are not free are left so
+  double substep = 0.0;          // s
+  double warm_scale = 1.0;       // of remembered impulses: this step's substep over the last one's
 
   bool has_pair(int a, int b) const;
 };

@@ -67,7 +67,7 @@ std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, 
 
 /// Removes what closes along these constraints by impulses between the pairs, or turns it round by their
 /// restitution, `sweeps` times over, and logs them as `kind`. With a time step (s) each is at most what the
-/// opening took over it.
+/// opening took over it, unless it bounces.
 void remove_approach(const std::vector<Opening>& openings, std::optional<double> time_step,
                      body::ImpulseKind kind, int sweeps, MotionWork& work);
 

@@ -161,8 +161,6 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   core::StageTimer& timer = s.report.stages;
   const bool has_joints = !s.moving.contact.joints.empty();
   const bool may_break = !s.moving.fragiles.empty() || has_joints;
-  const bool may_try = may_break && s.settings.after_break == AfterBreak::go_back &&
-                       s.settings.contact == ContactScheme::standard;
   dynamics::StepPart part{0, count_parts()};
   bool was_tried = false;  // nothing broke by it
   for (int pass = 0; part.number < part.count;) {
@@ -172,10 +170,10 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     const std::vector<body::Body> before = s.moving.bodies;
     body::ImpulseLog log;
     part.may_return = may_break;
-    part.is_again = pass > 0 || was_tried;
+    part.is_again = pass > 0;
     // Pieces that were just born in it often break as well.
-    part.is_trial = may_try && !was_tried && pass > 0 && pass + 1 < kMostPasses &&
-                    dynamics::may_be_tried(s.contact_settings, part);
+    part.is_trial =
+        pass > 0 && !was_tried && pass + 1 < kMostPasses && dynamics::may_be_tried(s.contact_settings, part);
     was_tried = false;
     dynamics::ContactReport moved = move_bodies(part, log);
     given.insert(given.end(), log.begin(), log.end());

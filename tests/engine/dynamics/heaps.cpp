@@ -11,7 +11,8 @@ constexpr double kTowerSide = 1.0, kTowerGap = 1e-3;  // m
 constexpr double kTowerBall = 0.05;                   // m
 
 /// Without gravity: a tower of sheets that nearly touch, over it a ball at rest, and over that one that comes
-/// down at `speed` (m/s) so that only the hit on the first sends that on its way to the sheets.
+/// down at `speed` (m/s) so that only the hit on the first sends that on its way to the sheets. Balls are
+/// elastic, and have the sheets' restitution with these.
 test::Scene tower_scene(double speed, double restitution) {
   test::Scene scene;
   scene.settings.gravity.setZero();
@@ -20,13 +21,13 @@ test::Scene tower_scene(double speed, double restitution) {
   for (int i = 0; i < kTowerSheets; ++i) {
     auto next = sheet;
     next.pose.translation.y() = kTowerGap * (i - kTowerSheets);
+    next.restitution = restitution;
     scene.add(next);
   }
   // Not over a corner: there a ball meets several features at once.
   const Vec3 over(0.17, 0.0, 0.05);
   for (const double height : {kTowerBall - kTowerGap + 3e-3, 3.0 * kTowerBall - kTowerGap + 4e-3})
-    scene.add(test::make_sphere(kTowerBall, over + Vec3(0.0, height, 0.0), 50.0));
-  for (auto& b : scene.bodies) b.restitution = restitution;
+    scene.add(test::make_sphere(kTowerBall, over + Vec3(0.0, height, 0.0), 50.0)).restitution = 1.0;
   scene.bodies.back().velocity.y() = -speed;
   return scene;
 }
@@ -42,10 +43,6 @@ TEST_CASE("what hits a large heap bounces off it as off any other body") {
   for (const double restitution : {0.0, 0.5, 1.0}) {
     constexpr double kSpeed = 0.6;
     test::Scene scene = tower_scene(kSpeed, restitution);
-    scene.bodies.back().restitution = 1.0;
-    scene.bodies[kTowerSheets].restitution = 1.0;
-    for (int i = 0; i < kTowerSheets; ++i)
-      scene.bodies[static_cast<std::size_t>(i)].restitution = restitution;
     const Vec3 before = scene.momentum();
     const double energy = scene.kinetic();
     const body::Body top = scene.bodies[kTowerSheets - 1];
@@ -65,12 +62,10 @@ TEST_CASE("what hits a large heap bounces off it as off any other body") {
 
 TEST_CASE("a heap that is solved anew has the same bits whether or not something far away may break") {
   // So deep that it is.
-  test::Scene plain = tower_scene(20.0, 0.3);
-  auto far = test::make_box(Vec3::Constant(0.5), Vec3(100.0, 0.0, 0.0));
+  test::Scene plain = tower_scene(20.0, 0.3), fragile = tower_scene(20.0, 0.3);
+  const auto far = test::make_box(Vec3::Constant(0.5), Vec3(100.0, 0.0, 0.0));
   plain.add(far);
-  test::Scene fragile = plain;
-  fragile.state = {};
-  fragile.bodies.back().may_break = true;
+  fragile.add(far).may_break = true;
   for (int i = 0; i < 3; ++i) {
     plain.step();
     fragile.step();
