@@ -219,14 +219,17 @@ class IslandSolver {
 
   static constexpr double kTouching = 0.05;  // of the kept gap
   static constexpr double kLanding = 1e-3;  // of it: how little what ends a part is stopped before it bounces
-  static constexpr double kSliding = 0.999;    // of the friction that there can be
-  static constexpr double kResting = 1e-3;     // of the threshold: closing that is left at rest
-  static constexpr double kLooseRest = 0.1;    // the same, where no contact is strained
-  static constexpr double kStrain = 8.0;       // times the lighter body's weight
-  static constexpr double kEased = 0.25;       // of what strains: opening is eased beyond it
-  static constexpr double kEasedMoving = 8.0;  // the same, between surfaces that are not quiet
-  static constexpr double kLeastEase = 0.05;   // of solids, however much they bear
-  static constexpr double kStrainedGap = 0.1;  // of kTouching: overshoot that is left under strain
+  static constexpr double kSliding = 0.999;       // of the friction that there can be
+  static constexpr double kResting = 1e-3;        // of the threshold: closing that is left at rest
+  static constexpr double kLooseRest = 0.1;       // the same, where no contact is strained
+  static constexpr double kStrain = 8.0;          // times the lighter body's weight
+  static constexpr double kEased = 0.25;          // of what strains: opening is eased beyond it
+  static constexpr double kEasedMoving = 8.0;     // the same, between surfaces that are not quiet
+  static constexpr double kLeastEase = 0.05;      // of solids, however much they bear
+  static constexpr double kStrainedGap = 0.1;     // of kTouching: overshoot that is left under strain
+  static constexpr double kCalmGap = 0.3;         // the same, where nothing arrives
+  static constexpr int kCalmSweeps = 4;           // at most of an island of so many contacts in which nothing
+  static constexpr std::size_t kFewAtRest = 300;  // arrives
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = Island::kLarge;

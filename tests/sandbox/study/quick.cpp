@@ -55,12 +55,10 @@ TEST_CASE("study motion: exact flight and bounces and the order of spin") {
     CHECK(row.errors[0] < 1e-6);
     CHECK(row.errors[1] < 1e-10);
   }
-  // It creeps, the less the shorter the step: 0.05 mm a second at the default.
-  const Table& stick = table_of(result, "stick");
-  CHECK(error_at_default(stick, 2) < 1e-4);
-  const auto creep = fit_order(stick, 2);
-  REQUIRE(creep);
-  CHECK(creep->order > 0.6);
+  for (const Row& row : table_of(result, "stick").rows) {
+    CHECK(row.errors[0] < 1e-5);
+    CHECK(row.errors[2] < 4e-6);  // m in the next second: it does not creep
+  }
 }
 
 TEST_CASE("study stress: elements of the first order, moments of the second") {
