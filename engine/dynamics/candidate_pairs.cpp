@@ -186,10 +186,11 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       bodies[at(pair.a)].is_dynamic() && (!bodies[at(pair.b)].is_dynamic() || a.reach <= b.reach);
   pair.material = pair_material(bodies[at(pair.a)], bodies[at(pair.b)], settings);
   pair.size = 2.0 * (a_is_measure ? a.reach : b.reach);
-  const double predicted = motion_bound(a, a.predicted, b, b.predicted);
+  double predicted = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
   const double pull = std::max({settings.gravity.norm(), a.gravity.norm(), b.gravity.norm()});
-  pair.motion = predicted + pull * settings.time_step * settings.time_step;
+  const double fall = pull * settings.time_step * settings.time_step;
+  pair.motion = predicted + fall;
   pair.rounding = 1e-14 * (pair.size + a.start.translation.cwiseAbs().maxCoeff() +
                            b.start.translation.cwiseAbs().maxCoeff());
   const double usual_gap = settings.kept_gap * pair.size;
@@ -203,13 +204,17 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));
   pair.is_apart = pair.clearance > pair.margin;
   if (pair.is_plane || pair.is_analytic) return;
+  // Which features may meet is told by how bodies move where they are near each other.
+  if (!pair.is_apart && !turns_far(a) && !turns_far(b)) {
+    predicted = approach_bound(a, a.predicted, b, b.predicted, pair.motion + usual_gap);
+    pair.motion = predicted + fall;
+  }
   const double slack = settings.search_slack * pair.size;
   pair.is_fast = predicted > slack;
   const double needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
-  pair.needs_search =
-      !pair.is_fast && !pair.is_apart &&
-      (!settings.has_caches || !memory.search ||
-       memory.search->margin - moved_since(*memory.search, a, a.start, b, b.start, needed) < needed);
+  pair.needs_search = !pair.is_fast && !pair.is_apart &&
+                      (!settings.has_caches || !memory.search ||
+                       memory.search->margin - moved_since(*memory.search, a, b, needed) < needed);
 }
 
 // Sleepers that something hits, with its momentum, or touches and could move.

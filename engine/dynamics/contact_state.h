@@ -43,6 +43,7 @@ struct PairState {
   std::vector<RememberedContact> contacts;
 
   std::shared_ptr<const FeatureSearch> search;  // a cache
+  std::shared_ptr<const StartGaps> gaps;        // the same: as known last, maybe of an earlier search
 };
 
 /// One body's own memory.

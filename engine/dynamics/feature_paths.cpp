@@ -87,8 +87,7 @@ class Follower {
     }
     const collision::FeaturePair& features = search_.features[i];
     if (features.bound > paths_.listed) {
-      const double left = (features.bound - paths_.listed) + paths_.spare;
-      all_free_until_ = std::min(all_free_until_, known_.moved + left);
+      note_room((features.bound - paths_.listed) + paths_.spare);
       return;
     }
     if (is_out_of_reach(known.start_gap) || parts_along(features, known)) return;
@@ -131,8 +130,12 @@ class Follower {
 
   bool is_out_of_reach(double start_gap) {
     if (!(start_gap > paths_.reach + spare_)) return false;
-    all_free_until_ = std::min(all_free_until_, known_.moved + (start_gap - paths_.reach));
+    note_room(start_gap - paths_.reach);
     return true;
+  }
+
+  void note_room(double left) {
+    all_free_until_ = std::min(all_free_until_, known_.moved + std::min(left, paths_.ample));
   }
 
   const WorkBody &a_, &b_;
@@ -151,7 +154,8 @@ class Follower {
 void begin_memory(Size features, PathMemory& known) {
   if (known.features.size() == features) return;
   known.features.resize(features);
-  for (Size i = 0; i < known.start_gaps.size(); ++i) known.features[i].start_gap = known.start_gaps[i];
+  if (!known.start_gaps) return;
+  for (Size i = 0; i < features; ++i) known.features[i].start_gap = known.start_gaps->gaps[i];
 }
 
 }  // namespace
@@ -165,9 +169,9 @@ double least_separation(double gap, const WorkPair& pair) {
 std::vector<PathHit> follow_features(const WorkBody& a, const WorkBody& b, const PairPaths& paths,
                                      WorkPair& pair, double& spare) {
   const FeatureSearch& search = *pair.search;
-  const Size blocks = search.block_count(paths.listed);
+  const Size blocks = search.block_count();
   begin_memory(search.features.size(), pair.known);
-  pair.known.blocks.resize(std::max(pair.known.blocks.size(), blocks));
+  pair.known.blocks.resize(blocks);
   struct Found {
     double spare = 0.0;
     std::vector<PathHit> hits;

@@ -35,6 +35,7 @@ struct PairPaths {
   double reach = 0.0;                       // m: gaps at the start that are greater stay free
   double spare = 0.0;                       // m: what the search leaves, at most the kept gap
   double listed = 0.0;                      // m: features of a greater bound stay free, by `spare` and more
+  double ample = 0.0;                       // m: but for more than this neither of the two vouches
 };
 
 /// Tests the features of `pair.search` on these paths, which its memory is of. Returns the hits, in any order

@@ -12,6 +12,7 @@ namespace {
 using core::at;
 
 constexpr std::size_t kBlock = 32;  // features of a list that is not swept
+constexpr std::size_t kFew = 64;    // features that it is not worth while to count
 
 // How far the material of a body was moved: by `way` + `turn` (x - the centre) from x.
 struct Displacement {
@@ -69,19 +70,17 @@ double relative_bound(const WorkBody& a, const Displacement& moved_a, const Work
   return (moved_a.way - moved_b.way).norm() + moved_a.turn.norm() * a.reach + moved_b.turn.norm() * b.reach;
 }
 
-double moved_at_most(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
-                     const Pose& pose_b) {
-  const Vec3 way =
-      (pose_a.translation - search.start_a.translation) - (pose_b.translation - search.start_b.translation);
-  return way.norm() + turn_bound(search.start_a.rotation, pose_a.rotation, a.reach) +
-         turn_bound(search.start_b.rotation, pose_b.rotation, b.reach);
+double moved_at_most(const Pose& from_a, const WorkBody& a, const Pose& to_a, const Pose& from_b,
+                     const WorkBody& b, const Pose& to_b) {
+  const Vec3 way = (to_a.translation - from_a.translation) - (to_b.translation - from_b.translation);
+  return way.norm() + turn_bound(from_a.rotation, to_a.rotation, a.reach) +
+         turn_bound(from_b.rotation, to_b.rotation, b.reach);
 }
 
 // The same of points that were within `near` of each other.
-double moved_where_near(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
-                        const Pose& pose_b, double near) {
-  return relative_bound(a, search.start_a, displacement(search.start_a, pose_a), b, search.start_b,
-                        displacement(search.start_b, pose_b), near);
+double moved_where_near(const Pose& from_a, const WorkBody& a, const Pose& to_a, const Pose& from_b,
+                        const WorkBody& b, const Pose& to_b, double near) {
+  return relative_bound(a, from_a, displacement(from_a, to_a), b, from_b, displacement(from_b, to_b), near);
 }
 
 }  // namespace
@@ -90,14 +89,8 @@ bool is_same_pose(const Pose& x, const Pose& y) {
   return x.translation == y.translation && x.rotation.coeffs() == y.rotation.coeffs();
 }
 
-std::size_t FeatureSearch::count_within(double bound) const {
-  const auto last = std::partition_point(features.begin(), features.end(),
-                                         [&](const collision::FeaturePair& f) { return f.bound <= bound; });
-  return static_cast<std::size_t>(last - features.begin());
-}
-
-std::size_t FeatureSearch::block_count(double bound) const {
-  return is_swept ? blocks.size() : (count_within(bound) + kBlock - 1) / kBlock;
+std::size_t FeatureSearch::block_count() const {
+  return is_swept ? blocks.size() : (features.size() + kBlock - 1) / kBlock;
 }
 
 std::pair<std::size_t, std::size_t> FeatureSearch::features_of(std::size_t block) const {
@@ -118,22 +111,48 @@ double turn_bound(const Quat& from, const Quat& to, double reach) {
   return std::min(2.0, 2.0 * apart) * reach;
 }
 
-double moved_since(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
-                   const Pose& pose_b, double near) {
-  const double most = moved_at_most(search, a, pose_a, b, pose_b);
+double moved_since(const FeatureSearch& search, const WorkBody& a, const WorkBody& b, double near) {
+  const double most = moved_at_most(search.start_a, a, a.start, search.start_b, b, b.start);
   if (most + near <= search.margin) return most;
-  return std::min(most, moved_where_near(search, a, pose_a, b, pose_b, near + most));
+  return std::min(most,
+                  moved_where_near(search.start_a, a, a.start, search.start_b, b, b.start, near + most));
+}
+
+StartGaps carry_gaps(std::shared_ptr<const FeatureSearch> search, const StartGaps* before, const WorkBody& a,
+                     const WorkBody& b) {
+  const Pose &from_a = before ? before->start_a : search->start_a,
+             &from_b = before ? before->start_b : search->start_b;
+  const collision::FeatureList& features = search->features;
+  // The bound holds for what is so near now; all else is further.
+  const double near = search->margin;
+  double moved = moved_at_most(from_a, a, a.start, from_b, b, b.start);
+  if (features.size() > kFew && moved > 0.0)
+    moved = std::min(moved, moved_where_near(from_a, a, a.start, from_b, b, b.start, near + moved));
+  StartGaps now{search, a.start, b.start, {}};
+  now.gaps.resize(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const double gap = before ? before->gaps[i] : features[i].bound;
+    now.gaps[i] = moved > 0.0 ? collision::round_down(std::min(gap - moved, near)) : static_cast<float>(gap);
+  }
+  return now;
+}
+
+double approach_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
+                      double near) {
+  return std::min(motion_bound(a, end_a, b, end_b),
+                  moved_where_near(a.start, a, end_a, b.start, b, end_b, near));
 }
 
 double strays_from(const FeatureSearch& search, const WorkBody& a, const Pose& end_a, const WorkBody& b,
                    const Pose& end_b, double near) {
   if (!search.is_swept) {
     // The way of a vertex along a straight path is convex: it is greatest at an end.
-    const double most =
-        std::max(moved_at_most(search, a, a.start, b, b.start), moved_at_most(search, a, end_a, b, end_b));
+    const Pose &from_a = search.start_a, &from_b = search.start_b;
+    const double most = std::max(moved_at_most(from_a, a, a.start, from_b, b, b.start),
+                                 moved_at_most(from_a, a, end_a, from_b, b, end_b));
     if (most + near <= search.margin) return most;
-    return std::min(most, std::max(moved_where_near(search, a, a.start, b, b.start, near + most),
-                                   moved_where_near(search, a, end_a, b, end_b, near + most)));
+    return std::min(most, std::max(moved_where_near(from_a, a, a.start, from_b, b, b.start, near + most),
+                                   moved_where_near(from_a, a, end_a, from_b, b, end_b, near + most)));
   }
   if (!is_same_pose(search.start_a, a.start) || !is_same_pose(search.start_b, b.start)) return 1e300;
   const Displacement gone_a = displacement(a.start, end_a), gone_b = displacement(b.start, end_b),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -14,20 +15,25 @@ namespace shatterbox::dynamics {
 struct WorkBody;
 
 struct FeatureSearch {
-  collision::FeatureList features;              // ascending by `bound` unless swept
+  collision::FeatureList features;              // in any order that is always the same
   double margin = 0.0;                          // m: all that come this close are in it
   bool is_swept = false;                        // looked along straight paths, not only at the starts
   Pose start_a, start_b;                        // where the bodies were
   Pose end_a, end_b;                            // swept: where they were thought to go
   std::vector<collision::FeatureBlock> blocks;  // swept: of the features, in their order
 
-  /// How many features have no greater bound than this (m); not for a swept list.
-  std::size_t count_within(double bound) const;
-  /// How many blocks have features of no greater bound than this (m): all of a swept list; of others, which
-  /// have none of their own, as many as fixed numbers of features make.
-  std::size_t block_count(double bound) const;
+  /// A swept list has blocks; of others fixed numbers of features are one.
+  std::size_t block_count() const;
   /// The first feature of a block, and the one behind its last.
   std::pair<std::size_t, std::size_t> features_of(std::size_t block) const;
+};
+
+/// How near the features of a search may be where the bodies are: what has moved by little need not be
+/// measured again. Made once, never changed, as the search.
+struct StartGaps {
+  std::shared_ptr<const FeatureSearch> search;
+  Pose start_a, start_b;
+  std::vector<float> gaps;  // m: none is less, in the order of the features
 };
 
 /// What is known of the features of a search, for the starts where they are.
@@ -42,7 +48,7 @@ struct PathMemory {
     double free_until = -1.0;  // m: until the ends have moved so far in all, counted in `moved`, it is free
     Vec3 parting = Vec3::Zero();  // as of a block
   };
-  std::vector<double> start_gaps;  // m, of the first features, where they were measured before any test
+  std::shared_ptr<const StartGaps> start_gaps;  // known before any test, or none
   std::vector<Feature> features;
   std::vector<Block> blocks;
   double moved = 0.0;
@@ -59,10 +65,19 @@ bool is_same_pose(const Pose& x, const Pose& y);
 /// m.
 double turn_bound(const Quat& from, const Quat& to, double reach);
 
-/// How much closer features may be at these poses than where the search began, m, of those that are within
+/// How much closer features may be at the starts than where the search began, m, of those that are within
 /// `near` (m) of each other now.
-double moved_since(const FeatureSearch& search, const WorkBody& a, const Pose& pose_a, const WorkBody& b,
-                   const Pose& pose_b, double near);
+double moved_since(const FeatureSearch& search, const WorkBody& a, const WorkBody& b, double near);
+
+/// Features that may be this near at the starts, from what was known of a search before: its own bounds, or
+/// gaps of it.
+StartGaps carry_gaps(std::shared_ptr<const FeatureSearch> search, const StartGaps* before, const WorkBody& a,
+                     const WorkBody& b);
+
+/// Straight paths from the bodies' starts to these ends bring features that are within `near` (m) of each
+/// other closer by no more than this, m.
+double approach_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
+                      double near);
 
 /// Paths from the bodies' starts to these ends stay within this of what was looked at, m, where they come
 /// within `near` (m): with a margin so much above that, the search holds all that they can touch.

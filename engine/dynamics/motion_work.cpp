@@ -139,9 +139,9 @@ bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b
   const double length_squared = way.squaredNorm();
   const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
   if ((apart + t * way).norm() > (a.reach + b.reach + margin) * (1.0 + 1e-9)) return true;
-  if (a.turn_angle > kStraightTurn && b.turn_angle > kStraightTurn) return false;
-  const WorkBody &ball = a.turn_angle > kStraightTurn ? a : b, &other = a.turn_angle > kStraightTurn ? b : a;
-  const Vec3 relative = a.turn_angle > kStraightTurn ? way : Vec3(-way);
+  if (turns_far(a) && turns_far(b)) return false;
+  const WorkBody &ball = turns_far(a) ? a : b, &other = turns_far(a) ? b : a;
+  const Vec3 relative = turns_far(a) ? way : Vec3(-way);
   return !collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, margin);
 }
 

@@ -57,6 +57,11 @@ double least_on_path(double gap, double kept_gap) {
   return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
 }
 
+// Surely not more than a gap that was measured.
+float bound_of(double gap) {
+  return collision::round_down(gap * (1.0 - 1e-9));
+}
+
 // All features that are near now, for as many steps as the pair stays about here. Boxes are rough: of a pair
 // that stays, what is not in truth so near need not be looked at again and again.
 std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBody& b, double margin,
@@ -67,16 +72,13 @@ std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBo
   search->start_b = b.start;
   collision::FeatureList& features = search->features;
   collision::list_near_features(a.placed, b.placed, margin, features);
-  if (stays) {
-    core::parallel_for(features.size(), kFeaturesToTask, [&](std::size_t i) {
-      collision::FeaturePair& f = features[i];
-      const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
-      const double gap = collision::measure(points, direction_hint(a, b, points)).gap;
-      f.bound = std::max(f.bound, collision::round_down(gap * (1.0 - 1e-9)));
-    });
-    std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
-  }
-  collision::sort_by_bound(features);
+  if (!stays) return search;
+  core::parallel_for(features.size(), kFeaturesToTask, [&](std::size_t i) {
+    collision::FeaturePair& f = features[i];
+    const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    f.bound = std::max(f.bound, bound_of(collision::measure(points, direction_hint(a, b, points)).gap));
+  });
+  std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
   return search;
 }
 
@@ -105,21 +107,22 @@ void follow_prediction(const WorkBody& a, const WorkBody& b, double usual_gap,
     meeting.hits.push_back({path.time, collision::contact_at_impact(features, start, path.gap)});
 }
 
-// Features [begin, end) of the pair's search; fills their gaps at the start.
+// Features [begin, end) of the pair's search, of those that may be near enough for a contact. `start_gaps`
+// are bounds, and become gaps where these are measured.
 PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, std::size_t begin,
-                      std::size_t end, WorkPair& pair) {
+                      std::size_t end, const WorkPair& pair, std::vector<float>& start_gaps) {
   PairMeeting meeting;
   for (std::size_t i = begin; i < end; ++i) {
-    const collision::FeaturePair& features = pair.search->features[i];
-    double& start_gap = pair.known.start_gaps[i];
-    if (pair.is_fast && features.bound > pair.margin) {
-      start_gap = features.bound - pair.motion;
+    float& start_gap = start_gaps[i];
+    if (start_gap > pair.margin) {
+      meeting.is_free = meeting.is_free && (pair.is_fast || start_gap > pair.motion + usual_gap);
       continue;
     }
+    const collision::FeaturePair& features = pair.search->features[i];
     const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
     const Vec3 hint = direction_hint(a, b, start);
     const auto gap = collision::measure(start, hint);
-    start_gap = gap.gap;
+    start_gap = bound_of(gap.gap);
     meeting.least_gap = std::min(meeting.least_gap, gap.gap);
     if (gap.gap <= pair.margin) {
       // So close that the direction cannot mislead, every feature counts.
@@ -144,34 +147,35 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
                    WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   const double slack = settings.search_slack * pair.size;
-  const bool turns_far = a.turn_angle > kStraightTurn || b.turn_angle > kStraightTurn;
+  const bool one_turns_far = turns_far(a) || turns_far(b);
   pair.least_gap = pair.margin;
-  if (turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
+  if (one_turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
     memory.search.reset();
     pair.is_free_certified = true;
     return;
   }
   const double usual_gap = settings.kept_gap * pair.size;
-  const double reach = std::max(pair.margin, pair.motion + usual_gap);
-  double moved = 0.0;
+  auto gaps = std::make_shared<StartGaps>();
   if (pair.is_fast) {
     pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack);
     memory.search.reset();
+    *gaps = carry_gaps(pair.search, nullptr, a, b);
   } else {
     if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack, !pair.is_first_seen);
     pair.search = memory.search;
-    moved = moved_since(*pair.search, a, a.start, b, b.start, reach);
+    const bool is_known = memory.gaps && memory.gaps->search == memory.search;
+    *gaps = carry_gaps(pair.search, is_known ? memory.gaps.get() : nullptr, a, b);
   }
-  const FeatureSearch& search = *pair.search;
-  const std::size_t count = pair.is_fast ? search.features.size() : search.count_within(reach + moved);
-  pair.known.start_gaps.resize(count);
+  const std::size_t count = gaps->gaps.size();
   std::vector<PairMeeting> found((count + kFeaturesToTask - 1) / kFeaturesToTask);
   core::parallel_chunks(count, kFeaturesToTask, [&](std::size_t begin, std::size_t end) {
-    found[begin / kFeaturesToTask] = meet_some(a, b, usual_gap, begin, end, pair);
+    found[begin / kFeaturesToTask] = meet_some(a, b, usual_gap, begin, end, pair, gaps->gaps);
   });
+  pair.known.start_gaps = gaps;
+  memory.gaps = pair.is_fast ? nullptr : gaps;
   PairMeeting whole;
-  whole.least_gap = reach;
-  whole.is_free = !turns_far;
+  whole.least_gap = pair.margin;
+  whole.is_free = !one_turns_far;
   for (PairMeeting& some : found) whole.add(std::move(some));
   pair.least_gap = whole.least_gap;
   pair.contacts = std::move(whole.contacts);
@@ -286,7 +290,9 @@ void meet_again(const ContactSettings& settings, const PartMemory::Pair& former,
   pair.contacts = former.contacts;
   pair.is_free_certified = former.is_free_certified;
   pair.search = former.search;
+  pair.known.start_gaps = former.gaps;
   memory.search = former.keeps_search ? former.search : nullptr;
+  memory.gaps = former.keeps_search ? former.gaps : nullptr;
   memory.is_exempt = former.is_exempt;
   memory.kept_gap = former.kept_gap;
   take_gap(settings, work, memory.kept_gap, pair);

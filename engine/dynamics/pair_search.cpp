@@ -71,7 +71,7 @@ void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
   w.looked_end = end;
   const double pull = std::max(settings.gravity.norm(), w.gravity.norm());
   w.reserve = 1.1 * pull * dt * dt + kBroadSlack * 2.0 * w.reach;
-  w.is_looked_straight = w.turn_angle <= kStraightTurn;
+  w.is_looked_straight = !turns_far(w);
   w.looked = box_at(w, w.start);
   if (!w.is_active) return;
   w.looked.include(box_at(w, end));
@@ -81,7 +81,7 @@ void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
 }
 
 bool is_within_looked(const ContactSettings& settings, const WorkBody& w) {
-  const bool is_straight = w.turn_angle <= kStraightTurn;
+  const bool is_straight = !turns_far(w);
   if (is_straight && w.is_looked_straight) {
     const double stray = (w.end.translation - w.looked_end.translation).norm() +
                          turn_bound(w.looked_end.rotation, w.end.rotation, w.reach);

@@ -100,6 +100,7 @@ void keep_meetings(const std::vector<PairState>& states, const MotionWork& work,
     row.kept_gap = state.kept_gap;
     row.least_gap = pair.least_gap;
     row.search = pair.search;
+    row.gaps = pair.known.start_gaps;
     row.keeps_search = state.search != nullptr;
   }
 }

@@ -60,6 +60,7 @@ struct PartMemory {
     double kept_gap = 0.0, least_gap = 0.0;  // m
     std::vector<collision::Contact> contacts;
     std::shared_ptr<const FeatureSearch> search;
+    std::shared_ptr<const StartGaps> gaps;
     bool keeps_search = false;  // for later steps
     std::vector<Test> tests;    // in their order
   };

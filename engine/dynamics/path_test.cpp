@@ -266,15 +266,16 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   const FeatureSearch& search = *pair.search;
   const double safe = kSafe * pair.kept_gap;
-  const double reach = motion_bound(a, a.end, b, b.end) + safe;
+  const double ample = kAmple * pair.kept_gap;
+  const double reach = safe + approach_bound(a, a.end, b, b.end, motion_bound(a, a.end, b, b.end) + ample);
   // What is beyond the search is at least so far from all that it may stray.
   const double strays = strays_from(search, a, a.end, b, b.end, kLooked * pair.kept_gap);
   spare = std::min(search.margin - strays - safe, pair.kept_gap);
-  const double listed =
-      spare +
-      (search.is_swept ? safe + strays : reach + moved_since(search, a, a.start, b, b.start, reach + spare));
-  return follow_features(a, b, {paths_[at(pair.a)].end, paths_[at(pair.b)].end, reach, spare, listed}, pair,
-                         spare);
+  const double listed = spare + (search.is_swept ? safe + strays_from(search, a, a.end, b, b.end, ample)
+                                                 : reach + moved_since(search, a, b, reach + ample));
+  return follow_features(a, b,
+                         {paths_[at(pair.a)].end, paths_[at(pair.b)].end, reach, spare, listed, ample - safe},
+                         pair, spare);
 }
 
 // A body that turns far is followed through several straight parts.

@@ -107,7 +107,7 @@ void hold_up(WorkBody& w, int substeps) {
     w.knots.push_back(w.end.rotation);
   }
   w.straight_parts = count_straight_parts(w.turn_angle);
-  if (w.turn_angle <= kStraightTurn) w.knots.clear();
+  if (!turns_far(w)) w.knots.clear();
   w.gone = static_cast<double>(substeps) / static_cast<double>(w.rides.size());
   w.velocity.setZero();
   w.spin.setZero();

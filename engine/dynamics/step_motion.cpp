@@ -138,7 +138,7 @@ void report_contacts(const MotionWork& work, ContactState& state, ContactReport&
 void keep_knots(const std::vector<Quat>& rotations, WorkBody& w) {
   w.knots.clear();
   w.straight_parts = count_straight_parts(w.turn_angle);
-  if (w.turn_angle <= kStraightTurn) return;
+  if (!turns_far(w)) return;
   w.knots.push_back(w.start.rotation);
   w.knots.insert(w.knots.end(), rotations.begin(), rotations.end());
   w.knots.back() = w.end.rotation;
@@ -153,7 +153,7 @@ void end_in_contact(WorkBody& w) {
 void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
   w.end = w.predicted;
   w.straight_parts = count_straight_parts(w.turn_angle);
-  if (w.turn_angle > kStraightTurn) {
+  if (turns_far(w)) {
     std::vector<Quat> rotations;
     Quat rotation = w.start.rotation;
     Vec3 spin = w.spin;

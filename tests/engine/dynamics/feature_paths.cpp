@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <memory>
 #include <set>
 #include <vector>
 
@@ -67,7 +68,7 @@ class FacingSheets {
     const double strays = strays_from(*pair.search, a, a.end, b, b.end, 1e300);
     const double most = std::min(pair.search->margin - strays - safe, pair.kept_gap);
     REQUIRE(most > 0.0);
-    return follow_features(a, b, {ends_a, ends_b, reach, most, most + safe + strays}, pair, spare);
+    return follow_features(a, b, {ends_a, ends_b, reach, most, most + safe + strays, 1e300}, pair, spare);
   }
 
   WorkBody a, b;
@@ -163,7 +164,10 @@ TEST_CASE("gaps that were measured before the first test are known to it") {
   sheets.a.end.translation = Vec3(0, -2e-3, 0);
   sheets.search(0.02);
   // They say that nothing can be reached.
-  sheets.pair.known.start_gaps.assign(sheets.pair.search->features.size(), 1.0);
+  auto gaps = std::make_shared<StartGaps>();
+  gaps->search = sheets.pair.search;
+  gaps->gaps.assign(sheets.pair.search->features.size(), 1.0F);
+  sheets.pair.known.start_gaps = gaps;
   double spare = 0.0;
   CHECK(sheets.follow(spare).empty());
   sheets.pair.known = PathMemory();
