@@ -186,11 +186,10 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       bodies[at(pair.a)].is_dynamic() && (!bodies[at(pair.b)].is_dynamic() || a.reach <= b.reach);
   pair.material = pair_material(bodies[at(pair.a)], bodies[at(pair.b)], settings);
   pair.size = 2.0 * (a_is_measure ? a.reach : b.reach);
-  double predicted = motion_bound(a, a.predicted, b, b.predicted);
+  pair.motion = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
   const double pull = std::max({settings.gravity.norm(), a.gravity.norm(), b.gravity.norm()});
-  const double fall = pull * settings.time_step * settings.time_step;
-  pair.motion = predicted + fall;
+  const double felt = pair.motion + pull * settings.time_step * settings.time_step;
   pair.rounding = 1e-14 * (pair.size + a.start.translation.cwiseAbs().maxCoeff() +
                            b.start.translation.cwiseAbs().maxCoeff());
   const double usual_gap = settings.kept_gap * pair.size;
@@ -200,18 +199,19 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.has_sides =
       pair.is_plane || pair.is_analytic || body::is_round(a.shape->kind) || body::is_round(b.shape->kind);
   pair.margin =
-      2.0 * usual_gap +
-      (pair.is_plane ? pair.motion : std::min(pair.motion, settings.speculative_margin * pair.size));
+      2.0 * usual_gap + (pair.is_plane ? felt : std::min(felt, settings.speculative_margin * pair.size));
   pair.is_apart = pair.clearance > pair.margin;
-  if (pair.is_plane || pair.is_analytic) return;
-  // Which features may meet is told by how bodies move where they are near each other.
-  if (!pair.is_apart && !turns_far(a) && !turns_far(b)) {
-    predicted = approach_bound(a, a.predicted, b, b.predicted, pair.motion + usual_gap);
-    pair.motion = predicted + fall;
+  if (pair.is_plane || pair.is_analytic) {
+    pair.motion = felt;
+    return;
   }
   const double slack = settings.search_slack * pair.size;
-  pair.is_fast = predicted > slack;
-  const double needed = std::max(pair.margin, std::min(pair.motion, slack) + usual_gap);
+  pair.looks_ahead = pair.motion > slack;
+  // Which features may meet is told by how bodies move where they are near each other.
+  if (!pair.is_apart && !turns_far(a) && !turns_far(b))
+    pair.motion = approach_bound(a, a.predicted, b, b.predicted, pair.motion + usual_gap);
+  pair.is_fast = pair.motion > slack;
+  const double needed = std::max(pair.margin, pair.motion + usual_gap);
   pair.needs_search = !pair.is_fast && !pair.is_apart &&
                       (!settings.has_caches || !memory.search ||
                        memory.search->margin - moved_since(*memory.search, a, b, needed) < needed);
@@ -325,7 +325,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   match_pairs(bodies, find_pairs(bodies, work, is_active), work, state);
 
   struct Needs {
-    bool place = false, boxes = false, swept = false;
+    bool place = false, boxes = false, swept = false, predicted = false;
   };
   std::vector<Needs> needs(bodies.size());
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
@@ -341,6 +341,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
       n.boxes = n.boxes || pair.needs_search || (pair.is_first_seen && !pair.is_analytic) ||
                 state.pairs[at(pair.state)].is_exempt;
       n.swept = n.swept || pair.is_fast;
+      n.predicted = n.predicted || pair.looks_ahead;
     }
   }
   core::parallel_for(bodies.size(), 8, [&](std::size_t i) {
@@ -348,9 +349,8 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     if (w.shape->kind == ShapeKind::plane) return;
     if (needs[i].place) place(w);
     if (needs[i].boxes) collision::refit_boxes(w.placed);
-    if (!needs[i].swept) return;
-    sweep(w, w.predicted);
-    place_at(w, w.predicted, w.predicted_vertices);
+    if (needs[i].swept) sweep(w, w.predicted);
+    if (needs[i].predicted) place_at(w, w.predicted, w.predicted_vertices);
   });
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
     WorkPair& pair = work.pairs[p];

@@ -34,8 +34,8 @@ struct PairPaths {
   const std::vector<Vec3>&ends_a, &ends_b;  // |V| x 3, world, m
   double reach = 0.0;                       // m: gaps at the start that are greater stay free
   double spare = 0.0;                       // m: what the search leaves, at most the kept gap
-  double listed = 0.0;                      // m: features of a greater bound stay free, by `spare` and more
-  double ample = 0.0;                       // m: but for more than this neither of the two vouches
+  double listed = 0.0;  // m: features of a swept list with a greater bound stay free, by `spare` and more
+  double ample = 0.0;   // m: `reach` and `listed` speak for so much room and no more
 };
 
 /// Tests the features of `pair.search` on these paths, which its memory is of. Returns the hits, in any order

@@ -152,6 +152,7 @@ struct WorkPair {
   bool has_sides = false;    // the gap has a sign: a plane, two solids, or a sphere and a surface
   bool is_close = false;     // two solids that were placed nearer than the usual gap
   bool is_fast = false;      // moves further than a feature list is good for
+  bool looks_ahead = false;  // may go so far that what it will meet is looked for on the predicted ways
   bool needs_search = false;
   bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is
   double motion = 0.0;             // m: bound of the relative motion if nothing touches

@@ -112,9 +112,11 @@ void follow_prediction(const WorkBody& a, const WorkBody& b, double usual_gap,
 PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, std::size_t begin,
                       std::size_t end, const WorkPair& pair, std::vector<float>& start_gaps) {
   PairMeeting meeting;
+  const double looked =
+      pair.looks_ahead && !pair.is_fast ? std::max(pair.margin, pair.motion + usual_gap) : pair.margin;
   for (std::size_t i = begin; i < end; ++i) {
     float& start_gap = start_gaps[i];
-    if (start_gap > pair.margin) {
+    if (start_gap > looked) {
       meeting.is_free = meeting.is_free && (pair.is_fast || start_gap > pair.motion + usual_gap);
       continue;
     }
@@ -135,7 +137,7 @@ PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, st
       }
     }
     if (gap.gap > pair.motion + usual_gap) continue;
-    if (pair.is_fast)
+    if (pair.looks_ahead)
       follow_prediction(a, b, usual_gap, features, start, gap, hint, meeting);
     else
       meeting.is_free = false;
@@ -155,17 +157,16 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
     return;
   }
   const double usual_gap = settings.kept_gap * pair.size;
-  auto gaps = std::make_shared<StartGaps>();
   if (pair.is_fast) {
     pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack);
     memory.search.reset();
-    *gaps = carry_gaps(pair.search, nullptr, a, b);
   } else {
     if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack, !pair.is_first_seen);
     pair.search = memory.search;
-    const bool is_known = memory.gaps && memory.gaps->search == memory.search;
-    *gaps = carry_gaps(pair.search, is_known ? memory.gaps.get() : nullptr, a, b);
   }
+  const bool is_known = memory.gaps && memory.gaps->search == pair.search;
+  const auto gaps =
+      std::make_shared<StartGaps>(carry_gaps(pair.search, is_known ? memory.gaps.get() : nullptr, a, b));
   const std::size_t count = gaps->gaps.size();
   std::vector<PairMeeting> found((count + kFeaturesToTask - 1) / kFeaturesToTask);
   core::parallel_chunks(count, kFeaturesToTask, [&](std::size_t begin, std::size_t end) {

@@ -271,8 +271,8 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
   // What is beyond the search is at least so far from all that it may stray.
   const double strays = strays_from(search, a, a.end, b, b.end, kLooked * pair.kept_gap);
   spare = std::min(search.margin - strays - safe, pair.kept_gap);
-  const double listed = spare + (search.is_swept ? safe + strays_from(search, a, a.end, b, b.end, ample)
-                                                 : reach + moved_since(search, a, b, reach + ample));
+  const double listed =
+      search.is_swept ? spare + safe + strays_from(search, a, a.end, b, b.end, ample) : 1e300;
   return follow_features(a, b,
                          {paths_[at(pair.a)].end, paths_[at(pair.b)].end, reach, spare, listed, ample - safe},
                          pair, spare);
