@@ -128,11 +128,11 @@ void take_from_shelf(ContactState& state, MotionWork& work) {
     PairState& memory = state.pairs[at(pair.state)];
     const std::pair key(memory.body_a, memory.body_b);
     while (row < rows.size() && std::pair(rows[row].body_a, rows[row].body_b) < key) ++row;
-    if (row == rows.size() || memory.search || std::pair(rows[row].body_a, rows[row].body_b) != key) continue;
-    const auto& kept = rows[row].search;
+    if (row == rows.size() || memory.gaps || std::pair(rows[row].body_a, rows[row].body_b) != key) continue;
+    const auto& kept = rows[row].gaps;
     if (is_same_pose(kept->start_a, work.bodies[at(pair.a)].start) &&
         is_same_pose(kept->start_b, work.bodies[at(pair.b)].start))
-      memory.search = kept;
+      memory.gaps = kept;
   }
 }
 
@@ -164,7 +164,7 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<FoundPair>& 
     if (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) == key) {
       matched.push_back(std::move(state.pairs[old++]));
       w.is_first_seen = work.is_new[at(pair.a)] || work.is_new[at(pair.b)];
-      if (w.is_first_seen) matched.back().search.reset();
+      if (w.is_first_seen) matched.back().gaps.reset();
     } else {
       w.is_first_seen = true;
       matched.emplace_back();
@@ -212,9 +212,10 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
     pair.motion = approach_bound(a, a.predicted, b, b.predicted, pair.motion + usual_gap);
   pair.is_fast = pair.motion > slack;
   const double needed = std::max(pair.margin, pair.motion + usual_gap);
-  pair.needs_search = !pair.is_fast && !pair.is_apart &&
-                      (!settings.has_caches || !memory.search ||
-                       memory.search->margin - moved_since(*memory.search, a, b, needed) < needed);
+  pair.needs_search =
+      !pair.is_fast && !pair.is_apart &&
+      (!settings.has_caches || !memory.gaps ||
+       memory.gaps->search->margin - moved_since(*memory.gaps->search, a, b, needed) < needed);
 }
 
 // Sleepers that something hits, with its momentum, or touches and could move.
@@ -371,7 +372,7 @@ void put_on_shelf(const MotionWork& work, ContactState& state) {
   rows.clear();
   for (const WorkPair& pair : work.pairs) {
     const PairState& memory = state.pairs[at(pair.state)];
-    if (memory.search) rows.push_back({memory.body_a, memory.body_b, memory.search});
+    if (memory.gaps) rows.push_back({memory.body_a, memory.body_b, memory.gaps});
   }
 }
 

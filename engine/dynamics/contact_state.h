@@ -42,8 +42,7 @@ struct PairState {
   bool is_reported = false;  // as exempt
   std::vector<RememberedContact> contacts;
 
-  std::shared_ptr<const FeatureSearch> search;  // a cache
-  std::shared_ptr<const StartGaps> gaps;        // the same: as known last, maybe of an earlier search
+  std::shared_ptr<const StartGaps> gaps;  // a cache: its list of features, and how near these were last
 };
 
 /// One body's own memory.
@@ -62,7 +61,7 @@ struct SearchShelf {
   std::vector<BodyState> bodies;  // ascending id
   struct Row {
     body::BodyId body_a = 0, body_b = 0;
-    std::shared_ptr<const FeatureSearch> search;
+    std::shared_ptr<const StartGaps> gaps;
   };
   std::vector<Row> pairs;   // ascending (body_a, body_b)
   PartMemory part, former;  // of a part that may be taken again; of its taking before, while it is

@@ -12,7 +12,7 @@ namespace {
 using core::at;
 
 constexpr std::size_t kBlock = 32;  // features of a list that is not swept
-constexpr std::size_t kFew = 64;    // features that it is not worth while to count
+constexpr std::size_t kFew = 64;    // features for which a tighter bound is not worth while
 
 // How far the material of a body was moved: by `way` + `turn` (x - the centre) from x.
 struct Displacement {
@@ -118,22 +118,24 @@ double moved_since(const FeatureSearch& search, const WorkBody& a, const WorkBod
                   moved_where_near(search.start_a, a, a.start, search.start_b, b, b.start, near + most));
 }
 
-StartGaps carry_gaps(std::shared_ptr<const FeatureSearch> search, const StartGaps* before, const WorkBody& a,
-                     const WorkBody& b) {
-  const Pose &from_a = before ? before->start_a : search->start_a,
-             &from_b = before ? before->start_b : search->start_b;
-  const collision::FeatureList& features = search->features;
-  // The bound holds for what is so near now; all else is further.
-  const double near = search->margin;
+StartGaps gaps_of(std::shared_ptr<const FeatureSearch> search) {
+  StartGaps gaps{search, search->start_a, search->start_b, {}};
+  gaps.gaps.reserve(search->features.size());
+  for (const collision::FeaturePair& features : search->features) gaps.gaps.push_back(features.bound);
+  return gaps;
+}
+
+StartGaps carry_gaps(const StartGaps& before, const WorkBody& a, const WorkBody& b) {
+  const Pose &from_a = before.start_a, &from_b = before.start_b;
   double moved = moved_at_most(from_a, a, a.start, from_b, b, b.start);
-  if (features.size() > kFew && moved > 0.0)
+  if (moved == 0.0) return before;
+  // The bound holds for what is so near now; all else is further.
+  const double near = before.search->margin;
+  if (before.gaps.size() > kFew)
     moved = std::min(moved, moved_where_near(from_a, a, a.start, from_b, b, b.start, near + moved));
-  StartGaps now{search, a.start, b.start, {}};
-  now.gaps.resize(features.size());
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    const double gap = before ? before->gaps[i] : features[i].bound;
-    now.gaps[i] = moved > 0.0 ? collision::round_down(std::min(gap - moved, near)) : static_cast<float>(gap);
-  }
+  StartGaps now{before.search, a.start, b.start, {}};
+  now.gaps.reserve(before.gaps.size());
+  for (const double gap : before.gaps) now.gaps.push_back(collision::round_down(std::min(gap - moved, near)));
   return now;
 }
 

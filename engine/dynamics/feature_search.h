@@ -69,10 +69,11 @@ double turn_bound(const Quat& from, const Quat& to, double reach);
 /// `near` (m) of each other now.
 double moved_since(const FeatureSearch& search, const WorkBody& a, const WorkBody& b, double near);
 
-/// Features that may be this near at the starts, from what was known of a search before: its own bounds, or
-/// gaps of it.
-StartGaps carry_gaps(std::shared_ptr<const FeatureSearch> search, const StartGaps* before, const WorkBody& a,
-                     const WorkBody& b);
+/// What a search that was just made knows by its own bounds.
+StartGaps gaps_of(std::shared_ptr<const FeatureSearch> search);
+
+/// What is known where the bodies are now, of gaps where they were before.
+StartGaps carry_gaps(const StartGaps& before, const WorkBody& a, const WorkBody& b);
 
 /// Straight paths from the bodies' starts to these ends bring features that are within `near` (m) of each
 /// other closer by no more than this, m.

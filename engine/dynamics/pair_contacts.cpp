@@ -152,21 +152,19 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   const bool one_turns_far = turns_far(a) || turns_far(b);
   pair.least_gap = pair.margin;
   if (one_turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
-    memory.search.reset();
+    memory.gaps.reset();
     pair.is_free_certified = true;
     return;
   }
   const double usual_gap = settings.kept_gap * pair.size;
-  if (pair.is_fast) {
-    pair.search = search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack);
-    memory.search.reset();
-  } else {
-    if (pair.needs_search) memory.search = search_near(a, b, pair.margin + slack, !pair.is_first_seen);
-    pair.search = memory.search;
-  }
-  const bool is_known = memory.gaps && memory.gaps->search == pair.search;
-  const auto gaps =
-      std::make_shared<StartGaps>(carry_gaps(pair.search, is_known ? memory.gaps.get() : nullptr, a, b));
+  const auto gaps = std::make_shared<StartGaps>();
+  if (pair.is_fast)
+    *gaps = gaps_of(search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack));
+  else if (pair.needs_search)
+    *gaps = gaps_of(search_near(a, b, pair.margin + slack, !pair.is_first_seen));
+  else
+    *gaps = carry_gaps(*memory.gaps, a, b);
+  pair.search = gaps->search;
   const std::size_t count = gaps->gaps.size();
   std::vector<PairMeeting> found((count + kFeaturesToTask - 1) / kFeaturesToTask);
   core::parallel_chunks(count, kFeaturesToTask, [&](std::size_t begin, std::size_t end) {
@@ -290,10 +288,9 @@ void meet_again(const ContactSettings& settings, const PartMemory::Pair& former,
   pair.least_gap = former.least_gap;
   pair.contacts = former.contacts;
   pair.is_free_certified = former.is_free_certified;
-  pair.search = former.search;
+  pair.search = former.gaps ? former.gaps->search : nullptr;
   pair.known.start_gaps = former.gaps;
-  memory.search = former.keeps_search ? former.search : nullptr;
-  memory.gaps = former.keeps_search ? former.gaps : nullptr;
+  memory.gaps = former.keeps_gaps ? former.gaps : nullptr;
   memory.is_exempt = former.is_exempt;
   memory.kept_gap = former.kept_gap;
   take_gap(settings, work, memory.kept_gap, pair);

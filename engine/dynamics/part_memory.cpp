@@ -99,9 +99,8 @@ void keep_meetings(const std::vector<PairState>& states, const MotionWork& work,
     row.is_exempt = state.is_exempt;
     row.kept_gap = state.kept_gap;
     row.least_gap = pair.least_gap;
-    row.search = pair.search;
     row.gaps = pair.known.start_gaps;
-    row.keeps_search = state.search != nullptr;
+    row.keeps_gaps = state.gaps != nullptr;
   }
 }
 

@@ -59,10 +59,9 @@ struct PartMemory {
     bool is_free_certified = false, is_exempt = false;
     double kept_gap = 0.0, least_gap = 0.0;  // m
     std::vector<collision::Contact> contacts;
-    std::shared_ptr<const FeatureSearch> search;
-    std::shared_ptr<const StartGaps> gaps;
-    bool keeps_search = false;  // for later steps
-    std::vector<Test> tests;    // in their order
+    std::shared_ptr<const StartGaps> gaps;  // where features were listed
+    bool keeps_gaps = false;                // for later steps
+    std::vector<Test> tests;                // in their order
   };
   double time_step = 0.0;     // s, of the part; 0: nothing is known
   std::vector<Begin> bodies;  // ascending id

@@ -42,10 +42,10 @@ Taken take_twice(bool has_caches, const Change& change) {
   Taken taken{scene.hash(), 0, 0, report.hits, report.failsafe_steps};
   const dynamics::SearchShelf& shelf = *scene.state.shelf;
   for (const auto& pair : shelf.part.pairs) {
-    taken.searched += pair.search ? 1 : 0;
+    taken.searched += pair.gaps ? 1 : 0;
     for (const auto& former : shelf.former.pairs) {
       if (former.body_a != pair.body_a || former.body_b != pair.body_b) continue;
-      taken.recalled += pair.search && pair.search == former.search ? 1 : 0;
+      taken.recalled += pair.gaps && pair.gaps == former.gaps ? 1 : 0;
     }
   }
   return taken;
