@@ -117,7 +117,8 @@ int IslandSolver::most_sweeps(int of_small) const {
 }
 
 // One sweep is mostly enough at rest, but what one leaves rocks a box on a slope by so much that its feet
-// creep: small islands get some more. What arrives must not overshoot the gap.
+// creep: small islands get some more, unless something in them may break: the more exactly jammed shards
+// press each other, the more of them burst. What arrives must not overshoot the gap.
 void IslandSolver::sweep_before_drift() {
   const auto hold = [&](std::size_t k, SolverContact& c, Found& found) {
     const double tolerance = kTouching * c.kept_gap / step_;
@@ -129,8 +130,8 @@ void IslandSolver::sweep_before_drift() {
     found.is_any = found.is_any || is_pushed_apart;
     found.excess = std::max(found.excess, closing / tolerance);
   };
-  const bool is_small = order_.contacts.size() <= kFewAtRest;
-  const int calm = joints_.is_empty() ? (is_small ? kCalmSweeps : 1) : most_sweeps(kJointSweeps);
+  const bool is_exact = order_.contacts.size() <= kFewAtRest && !island_.may_break;
+  const int calm = joints_.is_empty() ? (is_exact ? kCalmSweeps : 1) : most_sweeps(kJointSweeps);
   const Sweeps how = has_arrivals_ ? Sweeps{most_sweeps(16), 1.0, 1e300, kStrainedGap}
                                    : Sweeps{calm, kCalmGap, 1e300, kStrainedGap};
   bool is_pushed_apart = sweep(how, hold);
