@@ -19,6 +19,17 @@ Mat3 Body::inverse_inertia_world() const {
   return r * inverse_inertia * r.transpose();
 }
 
+void Body::push(const Vec3& impulse, const Vec3& point_world) {
+  if (!is_dynamic()) return;
+  velocity += inverse_mass * impulse;
+  angular_velocity += inverse_inertia_world() * (point_world - pose.translation).cross(impulse);
+}
+
+void Body::wake() {
+  is_awake = true;
+  quiet_time = 0.0;
+}
+
 double kinetic_energy(const Body& body) {
   if (!body.is_dynamic()) return 0.0;
   const Vec3 spin_body = body.pose.rotation.conjugate() * body.angular_velocity;

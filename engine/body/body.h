@@ -75,6 +75,9 @@ struct Body {
   Vec3 velocity_at(const Vec3& point_world) const {
     return velocity + angular_velocity.cross(point_world - pose.translation);
   }
+  /// Gives it an impulse, N s, at a point of the world; nothing if it is not dynamic.
+  void push(const Vec3& impulse, const Vec3& point_world);
+  void wake();
 };
 
 /// Kinetic energy, J; 0 for bodies that are not dynamic.

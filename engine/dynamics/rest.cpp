@@ -105,8 +105,7 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
   const auto wake = [&](int i, int origin) {
     Body& b = bodies[static_cast<std::size_t>(i)];
     if (!b.is_dynamic() || b.is_awake) return;
-    b.is_awake = true;
-    b.quiet_time = 0.0;
+    b.wake();
     roused.push_back({i, origin});
   };
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -11,10 +11,8 @@ namespace {
 
 void give(body::Body& body, const Vec3& impulse, const Vec3& point) {
   if (!body.is_dynamic()) return;
-  body.velocity += body.inverse_mass * impulse;
-  body.angular_velocity += body.inverse_inertia_world() * (point - body.pose.translation).cross(impulse);
-  body.is_awake = true;
-  body.quiet_time = 0.0;
+  body.push(impulse, point);
+  body.wake();
 }
 
 /// m: from a point to the nearest vertex of a mesh, or to the middle of another body.

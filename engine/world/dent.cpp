@@ -234,8 +234,7 @@ body::BodyId put_dented(MovingState& moving, const body::Body& body, const Dente
                         std::map<body::BodyId, Ancestry>& ancestry) {
   body::Body born = as_dented(body, dented);
   born.id = moving.next_id++;
-  born.is_awake = true;
-  born.quiet_time = 0.0;
+  born.wake();
   const body::BodyId id = born.id;
   replace_by(moving, body, std::move(born), dented, ancestry);
   return id;

@@ -37,8 +37,7 @@ void wake(std::vector<body::Body>& bodies, const dynamics::Joint& joint) {
   for (const body::BodyId id : {joint.body_a, joint.body_b}) {
     body::Body* body = body::find_body(bodies, id);
     if (body == nullptr || !body->is_dynamic()) continue;
-    body->is_awake = true;
-    body->quiet_time = 0.0;
+    body->wake();
   }
 }
 

@@ -26,12 +26,6 @@ bool is_plug(const body::Shape& shape, const fracture::Perforation& hole) {
   });
 }
 
-void push_body(body::Body& body, const Vec3& point, const Vec3& impulse) {
-  if (!body.is_dynamic()) return;
-  body.velocity += body.inverse_mass * impulse;
-  body.angular_velocity += body.inverse_inertia_world() * (point - body.pose.translation).cross(impulse);
-}
-
 void log_push(const body::Body& pushed, const body::Body& striker, const Vec3& point, const Vec3& impulse,
               double closing, double mass, body::ImpulseLog& log) {
   body::LoggedImpulse entry =
@@ -104,8 +98,8 @@ void pay_for_hole(MovingState& moving, const EvaluatedImpact& impact, body::Impu
   if (!(mass > 0.0) || !(closing > 0.0)) return;
   const double left = std::sqrt(std::max(0.0, closing * closing - 2.0 * hole.needed / mass));
   const Vec3 impulse = mass * (closing - left) * direction;
-  push_body(*struck, point, impulse);
-  push_body(*striker, point, -impulse);
+  struck->push(impulse, point);
+  striker->push(-impulse, point);
   log_push(*struck, *striker, point, impulse, closing, mass, log);
 }
 

@@ -24,8 +24,7 @@ body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
     born.force *= piece.shape->mass / parent.shape->mass;
     born.torque.setZero();
   }
-  born.is_awake = true;
-  born.quiet_time = 0.0;
+  born.wake();
   return born;
 }
 
@@ -130,13 +129,8 @@ double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double
   const double paid = std::min(energy, 0.5 * mass * closing * closing);
   const double left = std::sqrt(std::max(0.0, closing * closing - 2.0 * paid / mass));
   const Vec3 impulse = mass * (closing - left) * direction;
-  const auto push = [&point](body::Body& body, const Vec3& by) {
-    if (!body.is_dynamic()) return;
-    body.velocity += body.inverse_mass * by;
-    body.angular_velocity += body.inverse_inertia_world() * (point - body.pose.translation).cross(by);
-  };
-  push(*struck, impulse);
-  if (other) push(*other, -impulse);
+  struck->push(impulse, point);
+  if (other) other->push(-impulse, point);
   body::LoggedImpulse entry;
   entry.kind = body::ImpulseKind::fracture;
   entry.body_a = struck->id;

@@ -54,8 +54,7 @@ bool World::remove_body(body::BodyId id) {
   for (const dynamics::Joint& joint : moving.contact.joints) {
     if (joint.body_a != id && joint.body_b != id) continue;
     body::Body* other = body::find_body(moving.bodies, joint.body_a == id ? joint.body_b : joint.body_a);
-    if (other->is_dynamic()) other->is_awake = true;
-    if (other->is_dynamic()) other->quiet_time = 0.0;
+    if (other->is_dynamic()) other->wake();
     moving.joint_memories.erase(joint.number);
   }
   std::erase_if(moving.contact.joints,
@@ -71,10 +70,8 @@ bool World::remove_body(body::BodyId id) {
 bool World::push_body(body::BodyId id, const Vec3& impulse, const Vec3& point) {
   body::Body* body = body::find_body(state_->moving.bodies, id);
   if (!body || !body->is_dynamic()) return false;
-  body->velocity += body->inverse_mass * impulse;
-  body->angular_velocity += body->inverse_inertia_world() * (point - body->pose.translation).cross(impulse);
-  body->is_awake = true;
-  body->quiet_time = 0.0;
+  body->push(impulse, point);
+  body->wake();
   state_->is_disturbed = true;
   return true;
 }
@@ -83,8 +80,7 @@ void World::set_gravity(const Vec3& gravity) {
   state_->settings.gravity = state_->contact_settings.gravity = gravity;
   for (body::Body& body : state_->moving.bodies) {
     if (!body.is_dynamic()) continue;
-    body.is_awake = true;
-    body.quiet_time = 0.0;
+    body.wake();
   }
   state_->is_disturbed = true;
 }
