@@ -16,12 +16,19 @@ auto* find_in(Bodies& bodies, BodyId id) {
 
 Mat3 Body::inverse_inertia_world() const {
   const Mat3 r = pose.rotation.toRotationMatrix();
+  if (is_dynamic() && locked.any()) return locked.invert(r * shape->inertia * r.transpose());
   return r * inverse_inertia * r.transpose();
+}
+
+double Body::mobility(const Vec3& arm, const Vec3& direction) const {
+  if (!is_dynamic()) return 0.0;
+  const Vec3 turn = arm.cross(direction);
+  return inverse_mass * locked.let_move(direction).squaredNorm() + turn.dot(inverse_inertia_world() * turn);
 }
 
 void Body::push(const Vec3& impulse, const Vec3& point_world) {
   if (!is_dynamic()) return;
-  velocity += inverse_mass * impulse;
+  velocity += locked.let_move(inverse_mass * impulse);
   angular_velocity += inverse_inertia_world() * (point_world - pose.translation).cross(impulse);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/body/locked_axes.h"
 #include "engine/body/scripted_path.h"
 #include "engine/body/shape.h"
 #include "engine/core/vec.h"
@@ -41,6 +42,7 @@ struct Body {
   Mat3 inverse_inertia = Mat3::Zero();   // body space, 1/(kg m2); 0 unless dynamic
   Vec3 force = Vec3::Zero();             // N, world, at the centre of mass, all the time; of dynamic bodies
   Vec3 torque = Vec3::Zero();            // N m, world
+  LockedAxes locked;                     // of dynamic bodies
 
   double friction = 0.5;
   double rolling_friction = 0.0;  // m: radius of the patch that it rolls, and spins, on
@@ -66,15 +68,19 @@ struct Body {
   bool collides_with(const Body& other) const {
     return group < 0 || group != other.group || (family != 0 && family == other.family);
   }
+  /// 1/(kg m2): spin by angular impulse, where locked axes let it turn.
   Mat3 inverse_inertia_world() const;
   /// m/s2, of the centre of mass, where nothing touches.
   Vec3 free_acceleration(const Vec3& gravity) const {
-    return is_forced() ? Vec3(gravity + inverse_mass * force) : gravity;
+    return locked.let_move(is_forced() ? Vec3(gravity + inverse_mass * force) : gravity);
   }
   bool is_forced() const { return force.squaredNorm() + torque.squaredNorm() > 0.0; }
   Vec3 velocity_at(const Vec3& point_world) const {
     return velocity + angular_velocity.cross(point_world - pose.translation);
   }
+  /// How it gives way at the end of an arm from its centre along a unit direction (world, m): 1/kg; 0 if it
+  /// cannot move so.
+  double mobility(const Vec3& arm, const Vec3& direction) const;
   /// Gives it an impulse, N s, at a point of the world; nothing if it is not dynamic.
   void push(const Vec3& impulse, const Vec3& point_world);
   void wake();

@@ -102,15 +102,17 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   } else if (b.is_dynamic() && b.is_awake) {
     w.is_active = true;
     w.inverse_mass = b.inverse_mass;
+    w.inverse_masses = b.locked.let_move(Vec3::Constant(b.inverse_mass));
+    w.locked = b.locked;
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;
     w.velocity_start = w.velocity;
     w.spin_start = w.spin;
     w.gravity = b.free_acceleration(settings.gravity);
     w.torque = b.torque;
-    if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0) w.inverse_moments = w.inertia.moments.cwiseInverse();
-    const Mat3 axes = (w.rotation * w.inertia.body_from_axes).toRotationMatrix();
-    w.inverse_inertia = axes * w.inverse_moments.asDiagonal() * axes.transpose();
+    if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0 && b.locked.count_turns() > 0)
+      w.inverse_moments = w.inertia.moments.cwiseInverse();
+    w.inverse_inertia = inverse_inertia_at(w, w.rotation);
     w.predicted.translation += dt * w.velocity + (0.5 * dt * dt) * w.gravity;
     Vec3 spin = w.spin;
     advance_turning(w, dt, w.predicted.rotation, spin);

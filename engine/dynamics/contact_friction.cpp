@@ -58,6 +58,8 @@ void resist_rolling(SolverContact& c, WorkBody& a, WorkBody& b) {
   }
   const double trace = response.trace();
   if (trace <= 0.0) return;
+  // About axes that are locked nothing yields: what turns about them meets what rolling can resist.
+  if (a.locked.any() || b.locked.any()) response.diagonal().array() += body::kLeastYield * trace;
   const double bound = c.rolling * c.impulse[0], twist = kPatch * c.friction * bound;
   const auto is_borne = [&](const Vec3& couple) {
     return std::abs(couple[0]) <= twist && couple.tail<2>().squaredNorm() <= bound * bound;

@@ -165,7 +165,8 @@ void IslandSolver::drift() {
   each_body([&](WorkBody& b) {
     b.way += b.velocity * step_;
     const bool is_fast = b.spin.squaredNorm() * step_ * step_ > kFastSpin * kFastSpin;
-    advance_spin(b.inertia, step_, is_fast ? SpinOrder::fourth : SpinOrder::second, b.rotation, b.spin);
+    advance_turn(b.inertia, b.locked, step_, is_fast ? SpinOrder::fourth : SpinOrder::second, b.rotation,
+                 b.spin);
     const Mat3 r = b.rotation.toRotationMatrix();
     // A sphere touches with whatever point is lowest, not with the one that was.
     if (b.shape->kind != body::ShapeKind::sphere)
@@ -197,6 +198,18 @@ void IslandSolver::prepare(int substeps) {
   });
 }
 
+// Masses that are not alike along all axes. Where nothing gives way along the normal, no impulse can mend
+// anything; across it friction goes to its bound, which the lock takes.
+void IslandSolver::respond_locked(const WorkBody& a, const WorkBody& b, SolverContact& c) {
+  const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
+  const double both = a.inverse_mass + b.inverse_mass, least = body::kLeastYield * both;
+  const Vec3 missing = Vec3::Constant(both) - a.inverse_masses - b.inverse_masses;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) c.response(k, l) -= axes[k].dot(missing.cwiseProduct(axes[l]));
+  for (int k = 1; k < 3; ++k) c.response(k, k) += least;
+  for (int k = 0; k < 3; ++k) c.weights[k] = c.response(k, k) >= least ? 1.0 / c.response(k, k) : 0.0;
+}
+
 void IslandSolver::find_response(SolverContact& c) {
   const WorkBody &a = body(c.a), &b = body(c.b);
   const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
@@ -216,6 +229,7 @@ void IslandSolver::find_response(SolverContact& c) {
     }
     c.weights[k] = 1.0 / c.response(k, k);
   }
+  if (a.locked.any() || b.locked.any()) respond_locked(a, b, c);
   c.has_response = true;
 }
 

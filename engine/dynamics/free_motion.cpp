@@ -41,6 +41,13 @@ struct Spin {
   }
 };
 
+// In which a turn of so much (rad) is followed.
+int count_parts(double angle) {
+  constexpr double kMostAngle = 0.05;  // rad a part, unless there would be too many
+  constexpr double kMostParts = 4000.0;
+  return 1 + static_cast<int>(std::min(angle / kMostAngle, kMostParts));
+}
+
 }  // namespace
 
 PrincipalInertia find_principal_inertia(const Mat3& inertia) {
@@ -76,8 +83,6 @@ Vec3 turn_between(const Quat& from, const Quat& to) {
 }
 
 void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin) {
-  constexpr double kMostAngle = 0.05;  // rad a part, unless there would be too many
-  constexpr double kMostParts = 4000.0;
   constexpr double kSuzuki = 0.4144907717943757;  // 1 / (4 - 4^(1/3))
   const double speed = spin.norm();
   if (speed * time < 1e-150) return;
@@ -89,7 +94,7 @@ void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order,
   s.rotation = rotation * inertia.body_from_axes;
   s.momentum = inertia.moments.cwiseProduct(s.rotation.conjugate() * spin);
   const Vec3 momentum_world = s.rotation * s.momentum;
-  const int parts = 1 + static_cast<int>(std::min(speed * time / kMostAngle, kMostParts));
+  const int parts = count_parts(speed * time);
   const double part = time / parts;
   static constexpr std::array<double, 1> kOnce = {1.0};
   static constexpr std::array<double, 5> kFive = {kSuzuki, kSuzuki, 1.0 - 4.0 * kSuzuki, kSuzuki, kSuzuki};
@@ -108,6 +113,44 @@ void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order,
   // From the momentum in the world, which is kept, not from the rotated one, which gathers rounding.
   spin = s.rotation * (s.rotation.conjugate() * momentum_world).cwiseQuotient(inertia.moments);
   rotation = (s.rotation * inertia.body_from_axes.conjugate()).normalized();
+}
+
+void advance_locked_spin(const PrincipalInertia& inertia, const body::LockedAxes& locked, double time,
+                         Quat& rotation, Vec3& spin) {
+  const double speed = spin.norm();
+  if (speed * time < 1e-150) return;
+  if (inertia.is_round || locked.count_turns() == 1) {
+    rotation = (rotation_by(time * spin) * rotation).normalized();
+    return;
+  }
+  const auto inertia_at = [&](const Quat& at) {
+    const Mat3 axes = (at * inertia.body_from_axes).toRotationMatrix();
+    return Mat3(axes * inertia.moments.asDiagonal() * axes.transpose());
+  };
+  const Vec3 momentum = locked.let_turn(inertia_at(rotation) * spin);
+  const int parts = count_parts(speed * time);
+  const double part = time / parts;
+  for (int i = 0; i < parts; ++i) {
+    // The turn of a part at the spin that the body has where a turn by `so_far` brings it.
+    const auto turn = [&](const Vec3& so_far) {
+      return Vec3(part * (locked.invert(inertia_at(rotation_by(so_far) * rotation)) * momentum));
+    };
+    const Vec3 first = turn(Vec3::Zero());
+    const Vec3 second = turn(0.5 * first);
+    const Vec3 third = turn(0.5 * second - 0.125 * first.cross(second));
+    const Vec3 fourth = turn(third);
+    const Vec3 whole = (first + 2.0 * second + 2.0 * third + fourth) / 6.0 - first.cross(fourth) / 12.0;
+    rotation = (rotation_by(whole) * rotation).normalized();
+  }
+  spin = locked.invert(inertia_at(rotation)) * momentum;
+}
+
+void advance_turn(const PrincipalInertia& inertia, const body::LockedAxes& locked, double time,
+                  SpinOrder order, Quat& rotation, Vec3& spin) {
+  if (locked.any())
+    advance_locked_spin(inertia, locked, time, rotation, spin);
+  else
+    advance_spin(inertia, time, order, rotation, spin);
 }
 
 }  // namespace shatterbox::dynamics

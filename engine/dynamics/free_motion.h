@@ -3,6 +3,7 @@
 // composed to fourth order by Suzuki's scheme.
 #pragma once
 
+#include "engine/body/locked_axes.h"
 #include "engine/core/vec.h"
 
 namespace shatterbox::dynamics {
@@ -23,6 +24,16 @@ enum class SpinOrder { second, fourth };
 /// Turns a torque-free body for `time` seconds: `rotation` is world from body, `spin` its angular velocity
 /// (world, rad/s). Divided so that no part turns by more than a twentieth of a radian.
 void advance_spin(const PrincipalInertia& inertia, double time, SpinOrder order, Quat& rotation, Vec3& spin);
+
+/// The same of a body that may not turn about some axes, nor does at the start: the momentum about the others
+/// is kept to rounding, the energy to fourth order (Munthe-Kaas' Runge-Kutta scheme; without error about one
+/// axis).
+void advance_locked_spin(const PrincipalInertia& inertia, const body::LockedAxes& locked, double time,
+                         Quat& rotation, Vec3& spin);
+
+/// Either of them.
+void advance_turn(const PrincipalInertia& inertia, const body::LockedAxes& locked, double time,
+                  SpinOrder order, Quat& rotation, Vec3& spin);
 
 /// Rotation by a rotation vector (rad).
 Quat rotation_by(const Vec3& rotation_vector);

@@ -20,7 +20,19 @@ struct Whole {
   double mass = 0.0;            // kg
   Vec3 centre = Vec3::Zero();   // m
   Mat3 inertia = Mat3::Zero();  // kg m2, world, about the centre
+  body::LockedAxes locked;
+
+  Mat3 inverse_inertia() const { return locked.any() ? locked.invert(inertia) : Mat3(inertia.inverse()); }
 };
+
+// A turn about the common centre moves its members along all axes but that of the turn.
+void lock_turns_of_members(body::LockedAxes& locked) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!locked.moves[axis]) continue;
+    for (std::size_t other = 0; other < 3; ++other)
+      locked.turns[other] = locked.turns[other] || other != axis;
+  }
+}
 
 // `pose`: at the start or at the end.
 Whole gather_whole(const std::vector<int>& members, const MotionWork& work, Pose WorkBody::*pose) {
@@ -36,7 +48,9 @@ Whole gather_whole(const std::vector<int>& members, const MotionWork& work, Pose
     const Vec3 arm = (w.*pose).translation - whole.centre;
     whole.inertia += inertia_at(w, w.*pose) +
                      (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / w.inverse_mass;
+    whole.locked.unite(w.locked);
   }
+  if (members.size() > 1) lock_turns_of_members(whole.locked);
   return whole;
 }
 
@@ -99,8 +113,9 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
     momentum += (w.start.translation - whole.centre).cross(own_momentum) +
                 inertia_at(w, w.start) * turn_between(w.start.rotation, w.end.rotation);
   }
+  way = whole.locked.let_move(way);
   // Beyond half a radian straight paths would cut the corner.
-  const Vec3 turn = whole.inertia.inverse() * momentum;
+  const Vec3 turn = whole.inverse_inertia() * momentum;
   const double angle = turn.norm();
   const double turned = std::min(share, angle > 0.0 ? 0.99 * kStraightTurn / angle : 1.0);
   const Quat rotation = rotation_by(turned * turn);
@@ -126,7 +141,9 @@ std::vector<double> ImpactZones::open(std::vector<Opening>& openings) {
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
     if (members[zone].empty()) continue;
     const Whole whole = gather_whole(members[zone], work_, &WorkBody::end);
-    movers[zone] = {1.0 / whole.mass, whole.inertia.inverse()};
+    const double inverse_mass = 1.0 / whole.mass;
+    movers[zone] = {inverse_mass, whole.locked.let_move(Vec3::Constant(inverse_mass)),
+                    whole.inverse_inertia()};
     centres[zone] = whole.centre;
   }
   std::vector<Opening> of_zones = openings;

@@ -42,6 +42,7 @@ class IslandSolver {
   void drift();
   void prepare(int substeps);
   void find_response(SolverContact& c);
+  static void respond_locked(const WorkBody& a, const WorkBody& b, SolverContact& c);
   void book();
   void keep_impulse(SolverContact& c);
 
@@ -108,10 +109,7 @@ class IslandSolver {
     return order_.contacts.size() <= kFewContacts && !has_scripted_ && joints_.is_empty();
   }
 
-  static void place_inertia(WorkBody& b) {
-    const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
-    b.inverse_inertia = axes * b.inverse_moments.asDiagonal() * axes.transpose();
-  }
+  static void place_inertia(WorkBody& b) { b.inverse_inertia = inverse_inertia_at(b, b.rotation); }
 
   // Before an impulse is given. Most contacts are ahead of their bodies and never get one.
   void respond(SolverContact& c) {
@@ -127,7 +125,7 @@ class IslandSolver {
   }
 
   static void push(WorkBody& b, const Vec3& impulse, const Vec3& arm) {
-    const Vec3 change = b.inverse_mass * impulse, turn = b.inverse_inertia * arm.cross(impulse);
+    const Vec3 change = b.inverse_masses.cwiseProduct(impulse), turn = b.inverse_inertia * arm.cross(impulse);
     b.velocity += change;
     b.spin += turn;
     b.stirred += change.lpNorm<1>() + b.reach * turn.lpNorm<1>();

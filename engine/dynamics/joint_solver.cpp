@@ -18,6 +18,7 @@ using Six6 = Eigen::Matrix<double, 6, 6>;
 // may be than that, where others hold more mass on less area.
 constexpr double kStiff = 1e7;
 constexpr double kStiffest = 1e3;
+constexpr double kUnmoved = 1e12;     // times as heavy is what cannot move
 constexpr double kMended = 0.3;       // of what joints are off, in a substep,
 constexpr double kMostMended = 2e-3;  // of the lesser reach, and rad: no more of it
 
@@ -129,12 +130,16 @@ void JointSolver::assemble() {
     const WorkBody& b = body(i);
     if (dof(i) < 0) continue;
     Six6 mass = Six6::Identity() / b.inverse_mass;
+    for (int axis = 0; axis < 3; ++axis)
+      if (b.locked.moves[at(axis)]) mass(axis, axis) *= kUnmoved;
     const Mat3 axes = (b.rotation * b.inertia.body_from_axes).toRotationMatrix();
     // Who cannot turn is as heavy to turn as would be a body of many times its size.
-    const Vec3 moments = b.inverse_moments.maxCoeff() > 0.0
-                             ? b.inertia.moments
-                             : Vec3::Constant(1e12 * b.reach * b.reach / b.inverse_mass);
+    const double unmoved = kUnmoved * b.reach * b.reach / b.inverse_mass;
+    const Vec3 moments =
+        b.inverse_moments.maxCoeff() > 0.0 ? b.inertia.moments : Vec3(Vec3::Constant(unmoved));
     mass.bottomRightCorner<3, 3>() = axes * moments.asDiagonal() * axes.transpose();
+    for (int axis = 0; axis < 3; ++axis)
+      if (b.locked.turns[at(axis)]) mass(3 + axis, 3 + axis) += unmoved;
     add(dof(i), dof(i), mass);
   }
   for (const int k : island_.joints) {
@@ -220,7 +225,7 @@ void JointSolver::hold(bool mends) {
     const Vec3 couple = joint.turn_stiffness * left.tail<3>();
     const auto push = [&](WorkBody& b, const Vec3& arm, double sign) {
       if (b.inverse_mass == 0.0) return;
-      const Vec3 velocity = sign * b.inverse_mass * impulse;
+      const Vec3 velocity = sign * b.inverse_masses.cwiseProduct(impulse);
       const Vec3 spin = sign * (b.inverse_inertia * (arm.cross(impulse) + couple));
       b.velocity += velocity;
       b.spin += spin;

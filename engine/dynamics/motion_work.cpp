@@ -26,14 +26,19 @@ void free_pairs(MotionWork& work) {
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) { work.pairs[p] = WorkPair(); });
 }
 
+Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation) {
+  const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
+  if (body.locked.any())
+    return body.locked.invert(axes * body.inertia.moments.asDiagonal() * axes.transpose());
+  return axes * body.inverse_moments.asDiagonal() * axes.transpose();
+}
+
 void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin) {
   const auto kick = [&] {
-    if (body.torque.isZero(0.0)) return;
-    const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
-    spin += 0.5 * time * (axes * body.inverse_moments.asDiagonal() * (axes.transpose() * body.torque));
+    if (!body.torque.isZero(0.0)) spin += 0.5 * time * (inverse_inertia_at(body, rotation) * body.torque);
   };
   kick();
-  advance_spin(body.inertia, time, SpinOrder::fourth, rotation, spin);
+  advance_turn(body.inertia, body.locked, time, SpinOrder::fourth, rotation, spin);
   kick();
 }
 

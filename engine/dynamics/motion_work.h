@@ -27,8 +27,10 @@ struct alignas(64) WorkBody {
   double inverse_mass = 0.0;            // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
   double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
   Mat3 inverse_inertia = Mat3::Zero();  // world, now
-  double reach = 0.0;                   // m: greatest distance of a vertex from the centre
-  Vec3 gravity = Vec3::Zero();          // m/s2, the body's own force with it; zero unless dynamic and awake
+  Vec3 inverse_masses = Vec3::Zero();   // 1/kg, along the world's axes: `inverse_mass`, or 0 if locked
+  body::LockedAxes locked;
+  double reach = 0.0;           // m: greatest distance of a vertex from the centre
+  Vec3 gravity = Vec3::Zero();  // m/s2, the body's own force with it; zero unless dynamic and awake
 
   const body::Shape* shape = nullptr;
   const collision::Collider* collider = nullptr;
@@ -223,6 +225,9 @@ class MotionWork {
 
 /// Lets go of what pairs hold, on all threads: there is a list of every feature that is near.
 void free_pairs(MotionWork& work);
+
+/// 1/(kg m2), world: spin by angular impulse of a body that has turned to `rotation`.
+Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation);
 
 /// Turns a dynamic body that nothing touches for `time` (s): its torque acts in two halves, before and after.
 void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& spin);

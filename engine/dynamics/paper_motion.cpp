@@ -73,7 +73,7 @@ Pose free_end(const Body& body, const PrincipalInertia& inertia, const ContactSe
   end.translation += dt * velocity;
   if (body.is_dynamic()) {
     end.translation += 0.5 * dt * dt * body.free_acceleration(settings.gravity);
-    advance_spin(inertia, dt, SpinOrder::fourth, end.rotation, spin);
+    advance_turn(inertia, body.locked, dt, SpinOrder::fourth, end.rotation, spin);
   }
   return end;
 }
@@ -125,22 +125,18 @@ class PlaneImpulses {
     const bool is_collision = may_bounce && speed < -threshold && now > 0.0;
     if (is_collision) wanted = std::max(wanted, -material.restitution * speed);
     if (wanted <= speed) return;
-    const Mat3 inverse_inertia = body.inverse_inertia_world();
     const Vec3 arm = point - body.pose.translation;
-    const auto mobility = [&](const Vec3& n) {
-      const Vec3 turn = arm.cross(n);
-      return body.inverse_mass + turn.dot(inverse_inertia * turn);
-    };
-    const double normal_impulse = (wanted - speed) / mobility(c.normal);
+    const double yielding = body.mobility(arm, c.normal);
+    if (!(yielding > 0.0)) return;
+    const double normal_impulse = (wanted - speed) / yielding;
     Vec3 impulse = normal_impulse * c.normal;
     const Vec3 sliding = velocity - speed * c.normal;
     if (const double slide = sliding.norm(); slide > 0.0) {
       const Vec3 way = sliding / slide;
-      impulse -= std::min(material.friction * normal_impulse, slide / mobility(way)) * way;
+      impulse -= std::min(material.friction * normal_impulse, slide / body.mobility(arm, way)) * way;
     }
-    body.velocity += body.inverse_mass * impulse;
-    body.angular_velocity += inverse_inertia * arm.cross(impulse);
-    log_push(body, plane, c, point, impulse, is_collision ? -speed : 0.0, 1.0 / mobility(c.normal));
+    body.push(impulse, point);
+    log_push(body, plane, c, point, impulse, is_collision ? -speed : 0.0, 1.0 / yielding);
   }
 
   void log_push(const Body& body, const Body& plane, const collision::Contact& c, const Vec3& point,
@@ -204,7 +200,7 @@ void add_net_impulse(const SoupBody& soup, const std::vector<Vec3>& wanted, Body
     linear += impulse;
     angular += (soup.positions[v] - body.pose.translation).cross(impulse);
   }
-  body.velocity += body.inverse_mass * linear;
+  body.velocity += body.locked.let_move(body.inverse_mass * linear);
   body.angular_velocity += body.inverse_inertia_world() * angular;
 }
 

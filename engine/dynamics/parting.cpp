@@ -79,6 +79,7 @@ class Parting {
     const Vec3 ways[] = {first,         -first,         up(),          -up(),
                          Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitZ()};
     for (const Vec3& way : ways) {
+      if (bodies_[at(mover)].locked.let_move(way) != way) continue;
       Pose pose = bodies_[at(mover)].pose;
       pose.translation += length * way;
       if (!is_free(mover, pose)) continue;

@@ -98,10 +98,11 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
     born.inverse_inertia = born.shape->inertia.inverse();
     born.force = description.force;
     born.torque = description.torque;
+    born.locked = description.locked;
   }
   if (born.motion != body::Motion::fixed) {
-    born.velocity = description.velocity;
-    born.angular_velocity = description.angular_velocity;
+    born.velocity = born.locked.let_move(description.velocity);
+    born.angular_velocity = born.locked.let_turn(description.angular_velocity);
   }
   if (description.path && born.motion == body::Motion::scripted) {
     const PathDescription& path = *description.path;

@@ -75,10 +75,12 @@ struct BodyDescription {
   std::optional<PathDescription> path;          // of a scripted body; without one it goes on at its velocity
   Vec3 velocity = Vec3::Zero();                 // of the centre of mass, m/s
   Vec3 angular_velocity = Vec3::Zero();         // rad/s, world
-  Vec3 force = Vec3::Zero();      // N, world, at the centre of mass, all the time: pieces share it by mass
-  Vec3 torque = Vec3::Zero();     // N m, world, of the whole body: pieces have none
-  int group = -1;                 // bodies of one group >= 0 do not collide
-  std::optional<double> density;  // kg/m3, instead of the material's
+  Vec3 force = Vec3::Zero();   // N, world, at the centre of mass, all the time: pieces share it by mass
+  Vec3 torque = Vec3::Zero();  // N m, world, of the whole body: pieces have none
+  // Of dynamic ones: what breaks off is free, what is left with more than half of the mass is not.
+  body::LockedAxes locked;
+  int group = -1;                          // bodies of one group >= 0 do not collide
+  std::optional<double> density;           // kg/m3, instead of the material's
   std::optional<double> contact_duration;  // s, of every impact on this body
 };
 

@@ -144,6 +144,8 @@ stress::HertzContact find_hertz_contact(const body::Body& struck, const body::Bo
 
 double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body) {
   if (!body.is_dynamic()) return 0.0;
+  if (body.locked.any())
+    return body.mobility(body.pose.rotation * point_body, body.pose.rotation * direction_body);
   const Vec3 turn = point_body.cross(direction_body);
   return body.inverse_mass + turn.dot(body.inverse_inertia * turn);
 }

@@ -9,6 +9,8 @@
 namespace shatterbox::world {
 namespace {
 
+constexpr double kLeftOver = 0.5;  // of the mass: a piece with more is what is left, others broke off
+
 body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
   body::Body born = parent;
   // A crack that sets nothing free leaves the body what it was; pieces are numbered behind a slash.
@@ -23,6 +25,8 @@ body::Body make_body(const body::Body& parent, const Piece& piece, int number) {
   if (number >= 0) {
     born.force *= piece.shape->mass / parent.shape->mass;
     born.torque.setZero();
+    // Who holds it holds what is left of it.
+    if (piece.shape->mass <= kLeftOver * parent.shape->mass) born.locked = {};
   }
   born.wake();
   return born;
@@ -167,6 +171,7 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   row.pieces = static_cast<int>(pieces.size());
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);
+  for (body::Body& body : born) body.velocity = body.locked.let_move(body.velocity);
   insert_pieces(moving, parent, memory, pieces, std::move(born), time,
                 impact.first_time + 2.0 * impact.figures().verdict.duration, impact.hardest.other, ancestry,
                 row);

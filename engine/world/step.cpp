@@ -47,8 +47,8 @@ Vec3 explained_momentum(const std::vector<body::Body>& before, const std::vector
   for (const body::Body& body : before)
     if (moved(body.id)) sum += body.shape->mass * time_step * body.free_acceleration(gravity);
   for (const body::LoggedImpulse& entry : log) {
-    if (moved(entry.body_a)) sum += entry.impulse_world;
-    if (moved(entry.body_b)) sum -= entry.impulse_world;
+    if (const body::Body* a = moved(entry.body_a)) sum += a->locked.let_move(entry.impulse_world);
+    if (const body::Body* b = moved(entry.body_b)) sum -= b->locked.let_move(entry.impulse_world);
   }
   return sum;
 }

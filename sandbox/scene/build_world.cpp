@@ -120,6 +120,7 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
   description.angular_velocity = body.angular_velocity;
   description.force = body.force;
   description.torque = body.torque;
+  description.locked = body.locked;
   description.group = group_number(groups, body.group);
   description.density = body.density;
   description.contact_duration = body.contact_duration;

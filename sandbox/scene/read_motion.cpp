@@ -1,9 +1,11 @@
 // What moves a body: nothing, physics, or a path of keyframes.
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
 
 #include "engine/core/elementary.h"
+#include "sandbox/scene/nearest_name.h"
 #include "sandbox/scene/read_body.h"
 
 namespace shatterbox::sandbox::scene {
@@ -105,6 +107,44 @@ void read_scripted(TableReader& reader, bool is_held, BodyEntry& body) {
   read_path(reader, body);
 }
 
+// Ways and turns by name: "x", "rx".
+void read_fixed(TableReader& reader, BodyEntry& body) {
+  const TomlValue* value = reader.value("fixed");
+  if (value == nullptr) return;
+  const std::string example = "write fixed = [\"y\", \"rx\", \"rz\"]";
+  if (!value->is_array()) {
+    reader.add_problem(value->place, fmt::format("fixed must be a list, but is {}", kind_in_words(*value)),
+                       example);
+    return;
+  }
+  const std::vector<std::string> names{"x", "y", "z", "rx", "ry", "rz"};
+  body::LockedAxes& locked = body.locked;
+  for (const TomlValue& item : value->items) {
+    if (!item.is_text()) {
+      reader.add_problem(item.place, fmt::format("an axis is a word, but this is {}", kind_in_words(item)),
+                         example);
+      continue;
+    }
+    const auto found = std::find(names.begin(), names.end(), item.text);
+    if (found == names.end()) {
+      reader.add_problem(item.place, fmt::format("unknown axis \"{}\"", item.text),
+                         hint_for_name(item.text, names, "available"));
+      continue;
+    }
+    const auto axis = static_cast<std::size_t>(found - names.begin());
+    (axis < 3 ? locked.moves[axis] : locked.turns[axis - 3]) = true;
+  }
+  if (locked.is_all())
+    reader.add_problem_at("fixed", "a body of which all is fixed does not move", "write motion = \"static\"");
+  const auto ask = [&](const char* key, const Vec3& wanted, const Vec3& left, const char* way) {
+    if (wanted != left)
+      reader.add_problem_at(key, fmt::format("{} goes {} an axis that is fixed", key, way),
+                            "set it to 0 there, or take the axis out of fixed");
+  };
+  ask("velocity", body.velocity, locked.let_move(body.velocity), "along");
+  ask("angular_velocity", body.angular_velocity, locked.let_turn(body.angular_velocity), "about");
+}
+
 }  // namespace
 
 Quat turn_by(const Vec3& degrees) {
@@ -141,10 +181,11 @@ void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body) 
         reader.vector("angular_velocity", between(-1e5, 1e5, "rad/s")).value_or(body.angular_velocity);
     body.force = reader.vector("force", between(-1e9, 1e9, "N")).value_or(body.force);
     body.torque = reader.vector("torque", between(-1e9, 1e9, "N m")).value_or(body.torque);
+    read_fixed(reader, body);
   }
   reader.foreign({"force", "torque"}, "they move what is motion = \"dynamic\"");
   reader.foreign({"path"}, "a camera has a path; a scripted body has keyframes");
-  reader.later({"fixed"}, "a body that cannot move at all is motion = \"static\"");
+  reader.foreign({"fixed"}, "it is for motion = \"dynamic\"");
 }
 
 }  // namespace shatterbox::sandbox::scene

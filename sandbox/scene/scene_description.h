@@ -145,6 +145,7 @@ struct BodyEntry {
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // N, N m, world, all the time
+  body::LockedAxes locked;
   body::Motion motion = body::Motion::dynamic;
   std::optional<PathEntry> path;  // of a scripted body
   Support support;

@@ -158,16 +158,6 @@ std::optional<std::string> TableReader::choice(const std::string& key,
   return std::nullopt;
 }
 
-void TableReader::later(const std::vector<std::string>& keys, const std::string& instead) {
-  for (const std::string& key : keys) {
-    const TomlValue* value = table_.find(key);
-    if (value == nullptr) continue;
-    told_.push_back(key);
-    add_problem(value->key_place, fmt::format("{}: \"{}\" is not available in this version", what_, key),
-                instead);
-  }
-}
-
 void TableReader::foreign(const std::vector<std::string>& keys, const std::string& reason) {
   for (const std::string& key : keys) {
     const TomlValue* value = table_.find(key);

@@ -61,8 +61,6 @@ class TableReader {
   /// The raw value, or null.
   const TomlValue* value(const std::string& key);
 
-  /// Keys of the vocabulary that this version cannot do: a fault if present.
-  void later(const std::vector<std::string>& keys, const std::string& instead);
   /// Keys that exist but do not belong here; `reason` says where they do.
   void foreign(const std::vector<std::string>& keys, const std::string& reason);
 

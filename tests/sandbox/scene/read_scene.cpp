@@ -175,6 +175,15 @@ TEST_CASE("a body may have a force and a torque") {
   CHECK(reading.scene->bodies[0].torque == Vec3(4, 5, 6));
 }
 
+TEST_CASE("axes may be fixed by name") {
+  const Reading reading = read("[[body]]\nkind = \"sphere\"\nfixed = [\"z\", \"rx\", \"ry\"]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  const body::LockedAxes& locked = reading.scene->bodies[0].locked;
+  CHECK(locked.let_move(Vec3::Ones()) == Vec3(1, 1, 0));
+  CHECK(locked.let_turn(Vec3::Ones()) == Vec3(0, 0, 1));
+}
+
 TEST_CASE("a capsule has a radius and a length and each has a sense without the other") {
   const auto capsule_of = [](const std::string& sizes) {
     const Reading reading = read("[[body]]\nkind = \"capsule\"\n" + sizes);
