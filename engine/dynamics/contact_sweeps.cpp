@@ -116,9 +116,18 @@ int IslandSolver::most_sweeps(int of_small) const {
   return std::clamp(affordable, kFewSweeps, of_small);
 }
 
+// All of it lies quietly, and nothing bears many times what it weighs, as the last substep told.
+bool IslandSolver::lies_quietly() {
+  const auto is_unlike = [](std::size_t, SolverContact& c, Found& found) {
+    found.is_any = found.is_any || !c.can_creep || c.warm[0] > c.strained_from;
+  };
+  return !each(is_unlike).is_any;
+}
+
 // One sweep is mostly enough at rest, but what one leaves rocks a box on a slope by so much that its feet
-// creep: small islands get some more, unless something in them may break: the more exactly jammed shards
-// press each other, the more of them burst. What arrives must not overshoot the gap.
+// creep: small islands get some more. Of those in which something may break only what lies quietly does: the
+// more exactly jammed shards press each other, the more of them burst. What arrives must not overshoot the
+// gap.
 void IslandSolver::sweep_before_drift() {
   const auto hold = [&](std::size_t k, SolverContact& c, Found& found) {
     const double tolerance = kTouching * c.kept_gap / step_;
@@ -130,7 +139,7 @@ void IslandSolver::sweep_before_drift() {
     found.is_any = found.is_any || is_pushed_apart;
     found.excess = std::max(found.excess, closing / tolerance);
   };
-  const bool is_exact = order_.contacts.size() <= kFewAtRest && !island_.may_break;
+  const bool is_exact = order_.contacts.size() <= kFewAtRest && (!island_.may_break || lies_quietly());
   const int calm = joints_.is_empty() ? (is_exact ? kCalmSweeps : 1) : most_sweeps(kJointSweeps);
   const Sweeps how = has_arrivals_ ? Sweeps{most_sweeps(16), 1.0, 1e300, kStrainedGap}
                                    : Sweeps{calm, kCalmGap, 1e300, kStrainedGap};

@@ -89,6 +89,7 @@ class IslandSolver {
   void go_on_course();
   double target_before_drift(const SolverContact& c) const;
   int most_sweeps(int of_small) const;
+  bool lies_quietly();
   void sweep_before_drift();
   void sweep_after_drift();
   // True if what was asked was so for any contact in any sweep.
