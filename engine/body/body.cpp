@@ -20,10 +20,13 @@ Mat3 Body::inverse_inertia_world() const {
   return r * inverse_inertia * r.transpose();
 }
 
-double Body::mobility(const Vec3& arm, const Vec3& direction) const {
+double Body::mobility(const Vec3& point_body, const Vec3& direction_body) const {
   if (!is_dynamic()) return 0.0;
-  const Vec3 turn = arm.cross(direction);
-  return inverse_mass * locked.let_move(direction).squaredNorm() + turn.dot(inverse_inertia_world() * turn);
+  const Vec3 turn = point_body.cross(direction_body);
+  if (!locked.any()) return inverse_mass + turn.dot(inverse_inertia * turn);
+  const Vec3 turn_world = pose.rotation * turn;
+  return inverse_mass * locked.share_along(pose.rotation * direction_body) +
+         turn_world.dot(inverse_inertia_world() * turn_world);
 }
 
 void Body::push(const Vec3& impulse, const Vec3& point_world) {

@@ -78,9 +78,8 @@ struct Body {
   Vec3 velocity_at(const Vec3& point_world) const {
     return velocity + angular_velocity.cross(point_world - pose.translation);
   }
-  /// How it gives way at the end of an arm from its centre along a unit direction (world, m): 1/kg; 0 if it
-  /// cannot move so.
-  double mobility(const Vec3& arm, const Vec3& direction) const;
+  /// How it gives way at a point along a unit direction, both in body space: 1/kg; 0 if it cannot move so.
+  double mobility(const Vec3& point_body, const Vec3& direction_body) const;
   /// Gives it an impulse, N s, at a point of the world; nothing if it is not dynamic.
   void push(const Vec3& impulse, const Vec3& point_world);
   void wake();

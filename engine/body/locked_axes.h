@@ -22,6 +22,10 @@ struct LockedAxes {
   Vec3 let_move(const Vec3& way) const { return cleared(way, moves); }
   /// What is left of a spin or couple.
   Vec3 let_turn(const Vec3& turn) const { return cleared(turn, turns); }
+  /// How far it yields to an impulse along a unit direction, as a share of what it would unlocked.
+  double share_along(const Vec3& direction) const {
+    return any_of(moves) ? let_move(direction).squaredNorm() : 1.0;
+  }
   /// How many axes it may turn about.
   int count_turns() const { return 3 - turns[0] - turns[1] - turns[2]; }
   /// Spin by angular impulse (world, 1/(kg m2)) of a body with this inertia (world, kg m2): S (S^T I S)^-1

@@ -102,7 +102,6 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   } else if (b.is_dynamic() && b.is_awake) {
     w.is_active = true;
     w.inverse_mass = b.inverse_mass;
-    w.inverse_masses = b.locked.let_move(Vec3::Constant(b.inverse_mass));
     w.locked = b.locked;
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;

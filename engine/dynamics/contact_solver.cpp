@@ -203,9 +203,11 @@ void IslandSolver::prepare(int substeps) {
 void IslandSolver::respond_locked(const WorkBody& a, const WorkBody& b, SolverContact& c) {
   const Vec3 axes[3] = {c.normal, c.tangent_u, c.tangent_v};
   const double both = a.inverse_mass + b.inverse_mass, least = body::kLeastYield * both;
-  const Vec3 missing = Vec3::Constant(both) - a.inverse_masses - b.inverse_masses;
+  const auto taken = [&](const WorkBody& w, int k, int l) {
+    return w.inverse_mass * axes[k].dot(axes[l] - w.locked.let_move(axes[l]));
+  };
   for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l) c.response(k, l) -= axes[k].dot(missing.cwiseProduct(axes[l]));
+    for (int l = 0; l < 3; ++l) c.response(k, l) -= taken(a, k, l) + taken(b, k, l);
   for (int k = 1; k < 3; ++k) c.response(k, k) += least;
   for (int k = 0; k < 3; ++k) c.weights[k] = c.response(k, k) >= least ? 1.0 / c.response(k, k) : 0.0;
 }

@@ -126,8 +126,14 @@ bool IslandSolver::lies_quietly() {
 
 // One sweep is mostly enough at rest, but what one leaves rocks a box on a slope by so much that its feet
 // creep: small islands get some more. Of those in which something may break only what lies quietly does: the
-// more exactly jammed shards press each other, the more of them burst. What arrives must not overshoot the
-// gap.
+// more exactly jammed shards press each other, the more of them burst.
+int IslandSolver::most_calm_sweeps() {
+  if (!joints_.is_empty()) return most_sweeps(kJointSweeps);
+  const bool is_exact = order_.contacts.size() <= kFewAtRest && (!island_.may_break || lies_quietly());
+  return is_exact ? kCalmSweeps : 1;
+}
+
+// What arrives must not overshoot the gap.
 void IslandSolver::sweep_before_drift() {
   const auto hold = [&](std::size_t k, SolverContact& c, Found& found) {
     const double tolerance = kTouching * c.kept_gap / step_;
@@ -139,10 +145,8 @@ void IslandSolver::sweep_before_drift() {
     found.is_any = found.is_any || is_pushed_apart;
     found.excess = std::max(found.excess, closing / tolerance);
   };
-  const bool is_exact = order_.contacts.size() <= kFewAtRest && (!island_.may_break || lies_quietly());
-  const int calm = joints_.is_empty() ? (is_exact ? kCalmSweeps : 1) : most_sweeps(kJointSweeps);
   const Sweeps how = has_arrivals_ ? Sweeps{most_sweeps(16), 1.0, 1e300, kStrainedGap}
-                                   : Sweeps{calm, kCalmGap, 1e300, kStrainedGap};
+                                   : Sweeps{most_calm_sweeps(), kCalmGap, 1e300, kStrainedGap};
   bool is_pushed_apart = sweep(how, hold);
   // What came free must not be thrown by what wedged it. To press on would only strain what is wedged
   // still.

@@ -21,8 +21,6 @@ struct Whole {
   Vec3 centre = Vec3::Zero();   // m
   Mat3 inertia = Mat3::Zero();  // kg m2, world, about the centre
   body::LockedAxes locked;
-
-  Mat3 inverse_inertia() const { return locked.any() ? locked.invert(inertia) : Mat3(inertia.inverse()); }
 };
 
 // A turn about the common centre moves its members along all axes but that of the turn.
@@ -115,7 +113,7 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
   }
   way = whole.locked.let_move(way);
   // Beyond half a radian straight paths would cut the corner.
-  const Vec3 turn = whole.inverse_inertia() * momentum;
+  const Vec3 turn = whole.locked.invert(whole.inertia) * momentum;
   const double angle = turn.norm();
   const double turned = std::min(share, angle > 0.0 ? 0.99 * kStraightTurn / angle : 1.0);
   const Quat rotation = rotation_by(turned * turn);
@@ -141,9 +139,7 @@ std::vector<double> ImpactZones::open(std::vector<Opening>& openings) {
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
     if (members[zone].empty()) continue;
     const Whole whole = gather_whole(members[zone], work_, &WorkBody::end);
-    const double inverse_mass = 1.0 / whole.mass;
-    movers[zone] = {inverse_mass, whole.locked.let_move(Vec3::Constant(inverse_mass)),
-                    whole.inverse_inertia()};
+    movers[zone] = {1.0 / whole.mass, whole.locked, whole.locked.invert(whole.inertia)};
     centres[zone] = whole.centre;
   }
   std::vector<Opening> of_zones = openings;

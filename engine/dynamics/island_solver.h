@@ -90,6 +90,7 @@ class IslandSolver {
   double target_before_drift(const SolverContact& c) const;
   int most_sweeps(int of_small) const;
   bool lies_quietly();
+  int most_calm_sweeps();
   void sweep_before_drift();
   void sweep_after_drift();
   // True if what was asked was so for any contact in any sweep.
@@ -126,7 +127,8 @@ class IslandSolver {
   }
 
   static void push(WorkBody& b, const Vec3& impulse, const Vec3& arm) {
-    const Vec3 change = b.inverse_masses.cwiseProduct(impulse), turn = b.inverse_inertia * arm.cross(impulse);
+    const Vec3 change = b.locked.let_move(b.inverse_mass * impulse),
+               turn = b.inverse_inertia * arm.cross(impulse);
     b.velocity += change;
     b.spin += turn;
     b.stirred += change.lpNorm<1>() + b.reach * turn.lpNorm<1>();

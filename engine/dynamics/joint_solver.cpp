@@ -225,7 +225,7 @@ void JointSolver::hold(bool mends) {
     const Vec3 couple = joint.turn_stiffness * left.tail<3>();
     const auto push = [&](WorkBody& b, const Vec3& arm, double sign) {
       if (b.inverse_mass == 0.0) return;
-      const Vec3 velocity = sign * b.inverse_masses.cwiseProduct(impulse);
+      const Vec3 velocity = b.locked.let_move(sign * b.inverse_mass * impulse);
       const Vec3 spin = sign * (b.inverse_inertia * (arm.cross(impulse) + couple));
       b.velocity += velocity;
       b.spin += spin;

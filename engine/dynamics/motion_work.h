@@ -27,7 +27,6 @@ struct alignas(64) WorkBody {
   double inverse_mass = 0.0;            // 1/kg; 0 for what this step cannot move: fixed, scripted, asleep
   double stirred = 0.0;                 // m/s: sum of all changes that the solver's impulses made
   Mat3 inverse_inertia = Mat3::Zero();  // world, now
-  Vec3 inverse_masses = Vec3::Zero();   // 1/kg, along the world's axes: `inverse_mass`, or 0 if locked
   body::LockedAxes locked;
   double reach = 0.0;           // m: greatest distance of a vertex from the centre
   Vec3 gravity = Vec3::Zero();  // m/s2, the body's own force with it; zero unless dynamic and awake

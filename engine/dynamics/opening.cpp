@@ -19,18 +19,18 @@ constexpr int kIterationsAlike = 60;
 constexpr int kSweepsAlike = 30;
 
 Mover mover_of(const WorkBody& w) {
-  return {w.inverse_mass, w.inverse_masses, w.inverse_inertia};
+  return {w.inverse_mass, w.locked, w.inverse_inertia};
 }
 
 void give(MotionWork& work, const Opening& o, double size, double closing, body::ImpulseKind kind) {
   WorkBody &a = work.bodies[at(o.a)], &b = work.bodies[at(o.b)];
   const Vec3 p = size * o.normal;
   if (a.inverse_mass > 0.0) {
-    a.velocity += a.inverse_masses.cwiseProduct(p);
+    a.velocity += a.locked.let_move(a.inverse_mass * p);
     a.spin += a.inverse_inertia * o.arm_a.cross(p);
   }
   if (b.inverse_mass > 0.0) {
-    b.velocity -= b.inverse_masses.cwiseProduct(p);
+    b.velocity -= b.locked.let_move(b.inverse_mass * p);
     b.spin -= b.inverse_inertia * o.arm_b.cross(p);
   }
   body::LoggedImpulse entry = body::log_impulse(kind, work.ids[at(o.a)], a.end, work.ids[at(o.b)], b.end,
@@ -113,9 +113,8 @@ double opening_weight(const Opening& o, const Mover& a, const Mover& b, Yielding
   for (const auto& [m, arm] : {std::pair(&a, &o.arm_a), std::pair(&b, &o.arm_b)}) {
     if (m->inverse_mass <= 0.0) continue;
     const Vec3 moment = arm->cross(o.normal);
-    const Vec3 locked = Vec3::Constant(m->inverse_mass) - m->inverse_masses;
     const double own =
-        m->inverse_mass - locked.dot(o.normal.cwiseAbs2()) + moment.dot(m->inverse_inertia * moment);
+        m->inverse_mass * m->locked.share_along(o.normal) + moment.dot(m->inverse_inertia * moment);
     if (own < body::kLeastYield * m->inverse_mass) continue;
     sum += yielding == Yielding::alike ? own / m->inverse_mass : own;
   }
@@ -131,7 +130,7 @@ Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yi
     const Mover& m = movers[at(i)];
     if (m.inverse_mass <= 0.0) return;
     const double unit = is_alike ? 1.0 / m.inverse_mass : 1.0;
-    moves.shifts[at(i)] += (unit * m.inverse_masses).cwiseProduct(impulse);
+    moves.shifts[at(i)] += m.locked.let_move(unit * m.inverse_mass * impulse);
     moves.turns[at(i)] += unit * (m.inverse_inertia * arm.cross(impulse));
   };
   std::vector<double> weights;

@@ -29,8 +29,8 @@ enum class Yielding { by_mass, alike };
 
 /// What moves as a whole while gaps are opened: a body, or several that go as one.
 struct Mover {
-  double inverse_mass = 0.0;            // 1/kg; 0 for what does not move
-  Vec3 inverse_masses = Vec3::Zero();   // along the world's axes: `inverse_mass`, or 0 if locked
+  double inverse_mass = 0.0;  // 1/kg; 0 for what does not move
+  body::LockedAxes locked;
   Mat3 inverse_inertia = Mat3::Zero();  // world
 };
 

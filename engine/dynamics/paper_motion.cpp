@@ -125,15 +125,17 @@ class PlaneImpulses {
     const bool is_collision = may_bounce && speed < -threshold && now > 0.0;
     if (is_collision) wanted = std::max(wanted, -material.restitution * speed);
     if (wanted <= speed) return;
-    const Vec3 arm = point - body.pose.translation;
-    const double yielding = body.mobility(arm, c.normal);
+    const auto mobility = [&](const Vec3& direction) {
+      return body.mobility(body.pose.apply_inverse(point), body.pose.rotation.conjugate() * direction);
+    };
+    const double yielding = mobility(c.normal);
     if (!(yielding > 0.0)) return;
     const double normal_impulse = (wanted - speed) / yielding;
     Vec3 impulse = normal_impulse * c.normal;
     const Vec3 sliding = velocity - speed * c.normal;
     if (const double slide = sliding.norm(); slide > 0.0) {
       const Vec3 way = sliding / slide;
-      impulse -= std::min(material.friction * normal_impulse, slide / body.mobility(arm, way)) * way;
+      impulse -= std::min(material.friction * normal_impulse, slide / mobility(way)) * way;
     }
     body.push(impulse, point);
     log_push(body, plane, c, point, impulse, is_collision ? -speed : 0.0, 1.0 / yielding);

@@ -142,19 +142,11 @@ stress::HertzContact find_hertz_contact(const body::Body& struck, const body::Bo
                                     struck.shape->thickness, struck.shape->bounding_radius);
 }
 
-double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body) {
-  if (!body.is_dynamic()) return 0.0;
-  if (body.locked.any())
-    return body.mobility(body.pose.rotation * point_body, body.pose.rotation * direction_body);
-  const Vec3 turn = point_body.cross(direction_body);
-  return body.inverse_mass + turn.dot(body.inverse_inertia * turn);
-}
-
 double effective_mass(const body::Body& struck, const body::Body* other, const Vec3& point_world,
                       const Vec3& direction_world) {
   const auto at_present = [&](const body::Body& body) {
-    return mobility(body, body.pose.apply_inverse(point_world),
-                    body.pose.rotation.conjugate() * direction_world);
+    return body.mobility(body.pose.apply_inverse(point_world),
+                         body.pose.rotation.conjugate() * direction_world);
   };
   const double inverse = at_present(struck) + (other ? at_present(*other) : 0.0);
   return inverse > 0.0 ? 1.0 / inverse : 0.0;

@@ -97,9 +97,6 @@ void add_to_event(std::vector<Load>& event, const std::vector<Load>& loads, doub
 /// Hertz's contact of a body with another one, which may be null: of no elasticity known.
 stress::HertzContact find_hertz_contact(const body::Body& struck, const body::Body* other);
 
-/// How a body gives way at a point along a unit direction, both in body space: 1/kg; 0 if it cannot move.
-double mobility(const body::Body& body, const Vec3& point_body, const Vec3& direction_body);
-
 /// Effective mass (kg) of two bodies at a point along a unit direction at their present poses: 1 / (sum of
 /// mobilities). `other` may be null or fixed (infinite mass); the result is 0 when neither can move.
 double effective_mass(const body::Body& struck, const body::Body* other, const Vec3& point_world,

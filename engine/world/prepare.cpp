@@ -48,7 +48,7 @@ fracture::ImpactLoad make_load(const body::Body& struck, const Partner& partner,
   load.point_material = point + struck.shape->material_from_body;
   load.direction = direction;
   load.other_inverse_mass = partner.mass > 0.0 ? 1.0 / partner.mass : 0.0;
-  load.effective_mass = 1.0 / (load.other_inverse_mass + mobility(struck, point, direction));
+  load.effective_mass = 1.0 / (load.other_inverse_mass + struck.mobility(point, direction));
   load.closing_speed = std::max(kLikelySpeed, partner.speed);
   load.impulse = load.effective_mass * load.closing_speed;
   const double size = struck.shape->bounding_radius;

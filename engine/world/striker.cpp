@@ -133,7 +133,7 @@ std::shared_ptr<const fracture::Striker> find_striker(const PartBegin& begin, co
   const Vec3 centre_body = point_body - struck_from_striker * other_point;
   striker.centre = centre_body + struck->shape->material_from_body;
   striker.place = point_body + struck->shape->material_from_body;
-  striker.struck_inverse_mass = mobility(*struck, centre_body, striker.direction);
+  striker.struck_inverse_mass = struck->mobility(centre_body, striker.direction);
   striker.time = begin.step_time + touch.entry->time;
   set_section(*other->shape, struck_from_striker, striker);
   return std::make_shared<const fracture::Striker>(std::move(striker));

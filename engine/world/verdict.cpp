@@ -61,9 +61,9 @@ struct Judge {
     out.point_material = load.point_body + struck.shape->material_from_body;
     out.impulse = load.impulse_body.norm();
     out.direction = load.impulse_body / out.impulse;
-    double inverse = mobility(struck, load.point_body, out.direction);
+    double inverse = struck.mobility(load.point_body, out.direction);
     if (partner && load.other_impulse.squaredNorm() > 0.0)
-      out.other_inverse_mass = mobility(*partner, load.other_point, load.other_impulse.normalized());
+      out.other_inverse_mass = partner->mobility(load.other_point, load.other_impulse.normalized());
     inverse += out.other_inverse_mass;
     out.effective_mass = inverse > 0.0 ? 1.0 / inverse : 0.0;
     out.is_resting = !is_collision;
