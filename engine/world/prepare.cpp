@@ -60,8 +60,8 @@ fracture::ImpactLoad make_load(const body::Body& struck, const Partner& partner,
   return load;
 }
 
-/// Free bodies meet a floor with each of their six sides; held ones are hit in the middle by what moves, or
-/// by what may come.
+/// Free bodies meet a floor with each of the six sides on which they can fall; held ones are hit in the
+/// middle by what moves, or by what may come.
 void add_trials(const body::Body& struck, const Fragile& fragile, std::span<const body::Body* const> movers,
                 std::vector<Trial>& trials) {
   const auto* subject = std::get_if<fracture::ShellSubject>(&fragile.subject);
@@ -70,7 +70,9 @@ void add_trials(const body::Body& struck, const Fragile& fragile, std::span<cons
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {-1.0, 1.0}) {
         const Vec3 outward = sign * Vec3::Unit(axis);
-        trials.push_back({&fragile, subject, make_load(struck, {}, farthest(points, outward), -outward)});
+        const Vec3 point = farthest(points, outward);
+        if (struck.mobility(point, -outward) > 0.0)
+          trials.push_back({&fragile, subject, make_load(struck, {}, point, -outward)});
       }
     return;
   }

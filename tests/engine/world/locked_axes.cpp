@@ -88,3 +88,19 @@ TEST_CASE("a push, a hand and an explosion move nothing along what is locked and
   CHECK(moved.angular_velocity.norm() == 0.0);
   CHECK(w.report().conservation.momentum_error < 1e-12 * moved.shape->mass * 100.0);
 }
+
+TEST_CASE("what may break and is locked along the ways that floors lie is prepared for the others") {
+  world::World w{world::WorldSettings{}};
+  REQUIRE(w.add_material(*material::find_preset("glass")).ok());
+  world::BodyDescription pane;
+  world::ShellDescription shell;
+  shell.mesh = geometry::make_pane(0.3, 0.3, {0.03, 0.0, 1}).value();
+  shell.thickness = 0.003;
+  pane.form = shell;
+  pane.locked = {{true, true, false}, {true, true, true}};
+  REQUIRE(w.add_body(pane).ok());
+  w.prepare();
+  const body::Body& body = w.bodies()[0];
+  CHECK(body.mobility(Vec3(0.1, 0.1, 0), Vec3::UnitX()) == 0.0);
+  CHECK(body.mobility(Vec3(0.1, 0.1, 0), Vec3::UnitZ()) == Approx(body.inverse_mass));
+}
