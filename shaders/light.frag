@@ -3,6 +3,7 @@
 // that some do not.
 #include "common/samples.glsl"
 #include "common/shade.glsl"
+#include "common/specks.glsl"
 #include "common/tone.glsl"
 layout(location = 0) out vec4 colour;
 
@@ -11,7 +12,7 @@ void main() {
   vec3 ray = ray_at(gl_FragCoord.xy);
   float drop = ground_place.x - eye_exposure.y;
   float behind = ground_place.w * ray.y * drop > 0.0 ? drop / ray.y * 1.001 : 1e9;
-  ivec2 at = ivec2(gl_FragCoord.xy);
+  ivec2 at = without_speck(ivec2(gl_FragCoord.xy));
   float depth = texelFetch(seen_depth, at, 0).x;
   Surface s = surface_at(texelFetch(seen_map, at, 0), min(depth, 0.9999999), gl_FragCoord.xy);
   if (s.view_depth >= behind) discard;
@@ -46,6 +47,17 @@ void main() {
     others += is_body && !alike ? 1.0 : 0.0;
   }
   if (own == 0.0) discard;
+  // Of two surfaces one may be a speck.
+  bool is_own_crack = is_crack(paints[chosen]);
+  int lone = is_own_crack ? chosen : other;
+  ivec2 lone_at = first + sample_shift(lone), seen_at = lone_at;
+  int looks = others > 0.0 && is_crack(paints[lone]) && (is_own_crack ? own : others) <= 2.0 ? 1 : 0;
+  for (int k = 0; k < looks; ++k) seen_at = without_speck(lone_at);
+  if (seen_at != lone_at) {
+    chosen = is_own_crack ? other : chosen;
+    own += others;
+    others = 0.0;
+  }
   vec3 sum = vec3(0.0);
   int turns = others > 0.0 ? 2 : 1;
   for (int turn = 0; turn < turns; ++turn) {

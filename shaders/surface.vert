@@ -15,7 +15,7 @@ layout(location = 5) in uint draw;  // the same for all of a draw; a uniform wou
 
 out vec3 normal_world;
 out vec4 pattern_scalar;  // pattern space, m; the scalar as a share of its range
-flat out uint paint;      // row of the paint table
+flat out uint paint;      // row of the paint table; the highest bit is set on a crack's face
 
 void main() {
   DrawRow row = draws[draw];
@@ -27,4 +27,5 @@ void main() {
   }
   pattern_scalar = vec4(pattern, scalar);
   paint = row.rows.x + 3u * min(face_part >> 8, row.rows.y - 1u) + (face_part & 255u);
+  if ((face_part & 255u) == 2u) paint |= 0x80000000u;
 }

@@ -10,6 +10,7 @@ namespace shatterbox::render::pass {
 namespace {
 
 constexpr float kBodyPixels = 1.0F;    // as Tiles marks bodies: rounding
+constexpr float kSpeckPixels = 1.0F;   // a crack's sample is taken for what is beside it
 constexpr float kBeyondPixels = 2.0F;  // lines at the picture's border may begin outside
 constexpr float kShadowPixels =
     20.0F;  // a tile about shadows, as Tiles marks them, and what lies between dimmings
@@ -231,7 +232,7 @@ void Changes::mark_shadow(const Item& caster, const MeshStore& meshes) {
 
 void Changes::mark_item(const Item& item, const MeshStore& meshes) {
   if (item.is_on_screen) {
-    mark(item.box_world.at, kBodyPixels, item.is_glass ? glass_ : bodies_);
+    mark(item.box_world.at, kBodyPixels + kSpeckPixels, item.is_glass ? glass_ : bodies_);
     if (!item.is_glass) mark_occlusion(item);
   }
   if (item.casts_shadow) mark_shadow(item, meshes);

@@ -30,6 +30,8 @@ vec3 unpack_normal(uint word) {
   return normalize(n);
 }
 
+bool is_crack(uint paint) { return (paint >> 31) != 0u; }
+
 float covered(float d, float width) { return clamp(0.5 - d / width, 0.0, 1.0); }
 
 float cell_noise(vec3 cell) {
@@ -108,7 +110,7 @@ Surface surface_at(uvec4 seen, float depth, vec2 pixel) {
   s.view_depth = view_depth_of(depth);
   s.position = eye_exposure.xyz + ray_at(pixel) * s.view_depth;
   s.normal = unpack_normal(seen.x);
-  ivec2 row = ivec2(int(seen.y & 255u) * 4, int(seen.y >> 8));
+  ivec2 row = ivec2(int(seen.y & 255u) * 4, int(seen.y << 1 >> 9));
   vec4 paint = texelFetch(paint_table, row, 0);                    // colour, roughness
   vec4 finish = texelFetch(paint_table, row + ivec2(1, 0), 0);     // metalness, coat, its roughness, transmission
   s.colour = paint.rgb;

@@ -20,6 +20,15 @@ inline Draw at(std::shared_ptr<const Mesh> mesh, glm::vec3 place, Look look = ma
   return draw;
 }
 
+// A box whose triangles from `first` to `end` are crack faces.
+inline std::shared_ptr<const Mesh> make_cracked_box(std::uint64_t id, glm::vec3 size, std::size_t first,
+                                                    std::size_t end) {
+  auto box = std::make_shared<Mesh>(*make_box(id, size));
+  box->cracks.assign(box->triangles.size(), 0);
+  for (std::size_t t = first; t < end; ++t) box->cracks[t] = kCrackFace;
+  return box;
+}
+
 inline Frame plain_frame() {
   Frame frame;
   frame.camera.position = {0.0F, 2.0F, 6.0F};

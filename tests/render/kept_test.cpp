@@ -241,6 +241,21 @@ TEST_CASE("kept pictures of one body's way past others") {
   }
 }
 
+// What is beside a crack's pixel may decide what it shows, and lie in another tile.
+TEST_CASE("kept pictures of a crack that opens, wherever it lies among the tiles") {
+  constexpr float kPixel = 0.0243F;
+  for (const Quality quality : kQualities) {
+    for (int shift = 0; shift < 17; ++shift) {
+      Frame frame = still_life();
+      const float x = kPixel * static_cast<float>(shift);
+      frame.draws.push_back(at(make_cracked_box(20, {1.0F, 0.9F, 0.2F}, 0, 4), {x, 0.9F, 1.0F}));
+      frame.draws.push_back(at(make_cracked_box(20, {1.0F, 0.9F, 0.2F}, 0, 4), {x + 1.0005F, 0.9F, 1.0F}));
+      compare_films(kSize, quality, frame, 4,
+                    [](Frame& f, int) { f.draws.back().world_from_body[3].x += 0.3F * kPixel; });
+    }
+  }
+}
+
 TEST_CASE("glass that is gone is not seen again where other glass comes near") {
   for (const Quality quality : kQualities) {
     Frame frame = plain_frame();

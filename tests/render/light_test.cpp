@@ -283,3 +283,53 @@ TEST_CASE("a lit ball has no specks of shadow on its lit side") {
     CHECK(looked_at > 50);
   }
 }
+
+namespace {
+
+// Two halves of a white block that is turned in the picture, dark within.
+Frame cracked_block(float gap) {
+  Frame frame = plain_frame();
+  const auto half = make_cracked_box(1, {1.0F, 2.0F, 0.4F}, 0, 4);
+  for (const float side : {-1.0F, 1.0F}) {
+    Draw draw = at(half, {0, 0.8F, 0}, matt(glm::vec3(0.7F)));
+    draw.world_from_body = glm::rotate(draw.world_from_body, 0.3F, glm::vec3(0, 0, 1));
+    draw.world_from_body = glm::translate(draw.world_from_body, glm::vec3(side * 0.5F * (1.0F + gap), 0, 0));
+    draw.looks[0].crack = glm::vec3(0.05F);
+    frame.draws.push_back(draw);
+  }
+  return frame;
+}
+
+int count_dark(const Image& image, const Frame& frame, int than) {
+  const glm::ivec2 middle = pixel_of(frame, {0, 0.8F, 0.2F});
+  int count = 0;
+  for (int y = -20; y <= 20; ++y)
+    for (int x = -20; x <= 20; ++x) count += green(image, middle + glm::ivec2(x, y)) < than ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a crack shows when it is as wide as a pixel, not in dots where it is narrower") {
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Frame closed = cracked_block(0.0F);
+    const int white = green(renderer.render(closed), pixel_of(closed, {0.3F, 0.8F, 0.2F}));
+    for (const float gap : {0.0005F, 0.002F, 0.005F}) {  // a pixel is 24 mm wide
+      CHECK(count_dark(renderer.render(cracked_block(gap)), closed, white - 12) == 0);
+    }
+    CHECK(count_dark(renderer.render(cracked_block(0.036F)), closed, white - 40) >= 40);
+  }
+}
+
+TEST_CASE("a chip as small as a pixel is seen before a wall") {
+  Frame frame = plain_frame();
+  frame.draws = {at(make_box(1, {3.0F, 2.0F, 0.2F}), {0, 1, 0}, matt(glm::vec3(0.7F)))};
+  Renderer renderer(kSize, Quality::preview);
+  const Image without = renderer.render(frame);
+  Draw chip = at(make_cracked_box(2, glm::vec3(0.03F), 0, 12), {0.1F, 0.9F, 0.4F});
+  chip.looks[0].crack = glm::vec3(0.05F);
+  chip.casts_shadow = false;
+  frame.draws.push_back(chip);
+  CHECK(compare(renderer.render(frame), without).most > 60);
+}
