@@ -80,7 +80,7 @@ struct Renderer::Rooms {
     int occlusion_taps, occlusion_scale;
   };
   static Level level_of(Quality quality) {
-    return quality == Quality::full ? Level{2, 1024, 14, 6, 2} : Level{1, 512, 5, 6, 3};
+    return quality == Quality::full ? Level{2, 1536, 14, 6, 2} : Level{1, 1024, 5, 6, 3};
   }
 
   Size size;

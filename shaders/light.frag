@@ -14,7 +14,7 @@ void main() {
   float behind = ground_place.w * ray.y * drop > 0.0 ? drop / ray.y * 1.001 : 1e9;
   ivec2 at = without_speck(ivec2(gl_FragCoord.xy));
   float depth = texelFetch(seen_depth, at, 0).x;
-  Surface s = surface_at(texelFetch(seen_map, at, 0), min(depth, 0.9999999), gl_FragCoord.xy);
+  Surface s = surface_at(texelFetch(seen_map, at, 0), min(depth, 0.9999999), vec2(at) + 0.5);
   if (s.view_depth >= behind) discard;
   colour = vec4(tone_map(shade(s, gl_FragCoord.xy)), 1.0);
 }

@@ -129,13 +129,11 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   block.sun_radiance.w = 1.0F;
   const bool has_glass = std::any_of(meshes.items().begin(), meshes.items().end(),
                                      [](const Item& item) { return item.casts_shadow && item.is_glass; });
-  // As common/shadow.glsl does for any normal.
+  // As common/shadow.glsl does for any normal, but without bias: the floor is not in the map.
   const glm::vec3 m = sun_frame[1];
   const float depth_part = (m.z < 0.0F ? -1.0F : 1.0F) * std::max(std::abs(m.z), 0.12F);
   const glm::vec2 slope = -glm::vec2(m) / depth_part * glm::vec2(extent) / extent.z;
-  const float bias = (std::abs(slope.x) + std::abs(slope.y)) / texels +
-                     0.5F * std::max(extent.x, extent.y) / texels / extent.z;
-  block.shadow_on_floor = glm::vec4(slope, bias, has_glass ? 1.0F : 0.0F);
+  block.shadow_on_floor = glm::vec4(slope, 0.0F, has_glass ? 1.0F : 0.0F);
 }
 
 ShadowPass::Part ShadowPass::find_changed(const Drawn& drawn, const Drawn& wanted, int map_size) {

@@ -263,6 +263,26 @@ TEST_CASE("a lit plane that casts shadows has none of its own") {
   }
 }
 
+TEST_CASE("what hardly rises from the floor has a shadow too, down to its foot") {
+  Frame frame = plain_frame();
+  frame.camera = {glm::vec3(0, 0.4F, 0.2F), glm::vec3(0), glm::vec3(0, 1, 0), 8.0F};
+  frame.lights.sun_direction = {1, 1, 0};
+  frame.draws = {at(make_box(1, {0.04F, 0.0012F, 0.04F}), {0, 0.0006F, 0})};
+  for (const float side : {-0.5F, 0.5F})  // the map is as wide as that
+    frame.draws.push_back(at(make_box(2, glm::vec3(0.05F)), {side, 0.025F, 0}));
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const auto [with, without] = with_and_without_shadow(renderer, frame);
+    const auto darkened = [&, &lit = without, &dark = with](float x) {
+      const glm::ivec2 place = pixel_of(frame, {x, 0, 0});
+      return green(lit, place) - green(dark, place);
+    };
+    CHECK(darkened(-0.0204F) > 30);
+    CHECK(darkened(-0.026F) <= 2);
+    CHECK(darkened(0.024F) <= 2);
+  }
+}
+
 TEST_CASE("a lit ball has no specks of shadow on its lit side") {
   Frame frame = plain_frame();
   frame.camera = {glm::vec3(2, 2, 4), glm::vec3(0, 0.5F, 0), glm::vec3(0, 1, 0), 30.0F};
