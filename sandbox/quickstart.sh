@@ -14,7 +14,7 @@ cmake --preset release -DSHATTERBOX_TESTS=OFF "${unity[@]}" >/dev/null
 cmake --build --preset release --target shatterbox
 
 echo "== running scenes/ornament.toml"
-build/release/shatterbox run scenes/ornament.toml -o ornament.mp4
+build/release/shatterbox run scenes/ornament.toml --quality full --size 1280x720 -o ornament.mp4
 
 seconds=$(($(date +%s) - start))
 echo "== done in $((seconds / 60)) min $((seconds % 60)) s; the video is $(pwd)/ornament.mp4"
