@@ -12,6 +12,7 @@
 #include "engine/world/forms.h"
 #include "sandbox/scene/build_joints.h"
 #include "sandbox/scene/build_mesh.h"
+#include "sandbox/scene/clean_solid.h"
 #include "sandbox/scene/limits.h"
 
 namespace shatterbox::sandbox::scene {
@@ -67,26 +68,36 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
                     body.name, grain, size, grain / kFinestGrain));
 }
 
+void measure(const world::SolidDescription& solid, BodyPlan& plan) {
+  plan.bounding_radius = plan.reach = 0.0;
+  plan.centre = geometry::solid_mass_properties(solid.mesh, 1.0).centre;
+  find_radii(solid.mesh, plan);
+}
+
 /// A solid's mesh has an inside: closed, of one or several parts that each enclose some.
 std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, const SolidForm& form,
                                                       const SceneDescription& scene, BodyPlan& plan,
                                                       std::vector<std::string>& notes, Problems& problems) {
   auto built = build_mesh(form, body.place, problems, notes);
   if (!built) return std::nullopt;
-  if (!geometry::diagnose(built->mesh, {.allow_loose_parts = true}).is_closed) {
-    book(problems, body.place,
-         fmt::format("body \"{}\" is a solid, but its mesh has an open border", body.name),
-         "close the mesh's holes, or write kind = \"shell\" with a thickness");
-    return std::nullopt;
-  }
-  plan.centre = geometry::solid_mass_properties(built->mesh, 1.0).centre;
-  find_radii(built->mesh, plan);
   world::SolidDescription solid;
   solid.is_breakable = form.is_breakable;
   solid.element_size = form.element_size.value_or(0.0);
-  solid.held = find_held(built->mesh, body.rotation, body.support, body.place, problems);
   solid.mesh = std::move(built->mesh);
   solid.parts = std::move(built->parts);
+  if (!geometry::diagnose(solid.mesh, {.allow_loose_parts = true}).is_closed) {
+    const auto closed = close_holes(solid);
+    if (!closed) {
+      book(problems, body.place,
+           fmt::format("body \"{}\" is a solid, but its mesh has an open border: {}", body.name,
+                       closed.error()),
+           "close the mesh's holes, or write kind = \"shell\" with a thickness");
+      return std::nullopt;
+    }
+    notes.push_back(fmt::format("the mesh of \"{}\" has an open border: {}", body.name, closed.value()));
+  }
+  measure(solid, plan);
+  solid.held = find_held(solid.mesh, body.rotation, body.support, body.place, problems);
   note_fine_grains(body, solid, scene, notes);
   return solid;
 }
@@ -243,6 +254,23 @@ std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& pr
   return plan;
 }
 
+namespace {
+
+/// What an engine cannot divide into tetrahedra as it is may be one of which it can tell what is inside.
+bool clean_crossings(const BodyEntry& body, BodyPlan& plan, world::BodyDescription& description,
+                     std::vector<std::string>& notes) {
+  auto* solid = std::get_if<world::SolidDescription>(&description.form);
+  if (!solid || !solid->is_breakable) return false;
+  const auto done = unite_crossings(*solid);
+  if (!done) return false;
+  notes.push_back(fmt::format("of the mesh of \"{}\", {}", body.name, done.value()));
+  plan.description.form = *solid;
+  measure(*solid, plan);
+  return true;
+}
+
+}  // namespace
+
 std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems) {
   auto plan = plan_bodies(scene, problems);
   if (!plan) return std::nullopt;
@@ -264,7 +292,9 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
       description.pose = poses[copy];
       if (body.path) description.path = path_of(body, poses[copy]);
       description.name = copy_name(body, static_cast<int>(copy));
-      const auto id = built.world.add_body(description);
+      auto id = built.world.add_body(description);
+      if (!id && clean_crossings(body, built.plan.bodies[i], description, built.plan.notes))
+        id = built.world.add_body(description);
       if (!id) {
         book(problems, body.place, fmt::format("body \"{}\": {}", description.name, id.error()), "");
         break;

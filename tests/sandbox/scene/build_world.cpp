@@ -1,9 +1,14 @@
 // From plain data to bodies: meshes, supports, copies.
 #include "sandbox/scene/build_world.h"
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
+
 #include <set>
 
+#include "engine/core/elementary.h"
+#include "engine/geometry/generators.h"
+#include "engine/material/material.h"
 #include "sandbox/scene/build_mesh.h"
 #include "tests/sandbox/scene/mesh_file_folder.h"
 #include "tests/sandbox/scene/reading.h"
@@ -55,6 +60,44 @@ TEST_CASE("a solid needs a closed mesh") {
   CHECK(!build_world(*reading.scene, problems).has_value());
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("open border") != std::string::npos);
+}
+
+TEST_CASE("a solid's small hole is closed, and parts that overlap are united, with a note") {
+  const MeshFileFolder folder;
+  geometry::Meshing meshing;
+  meshing.edge_length = 0.015;
+  const geometry::TriangleMesh ball = geometry::make_sphere(0.1, meshing).value();
+  std::string points, faces, more_faces, shifted;
+  for (const Vec3& p : ball.positions) {
+    points += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+    shifted += fmt::format("v {} {} {}\n", p.x() + 0.12, p.y(), p.z());
+  }
+  const auto count = static_cast<int>(ball.positions.size());
+  for (const geometry::Triangle& t : ball.triangles) {
+    faces += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    more_faces += fmt::format("f {} {} {}\n", t[0] + 1 + count, t[1] + 1 + count, t[2] + 1 + count);
+  }
+  const auto build = [&](const char* name, const std::string& text) {
+    const Reading reading =
+        read("[[body]]\nname = \"ball\"\nkind = \"solid\"\nmaterial = \"plaster\"\nmesh = \"" +
+             folder.write(name, text).string() + "\"\n");
+    REQUIRE(reading.scene.has_value());
+    Problems problems;
+    auto built = build_world(*reading.scene, problems);
+    INFO(describe(problems));
+    REQUIRE(built.has_value());
+    REQUIRE(built->plan.notes.size() >= 1);
+    return std::pair(built->world.bodies()[0].shape->mass, built->plan.notes.back());
+  };
+  const double density = material::find_preset("plaster")->density;
+  constexpr double kBall = 4.0 / 3.0 * core::kPi * 1e-3, kLens = core::kPi / 12.0 * 0.52 * 0.08 * 0.08;
+  const auto [holed_mass, holed_note] = build("holed.obj", points + faces.substr(faces.find('\n') + 1));
+  CHECK(holed_mass == Approx(density * kBall).epsilon(0.03));
+  CHECK(holed_note.find("open border") != std::string::npos);
+  CHECK(holed_note.find("over holes") != std::string::npos);
+  const auto [united_mass, united_note] = build("united.obj", points + shifted + faces + more_faces);
+  CHECK(united_mass == Approx(density * (2.0 * kBall - kLens)).epsilon(0.03));
+  CHECK(united_note.find("pass through each other") != std::string::npos);
 }
 
 TEST_CASE("a mesh that is beyond mending is refused with what is wrong") {
