@@ -8,6 +8,7 @@
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/fracture/solid_bridges.h"
 #include "engine/fracture/solid_force.h"
 #include "engine/fracture/solid_tracer.h"
 
@@ -20,6 +21,8 @@ using core::at;
 constexpr double kToldSize = 1.5;  // of the elements, is the least that they can tell of a crack
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
+
+constexpr double kLeastLump = 0.5;  // of the cube of that, is what parts from bridges
 
 // Where a crack came to nothing, none is begun again before the stress is so many times as great.
 constexpr double kSolidTriedAgain = 1.25;
@@ -216,39 +219,72 @@ class SolidDecider {
     });
   }
 
+  /// The cracked complex.
+  bool solve_again() {
+    SolidForm form = find_form(*complex_);
+    if (!force_.settle_again(form.mesh, form.skin, origins_, decision_, decision_.verdict.reason))
+      return false;
+    mesh_ = std::move(form.mesh);
+    contacts_ = std::move(form.contacts);
+    force_.stays_on(mesh_);
+    solve_stresses(mesh_, contacts_, false);
+    return true;
+  }
+
+  /// False if it was the last. The first has the model's mesh, and candidates.
+  bool run_generation(int generation, std::vector<SolidCandidate> candidates) {
+    const auto start = core::Clock::now();
+    SolidTracer tracer(*complex_, tracer_setup(generation > 0 ? mesh_ : model().mesh));
+    tracer.resume(cracks_);
+    leave_out_stillborn(candidates);
+    tracer.nucleate(std::move(candidates), cracks_);
+    for (const SolidCandidate& c : tracer.stillborn()) stillborn_[c.number] = c.overload;
+    decision_.generation_bound_active = false;
+    decision_.energy_guard_active = decision_.energy_guard_active || tracer.is_out_of_energy();
+    is_solved_ = !(tracer.area() > 0.0);
+    if (is_solved_) return false;
+    settle(*complex_);
+    origins_ = tracer.origins();
+    decision_.cracks += tracer.crack_count();
+    decision_.new_area += tracer.area();
+    decision_.grain_area += tracer.grain_area();
+    decision_.fracture_energy += tracer.energy();
+    decision_.trace_ms += core::milliseconds_since(start);
+    return !tracer.is_out_of_energy() && tracer.area() >= kSolidGrowthThatCounts * decision_.new_area;
+  }
+
+  /// What is cracked through but for what the elements cannot tell of hangs by that.
+  void break_bridges() {
+    if (decision_.energy_guard_active || count_parts(*complex_) != count_parts(*subject_.complex)) return;
+    const int generations = decision_.generations;
+    const bool is_known = is_solved_ || solve_again();
+    decision_.generations = generations;
+    if (!is_known) return;
+    const double size = kToldSize * model().mean_edge_length;
+    const double area =
+        part_bridges(*complex_, {.contacts = decision_.cracks > 0 ? &contacts_ : &model().contacts,
+                                 .tensions = &tensions_,
+                                 .strength = subject_.flaws->greatest_strength,
+                                 .least_volume = kLeastLump * size * size * size,
+                                 .id = subject_.first_cut_id + decision_.cracks});
+    if (!(area > 0.0)) return;
+    ++decision_.cracks;
+    decision_.new_area += area;
+    decision_.fracture_energy += subject_.material.fracture_energy * area;
+  }
+
   void run_generations(std::vector<SolidCandidate> candidates) {
     turns_ = subject_.kept_turns->of(model().mesh.elements, model().size, settings_.waviness, subject_.seed);
-    auto complex = std::make_shared<geometry::SolidComplex>(*subject_.complex);
-    geometry::SolidMesh mesh;
-    std::vector<int> origins;
+    complex_ = std::make_shared<geometry::SolidComplex>(*subject_.complex);
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
-        SolidForm form = find_form(*complex);
-        if (!force_.settle_again(form.mesh, form.skin, origins, decision_, decision_.verdict.reason)) break;
-        mesh = std::move(form.mesh);
-        force_.stays_on(mesh);
-        solve_stresses(mesh, form.contacts, false);
-        candidates = find_candidates(*complex, false);
+        if (!solve_again()) break;
+        candidates = find_candidates(*complex_, false);
       }
-      const auto start = core::Clock::now();
-      SolidTracer tracer(*complex, tracer_setup(generation > 0 ? mesh : model().mesh));
-      tracer.resume(cracks_);
-      leave_out_stillborn(candidates);
-      tracer.nucleate(std::move(candidates), cracks_);
-      for (const SolidCandidate& c : tracer.stillborn()) stillborn_[c.number] = c.overload;
-      decision_.generation_bound_active = false;
-      decision_.energy_guard_active = decision_.energy_guard_active || tracer.is_out_of_energy();
-      if (!(tracer.area() > 0.0)) break;
-      settle(*complex);
-      origins = tracer.origins();
-      decision_.cracks += tracer.crack_count();
-      decision_.new_area += tracer.area();
-      decision_.grain_area += tracer.grain_area();
-      decision_.fracture_energy += tracer.energy();
-      decision_.trace_ms += core::milliseconds_since(start);
-      if (tracer.is_out_of_energy() || tracer.area() < kSolidGrowthThatCounts * decision_.new_area) break;
+      if (!run_generation(generation, std::move(candidates))) break;
       decision_.generation_bound_active = generation + 1 == settings_.most_generations;
     }
+    break_bridges();
     if (decision_.cracks == 0) {
       // Every overloaded flaw lay where no cut is possible, or there was no energy for one.
       decision_.verdict.outcome = Outcome::held;
@@ -257,8 +293,8 @@ class SolidDecider {
       return;
     }
     decision_.verdict.outcome = Outcome::broke;
-    decision_.part_count = count_parts(*complex);
-    decision_.complex = std::move(complex);
+    decision_.part_count = count_parts(*complex_);
+    decision_.complex = std::move(complex_);
   }
 
   const SolidSubject subject_;
@@ -271,7 +307,12 @@ class SolidDecider {
   std::vector<double> tensions_;               // their first principal values
   std::vector<int> pieces_;                    // that its cells are in
   std::vector<OpenCrack> cracks_;              // of this decision
-  std::map<int, double> stillborn_;            // overload by candidate's number, where no crack came of it
+  std::shared_ptr<geometry::SolidComplex> complex_;
+  geometry::SolidMesh mesh_;                      // of the complex, as solved last
+  std::vector<geometry::SolidContact> contacts_;  // likewise
+  std::vector<int> origins_;                      // |cells|: those they were part of then
+  bool is_solved_ = false;                        // the complex as it is
+  std::map<int, double> stillborn_;               // overload by candidate's number, where no crack came of it
 };
 
 }  // namespace
