@@ -75,4 +75,22 @@ TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::
   return tree;
 }
 
+std::vector<Box> node_boxes(const TriangleTree& tree, const TriangleMesh& mesh) {
+  const auto vertex_box = [&](int vertex) {
+    Box box;
+    box.include(mesh.positions[static_cast<std::size_t>(vertex)]);
+    return box;
+  };
+  std::vector<Box> boxes;
+  refit(tree, mesh.triangles, vertex_box, boxes);
+  return boxes;
+}
+
+std::vector<Box> triangle_boxes(const TriangleMesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t)
+    for (const int v : mesh.triangles[t]) boxes[t].include(mesh.positions[static_cast<std::size_t>(v)]);
+  return boxes;
+}
+
 }  // namespace shatterbox::geometry

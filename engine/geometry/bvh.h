@@ -75,6 +75,11 @@ void refit(const TriangleTree& tree, const std::vector<Triangle>& triangles, con
   }
 }
 
+/// The same of a mesh where it is.
+std::vector<Box> node_boxes(const TriangleTree& tree, const TriangleMesh& mesh);
+/// Of its triangles.
+std::vector<Box> triangle_boxes(const TriangleMesh& mesh);
+
 /// Calls visit(leaf_a, leaf_b) for all pairs of leaves whose boxes come within `margin`, in an order that
 /// depends on the trees alone. `stack` is scratch.
 template <class Visit>

@@ -48,12 +48,7 @@ struct Tree {
 
 Tree make_tree(const TriangleMesh& mesh) {
   Tree tree{build_triangle_tree(mesh.positions, mesh.triangles), {}};
-  const auto vertex_box = [&](int vertex) {
-    Box box;
-    box.include(mesh.positions[static_cast<Size>(vertex)]);
-    return box;
-  };
-  refit(tree.tree, mesh.triangles, vertex_box, tree.boxes);
+  tree.boxes = node_boxes(tree.tree, mesh);
   return tree;
 }
 

@@ -29,7 +29,7 @@ constexpr double kMostNodes = 8e6;          // of the grid
 constexpr double kInside = 0.5;             // least winding number
 constexpr double kLeastShareOfEdge = 0.01;  // a vertex stays so far from the ends of its edge
 constexpr int kSlides = 8;                  // of all vertices along the surface
-constexpr int kBisections = 20;               // of an edge over a hole
+constexpr int kBisections = 20;             // of an edge over a hole
 constexpr double kAside = 0.02;             // of the spacing: where the two sides of a triangle are asked
 constexpr double kMostBridged = 0.05, kMostLost = 0.05;
 // The grid's planes lie where few surfaces have theirs.
@@ -45,21 +45,9 @@ class Remaking {
       : given_(given),
         spacing_(spacing),
         winding_(given),
-        tree_(build_triangle_tree(given.positions, given.triangles)) {
-    for (const Triangle& t : given.triangles) {
-      Box box;
-      for (const int v : t) box.include(given.positions[at(v)]);
-      triangle_boxes_.push_back(box);
-    }
-    refit(
-        tree_, given.triangles,
-        [&](int v) {
-          Box box;
-          box.include(given.positions[at(v)]);
-          return box;
-        },
-        boxes_);
-  }
+        tree_(build_triangle_tree(given.positions, given.triangles)),
+        boxes_(node_boxes(tree_, given)),
+        triangle_boxes_(triangle_boxes(given)) {}
 
   core::Result<RemadeSurface> run() {
     if (const auto fault = find_size_fault("the spacing", spacing_)) return core::Error{*fault};
@@ -206,7 +194,8 @@ class Remaking {
     if (share < 0.0) {
       is_bridge_[vertex] = 1;
       double low = 0.0, high = 1.0;
-      for (int k = 0; k < kBisections; ++k) (is_changed(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+      for (int k = 0; k < kBisections; ++k)
+        (is_changed(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
       share = 0.5 * (low + high);
     }
     out_.mesh.positions[vertex] = a + std::clamp(share, kLeastShareOfEdge, 1.0 - kLeastShareOfEdge) * (b - a);

@@ -19,19 +19,10 @@ using core::at;
 class SelfCrossingSearch {
  public:
   explicit SelfCrossingSearch(const TriangleMesh& mesh)
-      : mesh_(mesh), tree_(build_triangle_tree(mesh.positions, mesh.triangles)) {
-    const auto vertex_box = [&](int vertex) {
-      Box box;
-      box.include(position(vertex));
-      return box;
-    };
-    refit(tree_, mesh_.triangles, vertex_box, boxes_);
-    for (const Triangle& t : mesh_.triangles) {
-      Box box;
-      for (const int v : t) box.include(position(v));
-      triangle_boxes_.push_back(box);
-    }
-  }
+      : mesh_(mesh),
+        tree_(build_triangle_tree(mesh.positions, mesh.triangles)),
+        boxes_(node_boxes(tree_, mesh)),
+        triangle_boxes_(triangle_boxes(mesh)) {}
 
   SelfCrossings run() {
     std::vector<std::pair<int, int>> stack, pairs;

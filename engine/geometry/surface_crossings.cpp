@@ -38,19 +38,9 @@ class CrossingSearch {
         topology_(elements.topology),
         surface_(surface),
         surface_edges_(edges),
-        tree_(build_triangle_tree(surface.positions, surface.triangles)) {
-    const auto vertex_box = [&](int vertex) {
-      Box box;
-      box.include(surface_.positions[at(vertex)]);
-      return box;
-    };
-    refit(tree_, surface_.triangles, vertex_box, boxes_);
-    for (const Triangle& t : surface_.triangles) {
-      Box box;
-      for (const int v : t) box.include(surface_.positions[at(v)]);
-      triangle_boxes_.push_back(box);
-    }
-  }
+        tree_(build_triangle_tree(surface.positions, surface.triangles)),
+        boxes_(node_boxes(tree_, surface)),
+        triangle_boxes_(triangle_boxes(surface)) {}
 
   core::Result<SurfaceCrossings> run() {
     found_.vertex_tetrahedron.assign(surface_.positions.size(), -1);

@@ -18,14 +18,9 @@ double squared_distance(const Box& box, const Vec3& p) {
 }  // namespace
 
 SurfaceDistance::SurfaceDistance(const TriangleMesh& surface)
-    : surface_(surface), tree_(build_triangle_tree(surface.positions, surface.triangles)) {
-  const auto vertex_box = [&](int vertex) {
-    Box box;
-    box.include(surface_.positions[at(vertex)]);
-    return box;
-  };
-  refit(tree_, surface_.triangles, vertex_box, boxes_);
-}
+    : surface_(surface),
+      tree_(build_triangle_tree(surface.positions, surface.triangles)),
+      boxes_(node_boxes(tree_, surface)) {}
 
 NearestPlace SurfaceDistance::find(const Vec3& p, double radius) const {
   NearestPlace nearest;

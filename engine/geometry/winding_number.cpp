@@ -22,15 +22,7 @@ WindingNumber::WindingNumber(const TriangleMesh& surface)
     : surface_(surface), tree_(build_triangle_tree(surface.positions, surface.triangles)) {
   clusters_.resize(tree_.nodes.size());
   std::vector<double> areas(clusters_.size(), 0.0);
-  std::vector<Box> boxes;
-  refit(
-      tree_, surface.triangles,
-      [&](int v) {
-        Box box;
-        box.include(surface.positions[at(v)]);
-        return box;
-      },
-      boxes);
+  const std::vector<Box> boxes = node_boxes(tree_, surface);
   for (Size n = clusters_.size(); n-- > 0;) {
     const TriangleTree::Node& node = tree_.nodes[n];
     Cluster& cluster = clusters_[n];
