@@ -255,22 +255,25 @@ class SolidDecider {
 
   /// What is cracked through but for what the elements cannot tell of hangs by that.
   void break_bridges() {
-    if (decision_.energy_guard_active || count_parts(*complex_) != count_parts(*subject_.complex)) return;
+    if (count_parts(*complex_) != count_parts(*subject_.complex)) return;
     const int generations = decision_.generations;
     const bool is_known = is_solved_ || solve_again();
     decision_.generations = generations;
     if (!is_known) return;
     const double size = kToldSize * model().mean_edge_length;
+    const double cost = subject_.material.fracture_energy;
+    const double left = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy);
     const double area =
         part_bridges(*complex_, {.contacts = decision_.cracks > 0 ? &contacts_ : &model().contacts,
                                  .tensions = &tensions_,
                                  .strength = subject_.flaws->greatest_strength,
                                  .least_volume = kLeastLump * size * size * size,
+                                 .most_area = settings_.has_energy_guard && cost > 0.0 ? left / cost : 1e300,
                                  .id = subject_.first_cut_id + decision_.cracks});
     if (!(area > 0.0)) return;
     ++decision_.cracks;
     decision_.new_area += area;
-    decision_.fracture_energy += subject_.material.fracture_energy * area;
+    decision_.fracture_energy += cost * area;
   }
 
   void run_generations(std::vector<SolidCandidate> candidates) {

@@ -14,12 +14,16 @@ using geometry::FacetKind;
 
 constexpr int kRings = 2;  // of cells about a crack that can belong to a bridge
 
+bool is_crack(const geometry::SolidFacet& facet) {
+  return facet.kind == FacetKind::crack || facet.kind == FacetKind::old_crack;
+}
+
 /// Cells with a crack's face, and those about them.
 std::vector<char> find_cells_at_cracks(const geometry::SolidComplex& complex,
                                        const std::vector<geometry::SolidContact>& contacts) {
   std::vector<char> is_near(complex.cells.size(), 0);
   for (const geometry::SolidFacet& facet : complex.facets)
-    if (facet.parts[0] < 0 && (facet.kind == FacetKind::crack || facet.kind == FacetKind::old_crack))
+    if (facet.parts[0] < 0 && is_crack(facet))
       for (const int cell : facet.cells)
         if (cell >= 0) is_near[at(cell)] = 1;
   for (int ring = 0; ring < kRings; ++ring) {
@@ -66,13 +70,17 @@ double part_bridges(geometry::SolidComplex& complex, const BridgeSetup& setup) {
     volumes[at(lumps.find(a))] = volume_a + volume_b;
   }
   double area = 0.0;
+  std::vector<geometry::SolidFacet*> opened;
   for (geometry::SolidFacet& facet : complex.facets) {
-    if (facet.parts[0] >= 0 || facet.cells[0] < 0 || facet.cells[1] < 0) continue;
-    if (facet.kind == FacetKind::crack || facet.kind == FacetKind::old_crack) continue;
+    if (facet.parts[0] >= 0 || facet.cells[0] < 0 || facet.cells[1] < 0 || is_crack(facet)) continue;
     if (lumps.find(facet.cells[0]) == lumps.find(facet.cells[1])) continue;
-    facet.kind = FacetKind::crack;
-    facet.tag = setup.id;
+    opened.push_back(&facet);
     area += facet_area_vector(complex, facet).norm();
+  }
+  if (area > setup.most_area) return 0.0;
+  for (geometry::SolidFacet* facet : opened) {
+    facet->kind = FacetKind::crack;
+    facet->tag = setup.id;
   }
   return area;
 }

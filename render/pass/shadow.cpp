@@ -16,7 +16,8 @@ namespace {
 constexpr float kFarTargets =
     2.5F;  // times as far as the target: what is beyond casts too small a shadow to be missed
 constexpr float kPlaces = 16.0F;  // the map's place moves in such parts of its size
-constexpr int kTile = 16;         // texels; a disc of taps stays within one tile of its centre
+constexpr float kTakenByClear = 0.25F, kTakenByTint = 0.6F;
+constexpr int kTile = 16;  // texels; a disc of taps stays within one tile of its centre
 
 struct SunBox {
   glm::vec3 least{std::numeric_limits<float>::max()}, most{std::numeric_limits<float>::lowest()};
@@ -52,6 +53,20 @@ SunBox find_seen(const FrameBlock& block, const glm::mat3& sun_frame) {
 // The next of a geometric row of sizes: a map's scale changes rarely.
 float step_up(float size) {
   return std::exp2(std::ceil(std::log2(size) * 6.0F) / 6.0F);
+}
+
+// Of the sun's light: a quarter by clear glass, and what its tint keeps back. The darkest tells for all.
+float find_share_of_glass(const Frame& frame) {
+  const glm::vec3 luminance(0.2126F, 0.7152F, 0.0722F);
+  float share = kTakenByClear;
+  for (const Draw& draw : frame.draws) {
+    if (!draw.casts_shadow) continue;
+    for (const Look& look : draw.looks) {
+      const float kept_back = 1.0F - glm::dot(luminance, look.outside);
+      if (look.transmission > 0.0F) share = std::max(share, kTakenByClear + kTakenByTint * kept_back);
+    }
+  }
+  return std::min(share, 1.0F);
 }
 
 // A total order; those that are equal draw the same.
@@ -129,11 +144,12 @@ void ShadowPass::fit(const Frame& frame, const MeshStore& meshes, FrameBlock& bl
   block.sun_radiance.w = 1.0F;
   const bool has_glass = std::any_of(meshes.items().begin(), meshes.items().end(),
                                      [](const Item& item) { return item.casts_shadow && item.is_glass; });
+  const float taken = has_glass ? find_share_of_glass(frame) : 0.0F;
   // As common/shadow.glsl does for any normal, but without bias: the floor is not in the map.
   const glm::vec3 m = sun_frame[1];
   const float depth_part = (m.z < 0.0F ? -1.0F : 1.0F) * std::max(std::abs(m.z), 0.12F);
   const glm::vec2 slope = -glm::vec2(m) / depth_part * glm::vec2(extent) / extent.z;
-  block.shadow_on_floor = glm::vec4(slope, 0.0F, has_glass ? 1.0F : 0.0F);
+  block.shadow_on_floor = glm::vec4(slope, 0.0F, taken);
 }
 
 ShadowPass::Part ShadowPass::find_changed(const Drawn& drawn, const Drawn& wanted, int map_size) {

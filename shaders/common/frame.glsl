@@ -26,7 +26,7 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 view_right;
   vec4 view_up;
   vec4 shadow_texel;        // x, y: metres a texel; z: metres of depth range; w: texels across a tile
-  vec4 shadow_on_floor;     // x, y: slope of the floor in the map; z: bias; w: casters of glass (0 or 1)
+  vec4 shadow_on_floor;     // x, y: slope of the floor in the map; w: share of light that glass takes, 0 if none casts
   vec4 scalar_range;        // x: least, y: 1/(most - least)
 };
 const float kPi = 3.14159265;

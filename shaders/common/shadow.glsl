@@ -1,6 +1,6 @@
 // How much of the sun a point sees, from the shadow map. Most points are told lit or dark by the tiles alone; only
 // those near an edge take taps, over a disc that grows with the distance to what casts the shadow [Fer05]. Glass has a
-// map of its own, which takes a quarter of the light.
+// map of its own, which takes a share of the light.
 #include "common/frame.glsl"
 layout(binding = 0) uniform sampler2DShadow shadow_map;
 layout(binding = 1) uniform sampler2D shadow_tiles;    // x: least, y: greatest depth near the tile
@@ -17,7 +17,7 @@ float through_glass(vec3 p, vec2 slope, float bias) {
   float sum = 4.0;
   for (int i = 0; i < taps; ++i) {
     vec2 shift = apart * (vec2(i & 1, i >> 1) * 2.0 - 1.0);
-    sum -= 0.25 * (1.0 - texture(glass_map, vec3(p.xy + shift, min(depth + dot(slope, shift), 1.0))));
+    sum -= shadow_on_floor.w * (1.0 - texture(glass_map, vec3(p.xy + shift, min(depth + dot(slope, shift), 1.0))));
   }
   return sum * 0.25;
 }
@@ -68,5 +68,5 @@ float sun_seen(vec3 position_world, vec3 normal) {
 }
 
 float sun_seen_by_floor(vec3 position_world) {
-  return sun_seen_at(place_in_shadow(position_world), shadow_on_floor.xy, shadow_on_floor.z, sun.y <= 0.0);
+  return sun_seen_at(place_in_shadow(position_world), shadow_on_floor.xy, 0.0, sun.y <= 0.0);
 }

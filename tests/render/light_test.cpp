@@ -241,6 +241,9 @@ TEST_CASE("the shadow of a pane of glass is even and light") {
     CHECK(most - least <= 2);
     CHECK(most < green(image, lit) - 8);
     CHECK(least > green(image, lit) - 40);
+    Frame tinted = frame;
+    tinted.draws[0].looks = {glass({0.25F, 0.5F, 0.3F})};
+    CHECK(green(renderer.render(tinted), middle) < least - 10);
   }
 }
 

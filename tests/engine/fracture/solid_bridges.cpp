@@ -27,9 +27,9 @@ SolidComplex bridged_cube() {
   return complex;
 }
 
-double part(SolidComplex& complex, const std::vector<double>& tensions) {
+double part(SolidComplex& complex, const std::vector<double>& tensions, double most_area = 1.0) {
   const auto contacts = geometry::find_solid_contacts(complex);
-  return part_bridges(complex, {&contacts, &tensions, 1e6, 0.1, 7});
+  return part_bridges(complex, {&contacts, &tensions, 1e6, 0.1, most_area, 7});
 }
 
 }  // namespace
@@ -43,6 +43,8 @@ TEST_CASE("solid bridges: one that is overloaded parts, along faces of its eleme
     const double away = std::abs(cell_centre(complex, complex.cells[c]).x() - 0.48);
     if (away < 0.2) tensions[c] = 2e6 - 4e6 * away;
   }
+  CHECK(part(complex, tensions, 0.03) == 0.0);
+  REQUIRE(count_parts(complex) == 1);
   const double area = part(complex, tensions);
   CHECK(area > 0.2 * 0.2);
   CHECK(area < 5.0 * 0.2 * 0.2);  // its sides open too, as far as they go past the cut
