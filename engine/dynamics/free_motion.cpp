@@ -41,6 +41,12 @@ struct Spin {
   }
 };
 
+// Of a turn with locked axes. A slender body's spin about its own axis may grow a hundredfold while it turns:
+// what would change its energy by more is followed in halves, and what they do not reach is not turned in
+// that time.
+constexpr double kEnergyError = 1e-6;
+constexpr int kMostTries = 10000;
+
 // In which a turn of so much (rad) is followed.
 int count_parts(double angle) {
   constexpr double kMostAngle = 0.05;  // rad a part, unless there would be too many
@@ -128,9 +134,11 @@ void advance_locked_spin(const PrincipalInertia& inertia, const body::LockedAxes
     return Mat3(axes * inertia.moments.asDiagonal() * axes.transpose());
   };
   const Vec3 momentum = locked.let_turn(inertia_at(rotation) * spin);
-  const int parts = count_parts(speed * time);
-  const double part = time / parts;
-  for (int i = 0; i < parts; ++i) {
+  const double energy = momentum.dot(spin);  // twice
+  const double longest = time / count_parts(speed * time);
+  double left = time, part = longest;
+  for (int tries = 0; left > 1e-12 * time && tries < kMostTries; ++tries) {
+    part = std::min(part, left);
     // The turn of a part at the spin that the body has where a turn by `so_far` brings it.
     const auto turn = [&](const Vec3& so_far) {
       return Vec3(part * (locked.invert(inertia_at(rotation_by(so_far) * rotation)) * momentum));
@@ -140,9 +148,17 @@ void advance_locked_spin(const PrincipalInertia& inertia, const body::LockedAxes
     const Vec3 third = turn(0.5 * second - 0.125 * first.cross(second));
     const Vec3 fourth = turn(third);
     const Vec3 whole = (first + 2.0 * second + 2.0 * third + fourth) / 6.0 - first.cross(fourth) / 12.0;
-    rotation = (rotation_by(whole) * rotation).normalized();
+    const Quat turned = (rotation_by(whole) * rotation).normalized();
+    const Vec3 then = locked.invert(inertia_at(turned)) * momentum;
+    if (!(std::abs(momentum.dot(then) - energy) < kEnergyError * energy)) {
+      part *= 0.5;
+      continue;
+    }
+    rotation = turned;
+    spin = then;
+    left -= part;
+    part = std::min(longest, 1.2 * part);
   }
-  spin = locked.invert(inertia_at(rotation)) * momentum;
 }
 
 void advance_turn(const PrincipalInertia& inertia, const body::LockedAxes& locked, double time,

@@ -304,3 +304,29 @@ TEST_CASE("bodies that go as one keep to what each of them may") {
 }
 
 }  // namespace shatterbox
+
+TEST_CASE("a needle that may turn about two axes keeps its energy, however its spin about itself may grow") {
+  const double length = 1.0, radius = 0.002, mass = 0.1;
+  const double across = mass * length * length / 12.0, along = 0.5 * mass * radius * radius;
+  const dynamics::PrincipalInertia inertia =
+      dynamics::find_principal_inertia(Vec3(across, along, across).asDiagonal());
+  body::LockedAxes locked;
+  locked.turns = {false, true, false};
+  for (const double rate : {30.0, 60.0, 240.0, 960.0})
+    for (const Vec3& start : {Vec3(300, 0, 1), Vec3(60, 0, 3), Vec3(20, 0, 3)}) {
+      Quat rotation = dynamics::rotation_by(Vec3(0.6, 0.2, 0.9));
+      Vec3 spin = start;
+      const auto inertia_now = [&] {
+        const Mat3 axes = (rotation * inertia.body_from_axes).toRotationMatrix();
+        return Mat3(axes * inertia.moments.asDiagonal() * axes.transpose());
+      };
+      const double energy = spin.dot(inertia_now() * spin);
+      const Vec3 momentum = locked.let_turn(inertia_now() * spin);
+      for (int step = 0; step < static_cast<int>(0.5 * rate); ++step)
+        dynamics::advance_locked_spin(inertia, locked, 1.0 / rate, rotation, spin);
+      INFO("rate " << rate << " spin " << start.transpose() << " ends with " << spin.transpose());
+      CHECK(spin.dot(inertia_now() * spin) == Approx(energy).epsilon(1e-3));
+      CHECK((locked.let_turn(inertia_now() * spin) - momentum).norm() < 1e-9 * momentum.norm());
+      CHECK(spin.y() == 0.0);
+    }
+}
