@@ -13,6 +13,7 @@
 #include "engine/core/parallel.h"
 #include "engine/geometry/bvh.h"
 #include "engine/geometry/generator_faults.h"
+#include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_findings.h"
 #include "engine/geometry/orientation.h"
 #include "engine/geometry/self_crossings.h"
@@ -31,7 +32,7 @@ constexpr double kLeastShareOfEdge = 0.01;  // a vertex stays so far from the en
 constexpr int kSlides = 8;                  // of all vertices along the surface
 constexpr int kBisections = 20;             // of an edge over a hole
 constexpr double kAside = 0.02;             // of the spacing: where the two sides of a triangle are asked
-constexpr double kMostBridged = 0.05, kMostLost = 0.05;
+constexpr double kMostBridged = 0.05, kMostLost = 0.01, kMostVolumeOff = 0.05;
 // The grid's planes lie where few surfaces have theirs.
 const Vec3 kMargin(1.31, 1.47, 1.17);  // spacings
 
@@ -299,7 +300,38 @@ class Remaking {
                     100.0 * out_.lost_share, spacing_);
       return text + at_place(lost_);
     }
+    const double volume = find_volume(), made = enclosed_volume(out_.mesh);
+    if (std::abs(made - volume) > kMostVolumeOff * volume) {
+      std::snprintf(text, sizeof text,
+                    "on a grid of %.3g m its volume would be off by %.0f %%: take smaller elements", spacing_,
+                    100.0 * std::abs(made / volume - 1.0));
+      return text;
+    }
     return std::nullopt;
+  }
+
+  /// m3 that the surface given winds about: cells near it are asked at eight places each.
+  double find_volume() const {
+    std::vector<char> is_near(is_inside_.size(), 0);
+    for (const Box& box : triangle_boxes_) {
+      std::array<Size, 3> low{}, high{};
+      for (int k = 0; k < 3; ++k) {
+        low[at(k)] = static_cast<Size>((box.low[k] - origin_[k]) / spacing_);
+        high[at(k)] = static_cast<Size>((box.high[k] - origin_[k]) / spacing_);
+      }
+      for (Size z = low[2]; z <= high[2]; ++z)
+        for (Size y = low[1]; y <= high[1]; ++y)
+          for (Size x = low[0]; x <= high[0]; ++x) is_near[node_at(x, y, z)] = 1;
+    }
+    std::vector<int> eighths(is_near.size(), 0);
+    core::parallel_for(eighths.size(), 1024, [&](Size cell) {
+      if (is_near[cell] == 0) eighths[cell] = 8 * is_inside_[cell];
+      for (int bits = 0; bits < 8 && is_near[cell] != 0; ++bits)
+        eighths[cell] += is_inside(place_of(cell) + spacing_ * (Vec3::Constant(0.25) + 0.5 * corner(bits)));
+    });
+    double sum = 0.0;
+    for (const int eighth : eighths) sum += eighth;
+    return sum / 8.0 * spacing_ * spacing_ * spacing_;
   }
 
   /// Triangles given that have the same on both sides, nothing, or the border nowhere near.

@@ -16,8 +16,8 @@ struct RemadeSurface {
 /// What `surface` (triangles of agreeing windings) has a winding number above one half about. Its vertices
 /// lie on the surface given, on edges of a grid of `spacing` (m), or over its holes; edges and corners are
 /// cut off by about half of that. Fails with a sentence if nothing is enclosed, if the grid would be too
-/// large, or if that would not be honest: more than 1/20 of it over holes, or more than 1/20 of the surface
-/// given lost.
+/// large, or if that would not be honest: more than 1/20 of it over holes, more than 1/100 of the surface
+/// given lost, or its volume off by more than 1/20.
 core::Result<RemadeSurface> remake_surface(const TriangleMesh& surface, double spacing);
 
 }  // namespace shatterbox::geometry

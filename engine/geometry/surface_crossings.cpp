@@ -210,7 +210,7 @@ class CrossingSearch {
           const Corners t = triangle(crossing.triangle);
           return "The surface crosses itself, is open or badly wound near triangle " +
                  std::to_string(crossing.triangle + 1) + " at " + at_place((t[0] + t[1] + t[2]) / 3.0) +
-                 ": what is inside there cannot be told. Mend it there; larger elements may not see it.";
+                 ": what is inside there cannot be told. Mend it there.";
         }
         is_inside = crossing.enters;
       }

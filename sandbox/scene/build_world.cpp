@@ -256,15 +256,18 @@ std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& pr
 
 namespace {
 
-/// What an engine cannot divide into tetrahedra as it is may be one of which it can tell what is inside.
-bool clean_crossings(const BodyEntry& body, BodyPlan& plan, world::BodyDescription& description,
-                     std::vector<std::string>& notes) {
-  auto* solid = std::get_if<world::SolidDescription>(&description.form);
+/// What the engine cannot divide into tetrahedra as it is may be one of which it can tell what is inside.
+/// False, with why not in `fault`, if it is not.
+bool clean_crossings(const BodyEntry& body, BodyPlan& plan, std::vector<std::string>& notes,
+                     std::string& fault) {
+  auto* solid = std::get_if<world::SolidDescription>(&plan.description.form);
   if (!solid || !solid->is_breakable) return false;
   const auto done = unite_crossings(*solid);
-  if (!done) return false;
+  if (!done) {
+    if (!done.error().empty()) fault += " (" + done.error() + ")";
+    return false;
+  }
   notes.push_back(fmt::format("of the mesh of \"{}\", {}", body.name, done.value()));
-  plan.description.form = *solid;
   measure(*solid, plan);
   return true;
 }
@@ -284,7 +287,11 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
   if (problems.size() > before) return std::nullopt;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodyEntry& body = scene.bodies[i];
-    if (body.is_held_back) continue;
+    if (body.is_held_back) {  // what comes in later cannot be tried now
+      std::string fault;
+      clean_crossings(body, built.plan.bodies[i], built.plan.notes, fault);
+      continue;
+    }
     const std::vector<Pose> poses = copy_poses(body, scene.world.seed, i);
     world::BodyDescription description = built.plan.bodies[i].description;
     const std::size_t now = body.repeat.every > 0.0 ? 1 : poses.size();  // the script brings in the others
@@ -293,10 +300,14 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
       if (body.path) description.path = path_of(body, poses[copy]);
       description.name = copy_name(body, static_cast<int>(copy));
       auto id = built.world.add_body(description);
-      if (!id && clean_crossings(body, built.plan.bodies[i], description, built.plan.notes))
+      std::string fault = id ? "" : id.error();
+      if (!id && clean_crossings(body, built.plan.bodies[i], built.plan.notes, fault)) {
+        description.form = built.plan.bodies[i].description.form;
         id = built.world.add_body(description);
+        if (!id) fault = id.error();
+      }
       if (!id) {
-        book(problems, body.place, fmt::format("body \"{}\": {}", description.name, id.error()), "");
+        book(problems, body.place, fmt::format("body \"{}\": {}", description.name, fault), "");
         break;
       }
       built.origins[id.value()] = {static_cast<int>(i), static_cast<int>(copy)};

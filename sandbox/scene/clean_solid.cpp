@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/elementary.h"
 #include "engine/geometry/bvh.h"
 #include "engine/geometry/remade_surface.h"
 #include "engine/geometry/self_crossings.h"
@@ -13,8 +14,9 @@
 namespace shatterbox::sandbox::scene {
 namespace {
 
-constexpr double kSpacing = 0.5;      // of an element
-constexpr double kUsualCells = 40.0;  // across a mesh whose elements are not told
+constexpr double kSpacing = 0.5;        // of an element
+constexpr double kUsualElements = 1e4;  // in the box about a mesh whose elements are not told
+constexpr double kFinest = 5e-3;        // of its size, is a spacing then
 
 core::Result<std::string> remake(world::SolidDescription& solid, double spacing) {
   if (std::any_of(solid.parts.begin(), solid.parts.end(), [](int part) { return part != 0; }))
@@ -25,19 +27,24 @@ core::Result<std::string> remake(world::SolidDescription& solid, double spacing)
   if (!solid.parts.empty()) solid.parts.assign(solid.mesh.triangles.size(), 0);
   return fmt::format(
       "what is inside was told by winding numbers, and the surface made anew: edges are rounded off by up to "
-      "{:.2g} mm{}",
+      "{:.2g} mm{}{}",
       1e3 * kSpacing * spacing,
       made.value().bridged_share > 0.0
           ? fmt::format(", {:.2g} % of it is over holes", 100.0 * made.value().bridged_share)
+          : "",
+      made.value().lost_share > 0.0
+          ? fmt::format(", {:.2g} % of the mesh, too thin for it, is lost", 100.0 * made.value().lost_share)
           : "");
 }
 
 }  // namespace
 
 core::Result<std::string> close_holes(world::SolidDescription& solid) {
+  if (solid.element_size > 0.0) return remake(solid, kSpacing * solid.element_size);
   const geometry::Box box = geometry::box_of(solid.mesh);
-  return remake(solid, solid.element_size > 0.0 ? kSpacing * solid.element_size
-                                                : (box.high - box.low).maxCoeff() / kUsualCells);
+  const Vec3 extent = box.high - box.low;
+  const double element = core::pow(12.0 * extent.prod() / kUsualElements, 1.0 / 3.0);
+  return remake(solid, std::max(kSpacing * element, kFinest * extent.maxCoeff()));
 }
 
 core::Result<std::string> unite_crossings(world::SolidDescription& solid) {

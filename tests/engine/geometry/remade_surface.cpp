@@ -149,6 +149,11 @@ TEST_CASE("what would be lost is told: loose sheets, and walls thinner than the 
   CHECK(sheet.error().find("encloses nothing") != std::string::npos);
   const auto thin = remake_surface(make_box_surface(Vec3(0.3, 0.2, 1e-4)), 0.01);
   REQUIRE_FALSE(thin);
+  const auto rod = remake_surface(make_box_surface(Vec3(0.4, 0.013, 0.013)), 0.01);
+  REQUIRE_FALSE(rod);
+  CHECK(rod.error().find("smaller elements") != std::string::npos);
+  const auto fine_rod = remake_surface(make_box_surface(Vec3(0.4, 0.013, 0.013)), 0.002);
+  CHECK(enclosed_volume(expect_clean(fine_rod)) == Approx(8.0 * 0.4 * 0.013 * 0.013).epsilon(0.05));
   CHECK_FALSE(remake_surface(make_box_surface(Vec3(1, 1, 1)), 1e-3));  // a thousand million nodes
   CHECK_FALSE(remake_surface(TriangleMesh{}, 0.01));
 }

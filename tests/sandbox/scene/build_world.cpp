@@ -98,6 +98,19 @@ TEST_CASE("a solid's small hole is closed, and parts that overlap are united, wi
   const auto [united_mass, united_note] = build("united.obj", points + shifted + faces + more_faces);
   CHECK(united_mass == Approx(density * (2.0 * kBall - kLens)).epsilon(0.03));
   CHECK(united_note.find("pass through each other") != std::string::npos);
+  // What an event brings in cannot wait until it is there.
+  const Reading later = read(
+      "[[event]]\nat = 1\ndo = \"drop\"\nposition = [0, 1, 0]\nbody = {name = \"late\", kind = \"solid\", "
+      "material = "
+      "\"plaster\", mesh = \"" +
+      folder.write("late.obj", points + shifted + faces + more_faces).string() + "\"}\n");
+  REQUIRE(later.scene.has_value());
+  Problems problems;
+  const auto built = build_world(*later.scene, problems);
+  INFO(describe(problems));
+  REQUIRE(built.has_value());
+  REQUIRE_FALSE(built->plan.notes.empty());
+  CHECK(built->plan.notes.back().find("pass through each other") != std::string::npos);
 }
 
 TEST_CASE("a mesh that is beyond mending is refused with what is wrong") {
