@@ -126,6 +126,8 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
     w.end = w.start;
     if (!(share > 0.0)) continue;
     w.end.translation = whole.centre + share * way + rotation * (w.start.translation - whole.centre);
+    if (w.locked.any())  // to the last bit
+      w.end.translation = w.start.translation + w.locked.let_move(w.end.translation - w.start.translation);
     w.end.rotation = (rotation * w.start.rotation).normalized();
   }
 }
