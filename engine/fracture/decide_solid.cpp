@@ -253,13 +253,12 @@ class SolidDecider {
     return !tracer.is_out_of_energy() && tracer.area() >= kSolidGrowthThatCounts * decision_.new_area;
   }
 
-  /// What is cracked through but for what the elements cannot tell of hangs by that.
-  void break_bridges() {
-    if (count_parts(*complex_) != count_parts(*subject_.complex)) return;
+  /// What is cracked through but for what the elements cannot tell of hangs by that. False if that holds.
+  bool break_bridges() {
     const int generations = decision_.generations;
     const bool is_known = is_solved_ || solve_again();
     decision_.generations = generations;
-    if (!is_known) return;
+    if (!is_known) return false;
     const double size = kToldSize * model().mean_edge_length;
     const double cost = subject_.material.fracture_energy;
     const double left = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy);
@@ -270,10 +269,11 @@ class SolidDecider {
                                  .least_volume = kLeastLump * size * size * size,
                                  .most_area = settings_.has_energy_guard && cost > 0.0 ? left / cost : 1e300,
                                  .id = subject_.first_cut_id + decision_.cracks});
-    if (!(area > 0.0)) return;
+    if (!(area > 0.0)) return false;
     ++decision_.cracks;
     decision_.new_area += area;
     decision_.fracture_energy += cost * area;
+    return true;
   }
 
   void run_generations(std::vector<SolidCandidate> candidates) {
@@ -287,7 +287,8 @@ class SolidDecider {
       if (!run_generation(generation, std::move(candidates))) break;
       decision_.generation_bound_active = generation + 1 == settings_.most_generations;
     }
-    break_bridges();
+    int parts = count_parts(*complex_);
+    if (parts == count_parts(*subject_.complex) && break_bridges()) parts = count_parts(*complex_);
     if (decision_.cracks == 0) {
       // Every overloaded flaw lay where no cut is possible, or there was no energy for one.
       decision_.verdict.outcome = Outcome::held;
@@ -296,7 +297,7 @@ class SolidDecider {
       return;
     }
     decision_.verdict.outcome = Outcome::broke;
-    decision_.part_count = count_parts(*complex_);
+    decision_.part_count = parts;
     decision_.complex = std::move(complex_);
   }
 
