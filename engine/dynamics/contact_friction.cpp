@@ -27,9 +27,13 @@ Vec2 way_back(const SolverContact& c, double step) {
   return length > most ? Vec2(back * (most / length)) : back;
 }
 
+double friction_bound(const SolverContact& c, double normal_impulse) {
+  return c.friction * (c.jammed_at < 0.0 ? normal_impulse : c.jammed_at);
+}
+
 Vec2 friction_change(const SolverContact& c, const Vec2& slip, double normal_impulse) {
   if (c.friction <= 0.0) return Vec2::Zero();
-  const double bound = c.friction * normal_impulse;
+  const double bound = friction_bound(c, normal_impulse);
   const Vec2 held(c.impulse[1], c.impulse[2]);
   const double kuu = c.response(1, 1), kvv = c.response(2, 2), kuv = c.response(1, 2);
   Vec2 wanted =

@@ -14,6 +14,9 @@ Vec2 way_back(const SolverContact& contact, double step);
 /// pair slide and others hold, those that slide must not be in the way of what brings the others back.
 void slide_on(SolverContact& contact);
 
+/// N s: the most that friction gives on this normal impulse (N s).
+double friction_bound(const SolverContact& contact, double normal_impulse);
+
 /// By how much friction's impulse along the tangents changes, N s, against this slip (m/s) and on this normal
 /// impulse (N s), in a circular cone.
 Vec2 friction_change(const SolverContact& contact, const Vec2& slip, double normal_impulse);

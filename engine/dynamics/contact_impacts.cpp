@@ -16,6 +16,7 @@ void IslandSolver::find_arrivals() {
     c.impulse.setZero();
     c.rolling_impulse.setZero();
     c.is_arriving = false;
+    c.jammed_at = -1.0;
     c.was_apart = !is_touching(c);
     work_.pairs[at(c.pair)].work = 0.0;
     const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);

@@ -17,6 +17,13 @@ void IslandSolver::start_warm(double share) {
   });
 }
 
+// Where friction presses its own contact harder than it is pressed (a slender body that slides on its tip:
+// Painleve's paradox), every sweep asks the next for more. Bounded by what bears now it can run away no more:
+// that problem is convex, and each visit takes energy. What jams so stops sliding.
+void IslandSolver::bound_friction() {
+  for (std::size_t k = 0; k < order_.contacts.size(); ++k) contact(k).jammed_at = contact(k).impulse[0];
+}
+
 // Sweeps alone carry a heavy body on light ones only after as many of them as the masses differ. Where
 // plain ones do not end it, they go on to and fro as nonlinear conjugate gradients: what two sweeps
 // changed is the negative gradient, and a share of the way so far is gone once more, until the changes
@@ -34,7 +41,7 @@ void IslandSolver::note_impulses() {
 
 Vec3 IslandSolver::within_cone(const SolverContact& c, Vec3 impulse) {
   impulse[0] = std::max(impulse[0], 0.0);
-  const double bound = c.friction * impulse[0], length = impulse.tail<2>().norm();
+  const double bound = friction_bound(c, impulse[0]), length = impulse.tail<2>().norm();
   if (length > bound) impulse.tail<2>() *= bound / length;
   return impulse;
 }
@@ -68,7 +75,7 @@ bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
   forget_seen();
   double least_excess = 1e300;
   int least_round = 0;
-  bool is_any = false;
+  bool is_any = false, is_bounded = false;
   for (int round = 0; round < most; ++round) {
     core::stop_if_asked();
     const bool is_on_course = round >= how.plain;
@@ -82,6 +89,11 @@ bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
     if (count == 0) break;
     const double enough = round + 1 < how.plain ? how.enough : how.loose;
     if (found.excess < (found.has_strain ? how.tight : enough)) break;
+    if (is_on_course && !is_bounded && found.excess > kRunaway * least_excess) {
+      bound_friction();
+      is_bounded = true;
+      least_excess = 1e300;
+    }
     // What is jammed has no solution.
     if (found.excess < kProgress * least_excess) {
       least_excess = found.excess;

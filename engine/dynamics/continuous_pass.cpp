@@ -506,9 +506,7 @@ class Guard {
       return a != b && (is_due[at(a)] || is_due[at(b)]);
     };
     std::vector<Opening> openings = find_openings(kLastOpening, is_to_open);
-    mark_due_by(zones_->open(openings));
-    std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
-    remove_approach(openings, settings_.time_step, body::ImpulseKind::continuous, 1, work_);
+    mark_due_by(zones_->open(openings, settings_.time_step));
   }
 
   // Velocities lose what closes between the bodies of a zone, by impulses between them, and what gravity gave

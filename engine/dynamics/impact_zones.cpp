@@ -10,11 +10,6 @@ namespace {
 
 using core::at;
 
-Mat3 inertia_at(const WorkBody& w, const Pose& pose) {
-  const Mat3 axes = (pose.rotation * w.inertia.body_from_axes).toRotationMatrix();
-  return axes * w.inertia.moments.asDiagonal() * axes.transpose();
-}
-
 // Several bodies as one.
 struct Whole {
   double mass = 0.0;            // kg
@@ -44,7 +39,7 @@ Whole gather_whole(const std::vector<int>& members, const MotionWork& work, Pose
   for (const int i : members) {
     const WorkBody& w = work.bodies[at(i)];
     const Vec3 arm = (w.*pose).translation - whole.centre;
-    whole.inertia += inertia_at(w, w.*pose) +
+    whole.inertia += inertia_at(w, (w.*pose).rotation) +
                      (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose()) / w.inverse_mass;
     whole.locked.unite(w.locked);
   }
@@ -109,7 +104,7 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
     const Vec3 own_momentum = (w.end.translation - w.start.translation) / w.inverse_mass;
     way += own_momentum / whole.mass;
     momentum += (w.start.translation - whole.centre).cross(own_momentum) +
-                inertia_at(w, w.start) * turn_between(w.start.rotation, w.end.rotation);
+                inertia_at(w, w.start.rotation) * turn_between(w.start.rotation, w.end.rotation);
   }
   way = whole.locked.let_move(way);
   // Beyond half a radian straight paths would cut the corner.
@@ -123,16 +118,16 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
     w.knots.clear();
     w.straight_parts = 1;
     w.turn_angle = turned * angle;
-    w.end = w.start;
+    turn_end(w, share > 0.0 ? (rotation * w.start.rotation).normalized() : w.start.rotation);
+    w.end.translation = w.start.translation;
     if (!(share > 0.0)) continue;
     w.end.translation = whole.centre + share * way + rotation * (w.start.translation - whole.centre);
     if (w.locked.any())  // to the last bit
       w.end.translation = w.start.translation + w.locked.let_move(w.end.translation - w.start.translation);
-    w.end.rotation = (rotation * w.start.rotation).normalized();
   }
 }
 
-std::vector<double> ImpactZones::open(std::vector<Opening>& openings) {
+std::vector<double> ImpactZones::open(std::vector<Opening>& openings, double time_step) {
   std::vector<std::vector<int>> members(work_.bodies.size());
   for (int i = 0; at(i) < members.size(); ++i)
     if (work_.bodies[at(i)].inverse_mass > 0.0 && share(i) >= 1.0) members[at(zone_of(i))].push_back(i);
@@ -155,6 +150,8 @@ std::vector<double> ImpactZones::open(std::vector<Opening>& openings) {
   }
   const Moves moves = relax(of_zones, movers, Yielding::by_mass);
   for (std::size_t k = 0; k < openings.size(); ++k) openings[k].impulse = of_zones[k].impulse;
+  std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
+  remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work_);
   std::vector<double> moved(work_.bodies.size(), 0.0);
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
     if (moves.shifts[zone].isZero(0.0) && moves.turns[zone].isZero(0.0)) continue;

@@ -34,9 +34,10 @@ class ImpactZones {
   /// the momentum and the angular momentum of their ways. True per body that ends elsewhere now.
   std::vector<char> go();
 
-  /// Opens gaps between zones, which give way as wholes by their masses; those that were stopped do not. Sets
-  /// the impulses of the openings. Returns by how much the points of each body were moved at most, m.
-  std::vector<double> open(std::vector<Opening>& openings);
+  /// Opens gaps between zones, which give way as wholes by their masses; those that were stopped do not.
+  /// Their bodies lose approach one by one, as in open_gaps. Returns by how much the points of each were
+  /// moved at most, m.
+  std::vector<double> open(std::vector<Opening>& openings, double time_step);
 
   /// The least body of the zone that this one is in.
   int zone_of(int body) { return zones_.find(body); }

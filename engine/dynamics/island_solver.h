@@ -85,6 +85,7 @@ class IslandSolver {
   void start_warm(double share);
   void begin_course();
   void note_impulses();
+  void bound_friction();
   static Vec3 within_cone(const SolverContact& c, Vec3 impulse);
   void go_on_course();
   double target_before_drift(const SolverContact& c) const;
@@ -234,6 +235,7 @@ class IslandSolver {
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = Island::kLarge;
+  static constexpr double kRunaway = 100.0;     // times the least excess of a course
   static constexpr double kProgress = 0.8;      // a course that in so many rounds has not come so much nearer
   static constexpr int kCoursePatience = 500;   // is given up
   static constexpr int kScriptedPatience = 50;  // the same, where a scripted body may squeeze

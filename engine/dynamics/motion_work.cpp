@@ -26,6 +26,11 @@ void free_pairs(MotionWork& work) {
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) { work.pairs[p] = WorkPair(); });
 }
 
+Mat3 inertia_at(const WorkBody& body, const Quat& rotation) {
+  const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
+  return axes * body.inertia.moments.asDiagonal() * axes.transpose();
+}
+
 Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation) {
   const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
   if (body.locked.any())
@@ -94,9 +99,22 @@ int count_straight_parts(double turn_angle) {
   return parts;
 }
 
+void turn_end(WorkBody& body, const Quat& rotation) {
+  const Quat before = body.end.rotation;
+  body.end.rotation = rotation;
+  if (body.inverse_mass == 0.0 || body.shape->kind == body::ShapeKind::sphere) return;
+  const Vec3 spin = body.spin;
+  body.spin = rotation * (before.conjugate() * spin);
+  if (!body.locked.any()) return;
+  body.spin = body.locked.let_turn(body.spin);
+  const double most = spin.dot(inertia_at(body, before) * spin);  // twice its energy
+  const double now = body.spin.dot(inertia_at(body, rotation) * body.spin);
+  if (now > most) body.spin *= std::sqrt(most / now);
+}
+
 void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
   body.end.translation += shift;
-  body.end.rotation = (rotation_by(turn) * body.end.rotation).normalized();
+  turn_end(body, (rotation_by(turn) * body.end.rotation).normalized());
   body.is_free = false;
   body.turn_angle += turn.norm();
   if (body.knots.empty()) return;
@@ -111,7 +129,8 @@ void shorten(WorkBody& body, double share) {
   body.is_free = false;
   body.gone *= std::max(0.0, share);
   if (share <= 0.0) {
-    body.end = body.start;
+    body.end.translation = body.start.translation;
+    turn_end(body, body.start.rotation);
     body.turn_angle = 0.0;
     body.straight_parts = 1;
     body.knots.clear();
@@ -122,7 +141,9 @@ void shorten(WorkBody& body, double share) {
     const double time = share * static_cast<double>(k) / static_cast<double>(body.knots.size() - 1);
     knots.push_back(pose_on_way(body, time).rotation);
   }
-  body.end = pose_on_way(body, share);
+  const Pose end = pose_on_way(body, share);
+  body.end.translation = end.translation;
+  turn_end(body, end.rotation);
   body.knots = std::move(knots);
   body.turn_angle *= share;
 }

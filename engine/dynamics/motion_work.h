@@ -115,6 +115,7 @@ struct alignas(64) SolverContact {
   Vec3 change = Vec3::Zero();     // m: of a against b since the step's start
   Vec3 held_from = Vec3::Zero();  // m: `change` where friction began to hold
   double target = 0.0;            // m/s, of the bounce
+  double jammed_at = -1.0;        // N s along the normal where sweeps ran away: friction is bounded by it
 
   Vec3 point = Vec3::Zero();
   double restitution = 0.0;
@@ -225,6 +226,9 @@ class MotionWork {
 /// Lets go of what pairs hold, on all threads: there is a list of every feature that is near.
 void free_pairs(MotionWork& work);
 
+/// kg m2, world, of a body that has turned to `rotation`.
+Mat3 inertia_at(const WorkBody& body, const Quat& rotation);
+
 /// 1/(kg m2), world: spin by angular impulse of a body that has turned to `rotation`.
 Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation);
 
@@ -253,6 +257,11 @@ Pose pose_on_way(const WorkBody& body, double time);
 /// Straight parts in which a turn of so much (rad) must be followed: a power of two, so that the parts of two
 /// bodies fit into each other.
 int count_straight_parts(double turn_angle);
+
+/// Gives the end another rotation, not by an impulse: the spin turns along, so that the body keeps its
+/// energy. A sphere's stays as it is; of what has locked axes only what these let through, and no more
+/// energy.
+void turn_end(WorkBody& body, const Quat& rotation);
 
 /// Moves the end pose by `shift` (m) and `turn` (rotation vector), and the way to it in proportion.
 void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn);

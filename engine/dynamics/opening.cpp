@@ -19,7 +19,7 @@ constexpr int kIterationsAlike = 60;
 constexpr int kSweepsAlike = 30;
 
 Mover mover_of(const WorkBody& w) {
-  return {w.inverse_mass, w.locked, w.inverse_inertia};
+  return {w.inverse_mass, w.locked, inverse_inertia_at(w, w.end.rotation)};
 }
 
 void give(MotionWork& work, const Opening& o, double size, double closing, body::ImpulseKind kind) {
@@ -27,11 +27,11 @@ void give(MotionWork& work, const Opening& o, double size, double closing, body:
   const Vec3 p = size * o.normal;
   if (a.inverse_mass > 0.0) {
     a.velocity += a.locked.let_move(a.inverse_mass * p);
-    a.spin += a.inverse_inertia * o.arm_a.cross(p);
+    a.spin += inverse_inertia_at(a, a.end.rotation) * o.arm_a.cross(p);
   }
   if (b.inverse_mass > 0.0) {
     b.velocity -= b.locked.let_move(b.inverse_mass * p);
-    b.spin -= b.inverse_inertia * o.arm_b.cross(p);
+    b.spin -= inverse_inertia_at(b, b.end.rotation) * o.arm_b.cross(p);
   }
   body::LoggedImpulse entry = body::log_impulse(kind, work.ids[at(o.a)], a.end, work.ids[at(o.b)], b.end,
                                                 a.end.translation + o.arm_a, o.normal, p);

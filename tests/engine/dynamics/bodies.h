@@ -10,6 +10,7 @@
 #include "engine/core/random.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/step_motion.h"
+#include "engine/geometry/mass_properties.h"
 
 namespace shatterbox::test {
 
@@ -37,6 +38,19 @@ inline body::Body make_sphere(double radius, const Vec3& position, double densit
   shape->radius = shape->bounding_radius = radius;
   shape->mass = density * 4.0 / 3.0 * core::kPi * radius * radius * radius;
   shape->inertia = Mat3::Identity() * (0.4 * shape->mass * radius * radius);
+  return make_body(shape, position, true);
+}
+
+/// Along y, `half` of its axis on either side of the middle.
+inline body::Body make_capsule(double radius, double half, const Vec3& position, double density = 1000.0) {
+  auto shape = std::make_shared<body::Shape>();
+  shape->kind = body::ShapeKind::capsule;
+  shape->radius = radius;
+  shape->half_length = half;
+  shape->bounding_radius = radius + half;
+  const auto mass = geometry::capsule_mass_properties(radius, half, density);
+  shape->mass = mass.mass;
+  shape->inertia = mass.inertia;
   return make_body(shape, position, true);
 }
 

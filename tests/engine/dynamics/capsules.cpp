@@ -4,7 +4,6 @@
 
 #include "engine/audit/audit.h"
 #include "engine/geometry/closest_points.h"
-#include "engine/geometry/mass_properties.h"
 #include "tests/engine/dynamics/bodies.h"
 #include "tests/support/sanitized.h"
 
@@ -14,15 +13,7 @@ namespace {
 constexpr double kRadius = 0.05, kHalf = 0.1;  // m
 
 body::Body make_capsule(const Vec3& position) {
-  auto shape = std::make_shared<body::Shape>();
-  shape->kind = body::ShapeKind::capsule;
-  shape->radius = kRadius;
-  shape->half_length = kHalf;
-  shape->bounding_radius = kRadius + kHalf;
-  const auto mass = geometry::capsule_mass_properties(kRadius, kHalf, 1000.0);
-  shape->mass = mass.mass;
-  shape->inertia = mass.inertia;
-  return test::make_body(shape, position, true);
+  return test::make_capsule(kRadius, kHalf, position);
 }
 
 /// With its axis along x or z.

@@ -117,7 +117,7 @@ TEST_CASE(
   opening.arm_b = centre - end_2;
   std::vector<dynamics::Opening> openings{opening};
   const Vec3 end_3 = flight.work.bodies[3].end.translation;
-  const std::vector<double> moves = zones.open(openings);
+  const std::vector<double> moves = zones.open(openings, 1.0 / 240.0);
   CHECK(moves[0] == 0.0);
   CHECK(openings[0].impulse > 0.0);
   const double up = flight.work.bodies[3].end.translation.y() - end_3.y();
@@ -133,7 +133,7 @@ TEST_CASE(
   zones.limit(1, 0.9);
   zones.go();
   openings = {opening};
-  const std::vector<double> again = zones.open(openings);
+  const std::vector<double> again = zones.open(openings, 1.0 / 240.0);
   CHECK(again[1] == 0.0);
   CHECK(again[2] == 0.0);
   CHECK(again[3] > 0.0);
