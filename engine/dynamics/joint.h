@@ -15,6 +15,7 @@ struct Joint {
   // In the body spaces: the middle of the area, its normal (x, from b towards a) and its principal axes.
   Pose frame_a, frame_b;
   bool is_pivot = false;        // holds a point; otherwise no turn either
+  bool may_meet = false;        // of a pivot: its bodies were apart when they were joined, and collide
   double area = 0.0;            // m2
   Vec3 moments = Vec3::Zero();  // m4, second moments of the area about the three axes; unused of a pivot
   // What it gave to a in the last part of a step, in its axes: b got the opposite, at the same point.

@@ -25,7 +25,7 @@ void add_to_hash(const std::vector<Joint>& joints, core::Hash& hash) {
   for (const Joint& joint : joints) {
     hash.add(static_cast<std::uint64_t>(joint.number));
     hash.add((static_cast<std::uint64_t>(joint.body_a) << 32) | joint.body_b);
-    hash.add(joint.impulse).add(joint.couple);
+    hash.add(std::uint64_t{joint.may_meet}).add(joint.impulse).add(joint.couple);
   }
 }
 
@@ -40,6 +40,7 @@ void list_joints(const ContactState& state, MotionWork& work) {
     w.state = static_cast<int>(k);
     w.joint = &joint;
     work.joints.push_back(w);
+    if (joint.may_meet) continue;
     (joint.is_pivot ? work.pivots : work.joined).push_back(ordered(w.a, w.b));
   }
   std::sort(work.pivots.begin(), work.pivots.end());

@@ -14,7 +14,7 @@ namespace shatterbox::dynamics {
 /// Fills `work.joints` with those of whom both bodies are there and one can move. Bodies must be there.
 void list_joints(const ContactState& state, MotionWork& work);
 
-/// True of two bodies that turn about a common point: they have no contact.
+/// True of two bodies that touch about a point about which they turn: they have no contact.
 bool share_pivot(const MotionWork& work, int a, int b);
 
 /// Takes the contacts from pairs that hold together: what presses on a joint is the joint's. They are kept

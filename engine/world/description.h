@@ -89,7 +89,8 @@ struct MortarDescription {
   double gap = 1e-3;  // m
 };
 
-/// Two bodies share a point, about which they turn freely; they do not collide with each other.
+/// Two bodies share a point, about which they turn freely. Those that touch there do not collide with each
+/// other; those that are apart, by a thousandth of the smaller one's radius, do.
 struct PivotDescription {
   Vec3 point = Vec3::Zero();  // m, world
   double area = 1e-4;         // m2, over which its force is spread

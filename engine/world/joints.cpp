@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "engine/body/polyhedron.h"
+#include "engine/collision/analytic_contact.h"
+#include "engine/collision/feature_list.h"
 #include "engine/core/index.h"
 #include "engine/world/acts.h"
 #include "engine/world/state.h"
@@ -16,6 +18,10 @@ using core::at;
 // Of those that are open at once, only who is overloaded at least this share of the most gives way: the
 // others are judged again without them.
 constexpr double kFirst = 0.5;
+
+// Who is nearer to each other where they are hinged, as a share of the radius about the smaller one, touches
+// there.
+constexpr double kHinge = 1e-3;
 
 /// The surface as triangles in the world; of a plane as much as lies before `other`.
 geometry::TriangleMesh world_surface(const body::Body& body, const body::Body& other) {
@@ -31,6 +37,28 @@ geometry::TriangleMesh world_surface(const body::Body& body, const body::Body& o
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   }
   return mesh;
+}
+
+double height_above(const body::Body& plane, const body::Body& body) {
+  const auto collider = collision::make_collider(*body.shape);
+  double least = 1e300;
+  for (const Vec3& p : collision::place_collider(*collider, body.pose).start)
+    least = std::min(least, plane.pose.apply_inverse(p).y());
+  return least - collider->radius;
+}
+
+bool are_apart(const body::Body& a, const body::Body& b) {
+  if (a.shape->kind == body::ShapeKind::plane) return height_above(a, b) > kHinge * b.shape->bounding_radius;
+  if (b.shape->kind == body::ShapeKind::plane) return are_apart(b, a);
+  const double gap = kHinge * std::min(a.shape->bounding_radius, b.shape->bounding_radius);
+  Vec3 normal;
+  if (collision::is_analytic_pair(a.shape->kind, b.shape->kind))
+    return collision::analytic_gap(*a.shape, a.pose, *b.shape, b.pose, normal) > gap;
+  const auto collider_a = collision::make_collider(*a.shape), collider_b = collision::make_collider(*b.shape);
+  collision::FeatureList near;
+  collision::list_near_features(collision::place_collider(*collider_a, a.pose),
+                                collision::place_collider(*collider_b, b.pose), gap, near);
+  return near.empty();
 }
 
 void wake(std::vector<body::Body>& bodies, const dynamics::Joint& joint) {
@@ -97,6 +125,7 @@ core::Result<int> World::add_joint(const JointDescription& description) {
     if (!(pivot->area > 0.0)) return refuse("its area must be more than 0 m2");
     place.translation = pivot->point;
     joint.is_pivot = true;
+    joint.may_meet = are_apart(*a, *b);
     joint.area = pivot->area;
   } else {
     const geometry::FacingArea face =

@@ -1,6 +1,8 @@
 // Joints through the door: what opens them, and what they leave unchanged.
 #include <catch2/catch.hpp>
 
+#include "engine/audit/audit.h"
+#include "engine/core/elementary.h"
 #include "engine/world/joints.h"
 #include "engine/world/world.h"
 
@@ -223,6 +225,64 @@ TEST_CASE("a pivot bears a weight up to its strength and goes with its body") {
     world.step();
     CHECK(world.bodies().front().velocity.y() < 0.0);
   }
+}
+
+TEST_CASE("a chain folds up and falls in a heap, and nothing in it crosses") {
+  for (const int rate : {60, 240}) {
+    world::World world = make_world(rate);
+    const int steel = world.add_material(*material::find_preset("steel")).value();
+    const std::variant<world::BoxDescription, world::CapsuleDescription, world::SphereDescription> links[] = {
+        world::BoxDescription{Vec3(0.1, 0.03, 0.04)}, world::CapsuleDescription{0.03, 0.2},
+        world::SphereDescription{0.1}};
+    world::BodyDescription floor;
+    floor.form = world::PlaneDescription{};
+    floor.material = steel;
+    world.add_body(floor).value();
+    body::BodyId last = 0;
+    for (int k = 0; k < 6; ++k) {
+      world::BodyDescription link;
+      std::visit([&](const auto& form) { link.form = form; }, links[k % 3]);
+      link.material = steel;
+      link.pose.translation = Vec3(0.25 * k, 0.6, 0.0);
+      if (k % 3 == 1) link.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * core::kPi, Vec3::UnitZ()));
+      if (k == 5) link.angular_velocity = Vec3(0.0, 3.0, 12.0);
+      const body::BodyId id = world.add_body(link).value();
+      world::JointDescription joint;
+      joint.body_a = last;
+      joint.body_b = id;
+      joint.form = world::PivotDescription{Vec3(0.25 * k - 0.125, 0.6, 0.0), 1e-2};
+      joint.strength = joint.shear_strength = 1e12;
+      if (k > 0) REQUIRE(world.add_joint(joint).value() == k);
+      last = id;
+    }
+    world.keep_ways();
+    audit::Audit audit;
+    for (int i = 0; i < 2 * rate; ++i) {
+      audit.begin_step(world.bodies());
+      world.step();
+      audit.end_step(world.bodies(), {}, world.ways(), world.time());
+    }
+    CAPTURE(rate);
+    CHECK(audit.report().crossings == 0);
+    CHECK(audit.report().passages == 0);
+    CHECK(world.report().contact.longest_cut <= 3);
+    for (const world::JointRow& row : world.report().joints) CHECK(row.opened < 0.0);
+  }
+}
+
+TEST_CASE("what touches where it is hinged turns about that place freely") {
+  world::World world = make_world(240, false);
+  const int stone = world.add_material(*material::find_preset("brick")).value();
+  const auto held = add_brick(world, stone, Vec3(0, 1, 0), body::Motion::fixed);
+  const auto door = add_brick(world, stone, Vec3(kLength, 1, 0), body::Motion::dynamic);
+  world::JointDescription joint;
+  joint.body_a = held;
+  joint.body_b = door;
+  joint.form = world::PivotDescription{Vec3(0.5 * kLength, 1.0, 0.0), 1e-2};
+  joint.strength = joint.shear_strength = 1e12;
+  REQUIRE(world.add_joint(joint).value() == 1);
+  while (world.time() < 0.15) world.step();
+  CHECK(world.bodies()[1].pose.translation.y() < 0.95);
 }
 
 TEST_CASE("joined bricks that fall on a plane load their mortar as on a large slab") {
