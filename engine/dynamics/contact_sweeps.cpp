@@ -98,7 +98,7 @@ bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
     if (found.excess < kProgress * least_excess) {
       least_excess = found.excess;
       least_round = round;
-    } else if (round > least_round + (has_scripted_ ? kScriptedPatience : kCoursePatience)) {
+    } else if (round > least_round + course_patience()) {
       break;
     }
     if (is_on_course && round + 1 < most) go_on_course();
@@ -143,6 +143,12 @@ int IslandSolver::most_calm_sweeps() {
   if (!joints_.is_empty()) return most_sweeps(kJointSweeps);
   const bool is_exact = order_.contacts.size() <= kFewAtRest && (!island_.may_break || lies_quietly());
   return is_exact ? kCalmSweeps : 1;
+}
+
+// Shards under one that holds them fast rub to and fro, a thousandth of what closed, for hundreds of rounds.
+int IslandSolver::course_patience() const {
+  if (has_scripted_) return kScriptedPatience;
+  return island_.may_break ? kBreakablePatience : kCoursePatience;
 }
 
 // What arrives must not overshoot the gap.

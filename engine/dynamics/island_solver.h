@@ -90,6 +90,7 @@ class IslandSolver {
   void go_on_course();
   double target_before_drift(const SolverContact& c) const;
   int most_sweeps(int of_small) const;
+  int course_patience() const;
   bool lies_quietly();
   int most_calm_sweeps();
   void sweep_before_drift();
@@ -235,17 +236,18 @@ class IslandSolver {
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = Island::kLarge;
-  static constexpr double kRunaway = 100.0;     // times the least excess of a course
-  static constexpr double kProgress = 0.8;      // a course that in so many rounds has not come so much nearer
-  static constexpr int kCoursePatience = 500;   // is given up
-  static constexpr int kScriptedPatience = 50;  // the same, where a scripted body may squeeze
-  static constexpr std::size_t kVisits = 4800;  // of contacts in all sweeps of one kind in a substep,
-  static constexpr int kFewSweeps = 4;          // but never fewer sweeps
-  static constexpr double kBounced = 1e-9;      // of the speed: error of a bounce
-  static constexpr double kStill = 0.25;        // of what a sweep may leave
-  static constexpr double kFastSpin = 0.005;    // rad a substep
-  static constexpr double kStruck = 0.5;        // of the kept gap: what is so near is struck at once
-  static constexpr int kMostStrikes = 64;       // one after the other, of one hit
+  static constexpr double kRunaway = 100.0;    // times the least excess of a course
+  static constexpr double kProgress = 0.8;     // a course that in so many rounds has not come so much nearer
+  static constexpr int kCoursePatience = 500;  // is given up
+  static constexpr int kBreakablePatience = 100;  // the same, where something may break
+  static constexpr int kScriptedPatience = 50;    // the same, where a scripted body may squeeze
+  static constexpr std::size_t kVisits = 4800;    // of contacts in all sweeps of one kind in a substep,
+  static constexpr int kFewSweeps = 4;            // but never fewer sweeps
+  static constexpr double kBounced = 1e-9;        // of the speed: error of a bounce
+  static constexpr double kStill = 0.25;          // of what a sweep may leave
+  static constexpr double kFastSpin = 0.005;      // rad a substep
+  static constexpr double kStruck = 0.5;          // of the kept gap: what is so near is struck at once
+  static constexpr int kMostStrikes = 64;         // one after the other, of one hit
   static constexpr double kAlike = 0.1;  // of the hardest of a round: what is softer waits for the next
   static constexpr double kRanks = 1e6;  // speeds that differ by less are alike
   static constexpr int kMostCuts = 8;    // of a substep
