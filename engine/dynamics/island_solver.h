@@ -236,7 +236,7 @@ class IslandSolver {
   // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kCourseSize = Island::kLarge;
-  static constexpr double kRunaway = 100.0;    // times the least excess of a course
+  static constexpr double kRunaway = 10.0;     // times the least excess of a course
   static constexpr double kProgress = 0.8;     // a course that in so many rounds has not come so much nearer
   static constexpr int kCoursePatience = 500;  // is given up
   static constexpr int kBreakablePatience = 100;  // the same, where something may break
