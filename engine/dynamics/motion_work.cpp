@@ -32,9 +32,8 @@ Mat3 inertia_at(const WorkBody& body, const Quat& rotation) {
 }
 
 Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation) {
+  if (body.locked.any()) return body.locked.invert(inertia_at(body, rotation));
   const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
-  if (body.locked.any())
-    return body.locked.invert(axes * body.inertia.moments.asDiagonal() * axes.transpose());
   return axes * body.inverse_moments.asDiagonal() * axes.transpose();
 }
 

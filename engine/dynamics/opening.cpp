@@ -190,9 +190,10 @@ double move_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
 
 std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
                               MotionWork& work) {
-  std::vector<Mover> movers;
-  movers.reserve(work.bodies.size());
-  for (const WorkBody& w : work.bodies) movers.push_back(mover_of(w));
+  std::vector<Mover> movers(work.bodies.size());
+  for (const Opening& o : openings)
+    for (const int i : {o.a, o.b})
+      if (movers[at(i)].inverse_mass == 0.0) movers[at(i)] = mover_of(work.bodies[at(i)]);
   const Moves moves = relax(openings, movers, yielding);
   std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
   if (yielding == Yielding::by_mass)
