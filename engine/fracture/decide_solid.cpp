@@ -48,10 +48,10 @@ class SolidDecider {
     if (!force_.settle(decision_, verdict.reason)) return std::move(decision_);
     verdict.duration = force_.duration();
     verdict.force = force_.hardest().first_force;
-    solve_stresses(model().mesh, model().contacts, true);
+    solve_stresses(true);
     std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
-    const bool is_holed = find_hole();
-    find_dent(is_holed);
+    const bool is_holed = take_hole();
+    take_dent(is_holed);
     if (is_holed) return std::move(decision_);
     leave_to_dent(candidates);
     if (!(verdict.ratio > 1.0) || candidates.empty()) {
@@ -79,8 +79,9 @@ class SolidDecider {
 
   /// Stress at the pulse's peak under all loads together, averaged once, and its first principal values: of
   /// later generations a bound of them where that is borne.
-  void solve_stresses(const geometry::SolidMesh& mesh, const std::vector<geometry::SolidContact>& contacts,
-                      bool is_first) {
+  void solve_stresses(bool is_first) {
+    const geometry::SolidMesh& mesh = force_.mesh();
+    const std::vector<geometry::SolidContact>& contacts = force_.contacts();
     ++decision_.generations;
     stresses_ = stress::average_stresses(
         mesh, contacts, stress::cell_stresses(*model().stiffness, mesh, force_.displacement()));
@@ -143,7 +144,7 @@ class SolidDecider {
   }
 
   /// A plate that is gone through is dished as by a hit that it holds and that gives it as much momentum.
-  void find_dent(bool is_holed) {
+  void take_dent(bool is_holed) {
     const material::Material& material = subject_.material;
     if (!(material.yield > 0.0)) return;
     const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
@@ -156,7 +157,7 @@ class SolidDecider {
   }
 
   /// Whether the one who strikes hardest goes through: then his hole is all that breaks.
-  bool find_hole() {
+  bool take_hole() {
     const Striker* hardest = nullptr;
     for (const SolidPress& press : force_.presses()) {
       const Striker* striker = press.load->striker.get();
@@ -190,9 +191,9 @@ class SolidDecider {
     decision_.verdict.reason = "it is dented, and not gone through";
   }
 
-  SolidTracerSetup tracer_setup(const geometry::SolidMesh& mesh) {
+  SolidTracerSetup tracer_setup() {
     SolidTracerSetup setup;
-    setup.solved = {&mesh, &force_.displacement()};
+    setup.solved = {&force_.mesh(), &force_.displacement()};
     setup.guides.stresses = &stresses_;
     setup.guides.pieces = &pieces_;
     setup.guides.turns = turns_.get();
@@ -219,22 +220,17 @@ class SolidDecider {
     });
   }
 
-  /// The cracked complex.
+  /// The cracked complex. Where that has no answer, what it has cracked by then is the decision.
   bool solve_again() {
-    SolidForm form = find_form(*complex_);
-    if (!force_.settle_again(form.mesh, form.skin, origins_, decision_, decision_.verdict.reason))
-      return false;
-    mesh_ = std::move(form.mesh);
-    contacts_ = std::move(form.contacts);
-    force_.stays_on(mesh_);
-    solve_stresses(mesh_, contacts_, false);
-    return true;
+    is_answered_ = force_.settle_again(find_form(*complex_), origins_, decision_, decision_.verdict.reason);
+    if (is_answered_) solve_stresses(false);
+    return is_answered_;
   }
 
-  /// False if it was the last. The first has the model's mesh, and candidates.
-  bool run_generation(int generation, std::vector<SolidCandidate> candidates) {
+  /// False if it was the last.
+  bool run_generation(std::vector<SolidCandidate> candidates) {
     const auto start = core::Clock::now();
-    SolidTracer tracer(*complex_, tracer_setup(generation > 0 ? mesh_ : model().mesh));
+    SolidTracer tracer(*complex_, tracer_setup());
     tracer.resume(cracks_);
     leave_out_stillborn(candidates);
     tracer.nucleate(std::move(candidates), cracks_);
@@ -255,6 +251,7 @@ class SolidDecider {
 
   /// What is cracked through but for what the elements cannot tell of hangs by that. False if that holds.
   bool break_bridges() {
+    if (!is_answered_) return false;
     const int generations = decision_.generations;
     const bool is_known = is_solved_ || solve_again();
     decision_.generations = generations;
@@ -263,7 +260,7 @@ class SolidDecider {
     const double cost = subject_.material.fracture_energy;
     const double left = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy);
     const double area =
-        part_bridges(*complex_, {.contacts = decision_.cracks > 0 ? &contacts_ : &model().contacts,
+        part_bridges(*complex_, {.contacts = &force_.contacts(),
                                  .tensions = &tensions_,
                                  .strength = subject_.flaws->greatest_strength,
                                  .least_volume = kLeastLump * size * size * size,
@@ -284,7 +281,7 @@ class SolidDecider {
         if (!solve_again()) break;
         candidates = find_candidates(*complex_, false);
       }
-      if (!run_generation(generation, std::move(candidates))) break;
+      if (!run_generation(std::move(candidates))) break;
       decision_.generation_bound_active = generation + 1 == settings_.most_generations;
     }
     int parts = count_parts(*complex_);
@@ -312,11 +309,10 @@ class SolidDecider {
   std::vector<int> pieces_;                    // that its cells are in
   std::vector<OpenCrack> cracks_;              // of this decision
   std::shared_ptr<geometry::SolidComplex> complex_;
-  geometry::SolidMesh mesh_;                      // of the complex, as solved last
-  std::vector<geometry::SolidContact> contacts_;  // likewise
-  std::vector<int> origins_;                      // |cells|: those they were part of then
-  bool is_solved_ = false;                        // the complex as it is
-  std::map<int, double> stillborn_;               // overload by candidate's number, where no crack came of it
+  std::vector<int> origins_;         // |cells|: those of the mesh last solved that they were part of
+  bool is_solved_ = false;           // the complex as it is
+  bool is_answered_ = true;          // the solve before
+  std::map<int, double> stillborn_;  // overload by candidate's number, where no crack came of it
 };
 
 }  // namespace

@@ -22,6 +22,9 @@ struct DecisionFigures {
   bool energy_guard_active = false;
   bool generation_bound_active = false;   // cracks still grew when the generations were spent
   double solve_ms = 0.0, trace_ms = 0.0;  // wall time; enters no state
+
+  /// A bound showed that it holds.
+  bool needed_no_solve() const { return generations == 0 && verdict.outcome == Outcome::held; }
 };
 
 }  // namespace shatterbox::fracture

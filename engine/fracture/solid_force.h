@@ -72,11 +72,15 @@ class SolidForce {
 
   /// The cut body under the force that its compliance and the energy left allow. `origins` (|cells|): which
   /// cell of the mesh solved before each was, which is still there.
-  bool settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin,
-                    const std::vector<int>& origins, SolidDecision& decision, std::string& problem);
+  /// After false nothing is solved any more.
+  bool settle_again(SolidForm form, const std::vector<int>& origins, SolidDecision& decision,
+                    std::string& problem);
 
-  /// Where the mesh last solved has been moved to.
-  void stays_on(const geometry::SolidMesh& mesh) { now_.mesh = &mesh; }
+  /// The mesh last solved, and its cells' contacts.
+  const geometry::SolidMesh& mesh() const { return *now_.mesh; }
+  const std::vector<geometry::SolidContact>& contacts() const {
+    return is_cracked_ ? form_.contacts : subject_.model->contacts;
+  }
 
   /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads and the spin together.
   const VecX& displacement() const { return displacement_; }
@@ -116,6 +120,7 @@ class SolidForce {
   const FractureSettings& settings_;
   std::vector<SolidPress> presses_;
   SolidStage first_, now_;  // the intact body; the mesh last solved
+  SolidForm form_;          // of now_, once it has cracked
   VecX displacement_, rest_displacement_;
   std::size_t hardest_ = 0;
   double duration_ = 0.0;  // s, of the lead; contact_average without one

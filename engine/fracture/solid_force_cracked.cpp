@@ -107,18 +107,18 @@ void SolidForce::carry_over(const geometry::SolidMesh& mesh, const std::vector<i
   if (rest_displacement_.size() > 0) now_.begins.back() = carried(rest_displacement_);
 }
 
-bool SolidForce::settle_again(const geometry::SolidMesh& mesh, const stress::SolidSkin& skin,
-                              const std::vector<int>& origins, SolidDecision& decision,
+bool SolidForce::settle_again(SolidForm form, const std::vector<int>& origins, SolidDecision& decision,
                               std::string& problem) {
   prepare_cracked();
-  carry_over(mesh, origins);
-  now_.mesh = &mesh;
-  now_.skin = &skin;
+  carry_over(form.mesh, origins);
+  form_ = std::move(form);
+  now_.mesh = &form_.mesh;
+  now_.skin = &form_.skin;
   find_groups();
   const auto start = core::Clock::now();
   stress::SolidSystemOptions options;
-  options.support = support_of(mesh, subject_.clamped_vertices);
-  const auto system = stress::SolidSystem::make(subject_.model->stiffness, mesh, options);
+  options.support = support_of(form_.mesh, subject_.clamped_vertices);
+  const auto system = stress::SolidSystem::make(subject_.model->stiffness, form_.mesh, options);
   decision.solve_ms += core::milliseconds_since(start);
   if (!system) {
     problem = system.error();

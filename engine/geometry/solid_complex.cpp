@@ -284,10 +284,6 @@ std::vector<int> find_border_facets(const SolidComplex& complex) {
   });
 }
 
-double cell_volume(const SolidComplex& complex, int number) {
-  return cell_moments(complex, number).volume;
-}
-
 void settle(SolidComplex& complex) {
   // Few have changed: they are found on all threads, and settled one after the other.
   constexpr Size kGrain = 8192;

@@ -118,9 +118,6 @@ Vec3 facet_area_vector(const SolidComplex& complex, const SolidFacet& facet);
 /// Numbers of the facets with nothing on one of their sides, ascending.
 std::vector<int> find_border_facets(const SolidComplex& complex);
 
-/// Volume of a settled cell, m3, by the divergence theorem.
-double cell_volume(const SolidComplex& complex, int cell);
-
 /// Centroid of a measured cell, m.
 Vec3 cell_centre(const SolidComplex& complex, const SolidPart& cell);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/core/elementary.h"
-#include "engine/stress/shell_system_cache.h"
 
 namespace shatterbox::stress {
 namespace {
@@ -11,7 +10,6 @@ namespace {
 /// 2.9432... (15/16)^(2/5), 2.9432... = (4 sqrt(pi) / 5) Gamma(2/5) / Gamma(9/10).
 constexpr double kHertzDuration = 2.8682656991953315;
 constexpr double kRigidModulus = 1e13;  // Pa
-constexpr int kSteps = 6;               // of the fixed point
 
 double inverse_modulus(const ContactSurface& surface) {
   if (!(surface.youngs_modulus > 0.0)) return 0.0;
@@ -84,52 +82,6 @@ double seen_over_peak(const Snapshots& snapshots, double duration) {
 
 double series_duration(double mass, double contact_compliance, double body_compliance) {
   return core::kPi * core::sqrt(mass * (contact_compliance + body_compliance));
-}
-
-ImpactDuration find_duration(
-    const DurationProblem& problem,
-    const std::function<BodyCompliance(bool is_screened, int exponent)>& compliance) {
-  const double mass = problem.mass;
-  const double speed = problem.speed;
-  ImpactDuration result;
-  const auto solve = [&](bool is_screened, int exponent) {
-    result.is_screened = is_screened;
-    result.screening_exponent = exponent;
-    result.body = compliance(is_screened, exponent);
-    ++result.solve_count;
-    const double counted = problem.counts_inertia && is_screened ? result.body.total : result.body.elastic;
-    if (problem.given_duration > 0.0) {
-      const double all = problem.given_duration / core::kPi * (problem.given_duration / core::kPi) / mass;
-      const double most = speed * core::sqrt(mass / std::max(result.body.elastic, 1e-300));
-      result.duration = problem.given_duration;
-      result.contact_compliance = std::max(0.0, all - counted);
-      result.peak_force = std::min(core::kPi * mass * speed / problem.given_duration, most);
-      return;
-    }
-    result.peak_force = peak_force(problem.contact, mass, speed, counted);
-    result.contact_compliance = hertz_compliance(problem.contact, result.peak_force);
-    result.duration = series_duration(mass, result.contact_compliance, counted);
-  };
-
-  const auto is_long = [&] { return result.duration >= 0.5 * problem.first_period; };
-  if (problem.given_duration > 0.0) {
-    result.duration = problem.given_duration;
-    if (is_long())
-      solve(false, 0);
-    else
-      solve(true, quantise_screening(1.0 / problem.given_duration));
-    return result;
-  }
-  solve(false, 0);
-  if (is_long()) return result;
-  std::vector<int> tried;
-  for (int step = 0; step < kSteps; ++step) {
-    const int exponent = quantise_screening(1.0 / result.duration);
-    if (std::find(tried.begin(), tried.end(), exponent) != tried.end()) break;
-    tried.push_back(exponent);
-    solve(true, exponent);
-  }
-  return result;
 }
 
 }  // namespace shatterbox::stress

@@ -3,9 +3,6 @@
 // too high.
 #pragma once
 
-#include <functional>
-#include <vector>
-
 namespace shatterbox::stress {
 
 /// Greatest force over mean force of a half-sine pulse, pi / 2.
@@ -62,39 +59,5 @@ struct Snapshots {
 /// compliance, so of `duration` (s), drives them apart in steps (symplectic Euler). Tends to 1 for short
 /// steps, grows without end with long ones. 1 without snapshots.
 double seen_over_peak(const Snapshots& snapshots, double duration);
-
-/// What a solve under a unit force at the contact tells, m/N.
-struct BodyCompliance {
-  double total = 0.0;    // f . u: with the inertia of the body in a screened solve
-  double elastic = 0.0;  // u . K u
-};
-
-struct DurationProblem {
-  HertzContact contact;
-  double mass = 0.0;          // kg, effective, at the contact, rotation included
-  double speed = 0.0;         // m/s, closing
-  double first_period = 0.0;  // s, of the body: ShellSystem::first_period
-  /// A ball on a body whose motion the ball feels: the total compliance counts; a body that falls on a floor:
-  /// the elastic one, its own motion is what is being stopped (it is in `mass`).
-  bool counts_inertia = false;
-  double given_duration = 0.0;  // s; > 0: the scene's own, nothing is searched
-};
-
-struct ImpactDuration {
-  double duration = 0.0;            // s
-  double peak_force = 0.0;          // N
-  double contact_compliance = 0.0;  // m/N, Hertz's at that force
-  BodyCompliance body;              // at the chosen screening
-  bool is_screened = false;         // false: the balanced (or supported) solve holds
-  int screening_exponent = 0;       // s = 2^exponent, if screened
-  int solve_count = 0;
-};
-
-/// Fixed point of duration and compliance, over screenings that are powers of two (so that factors are kept):
-/// starts from the balanced solve and stays there if the duration is at least half the first period; at most
-/// 6 steps, stops when an exponent comes again. `compliance(is_screened, exponent)` solves for a unit force
-/// at the contact.
-ImpactDuration find_duration(const DurationProblem& problem,
-                             const std::function<BodyCompliance(bool is_screened, int exponent)>& compliance);
 
 }  // namespace shatterbox::stress

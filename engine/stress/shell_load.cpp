@@ -285,12 +285,6 @@ VecX centrifugal_load(const ShellStiffness& stiffness, const geometry::ShellMesh
   return load;
 }
 
-void add_point_load(const geometry::ShellMesh& mesh, int cell, const Vec2& barycentric, const Vec3& force,
-                    VecX& load) {
-  const Vec3 weights(1.0 - barycentric.x() - barycentric.y(), barycentric.x(), barycentric.y());
-  add_share(mesh, {cell, 1.0, weights}, force, load);
-}
-
 double mean_edge_length(const geometry::ShellMesh& mesh) {
   double sum = 0.0;
   const auto& positions = mesh.elements->mesh.positions;

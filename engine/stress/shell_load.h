@@ -49,11 +49,6 @@ double group_weight(const LoadPatch& patch, const std::vector<int>& groups, int 
 VecX centrifugal_load(const ShellStiffness& stiffness, const geometry::ShellMesh& mesh, const Vec3& spin,
                       const Vec3& centre_of_mass);
 
-/// `force` (N) at a point of a cell, given by its element's barycentric weights: added to a load vector
-/// (|dof|).
-void add_point_load(const geometry::ShellMesh& mesh, int cell, const Vec2& barycentric, const Vec3& force,
-                    VecX& load);
-
 /// Mean length of the edges of the elements that the mesh has cells in, m: h of the rule radius >= 1.5 h.
 double mean_edge_length(const geometry::ShellMesh& mesh);
 

@@ -254,11 +254,4 @@ double ShellSystem::factor_entries() const {
   return state_->structure->tree.entries;
 }
 
-double ShellSystem::factor_megaflops() const {
-  double work = 0.0;
-  for (const Front& front : state_->structure->tree.fronts)
-    if (front.parent < 0) work += front.work;
-  return 2e-6 * work;
-}
-
 }  // namespace shatterbox::stress

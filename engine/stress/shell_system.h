@@ -75,9 +75,8 @@ class ShellSystem {
   int rigid_mode_count() const;  // over all parts: 6 for each free one, fewer where supported
   const ShellStiffness& stiffness() const;
 
-  /// Entries of the factor, and multiplications and additions that it took, in millions: for benches.
+  /// Entries of the factor.
   double factor_entries() const;
-  double factor_megaflops() const;
 
  private:
   struct State;

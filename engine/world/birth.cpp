@@ -1,5 +1,6 @@
 // Descriptions become bodies. Forms that are equal to the bit are shared, and with them their factors.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/hash.h"
 #include "engine/world/forms.h"
@@ -21,6 +22,17 @@ std::string find_path_fault(const BodyDescription& description) {
   return {};
 }
 
+std::string find_number_fault(const BodyDescription& description) {
+  if (description.density && !(*description.density > 0.0 && std::isfinite(*description.density)))
+    return "the density must be above zero";
+  const Quat& rotation = description.pose.rotation;
+  if (!rotation.coeffs().allFinite() || !(rotation.norm() > 0.0)) return "its rotation is none";
+  for (const Vec3& v : {description.pose.translation, description.velocity, description.angular_velocity,
+                        description.force, description.torque})
+    if (!v.allFinite()) return "its place, velocity or force is not finite";
+  return {};
+}
+
 /// The form of a mesh among `forms`, made if there is none like it yet.
 template <class Description>
 core::Result<SharedForm> share_form(std::vector<SharedForm>& forms, const Description& description,
@@ -35,18 +47,25 @@ core::Result<SharedForm> share_form(std::vector<SharedForm>& forms, const Descri
   return forms.emplace_back(std::move(made.value()));
 }
 
-/// The body's own flaws.
-void draw_flaws(Fragile& fragile, const material::Material& material, std::uint64_t seed) {
-  if (auto* shell = std::get_if<fracture::ShellSubject>(&fragile.subject)) {
-    shell->seed = seed;
-    shell->flaws = std::make_shared<const fracture::FlawField>(
-        fracture::draw_flaws(*shell->mesh->elements, material, seed));
-  } else if (auto* solid = std::get_if<fracture::SolidSubject>(&fragile.subject)) {
-    solid->seed = seed;
-    solid->flaws = std::make_shared<const fracture::SolidFlawField>(
-        fracture::draw_solid_flaws(*solid->complex->elements, material, seed));
-    solid->kept_turns = std::make_shared<fracture::KeptCrackTurns>();
-  }
+/// The body's own flaws and grains: copies of one form break differently.
+void draw_flaws(fracture::ShellSubject& shell, const material::Material& material, std::uint64_t seed) {
+  const geometry::ShellElements& elements = *shell.mesh->elements;
+  shell.seed = seed;
+  shell.flaws = std::make_shared<const fracture::FlawField>(fracture::draw_flaws(elements, material, seed));
+  if (!(material.grain_size > 0.0)) return;
+  const Mat3 squeeze = fracture::grain_squeeze(material);
+  shell.grains = std::make_shared<const fracture::GrainField>(fracture::make_grain_field(
+      elements, fracture::scatter_grain_seeds(elements, material.grain_size, seed, squeeze), squeeze));
+}
+
+void draw_flaws(fracture::SolidSubject& solid, const material::Material& material, std::uint64_t seed) {
+  solid.seed = seed;
+  solid.flaws = std::make_shared<const fracture::SolidFlawField>(
+      fracture::draw_solid_flaws(*solid.complex->elements, material, seed));
+  solid.kept_turns = std::make_shared<fracture::KeptCrackTurns>();
+  if (material.grain_size > 0.0)
+    solid.grains = std::make_shared<const fracture::SpaceGrains>(
+        fracture::make_space_grains(solid.complex->elements->mesh, material, seed));
 }
 
 }  // namespace
@@ -58,7 +77,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   };
   if (description.material < 0 || description.material >= static_cast<int>(s.materials.size()))
     return refuse("there is no such material");
-  for (const std::string& fault : {find_form_fault(description), find_path_fault(description)})
+  for (const std::string& fault :
+       {find_form_fault(description), find_path_fault(description), find_number_fault(description)})
     if (!fault.empty()) return refuse(fault);
 
   const material::Material& material = s.materials[static_cast<std::size_t>(description.material)];
@@ -121,7 +141,8 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   born.family = born.id;
   if (form.fragile) {
     auto own = std::make_shared<Fragile>(*form.fragile);
-    draw_flaws(*own, material, core::Hash(s.settings.seed).add(std::uint64_t{born.id}).value());
+    const std::uint64_t seed = core::Hash(s.settings.seed).add(std::uint64_t{born.id}).value();
+    std::visit([&](auto& subject) { draw_flaws(subject, material, seed); }, own->subject);
     own->contact_duration = description.contact_duration;
     s.moving.fragiles[born.id] = std::move(own);
     s.moving.memories[born.id] = {};

@@ -1,6 +1,7 @@
 #include "engine/world/forms.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "engine/core/elementary.h"
@@ -42,13 +43,6 @@ fracture::ShellSubject make_subject(const ShellDescription& shell, const materia
   subject.thickness = shell.thickness;
   subject.clamped_vertices = shell.clamped;
   std::sort(subject.clamped_vertices.begin(), subject.clamped_vertices.end());
-  if (material.grain_size > 0.0) {
-    const Mat3 squeeze = fracture::grain_squeeze(material);
-    subject.grains = std::make_shared<const fracture::GrainField>(fracture::make_grain_field(
-        *subject.mesh->elements,
-        fracture::scatter_grain_seeds(*subject.mesh->elements, material.grain_size, subject.seed, squeeze),
-        squeeze));
-  }
   return subject;
 }
 
@@ -61,6 +55,8 @@ std::string find_mesh_fault(const geometry::TriangleMesh& mesh, const std::vecto
   for (const geometry::Triangle& t : mesh.triangles)
     for (const int v : t)
       if (v < 0 || v >= count) return "a triangle names a vertex that is not there; mend the mesh first";
+  for (const Vec3& p : mesh.positions)
+    if (!p.allFinite()) return "a vertex of the mesh is at no finite place";
   return {};
 }
 
@@ -103,42 +99,37 @@ double width_of(const std::vector<Vec3>& points, double volume) {
   return volume / (box(1) * box(2));
 }
 
-/// The grains of a solid with its centre of mass in the origin; null: it has none.
-core::Result<std::shared_ptr<const fracture::SpaceGrains>> make_grains(const material::Material& material,
-                                                                       const geometry::TriangleMesh& surface,
-                                                                       const geometry::TetMesh& mesh) {
-  if (!(material.grain_size > 0.0)) return std::shared_ptr<const fracture::SpaceGrains>();
+/// A sentence, or nothing, if the material divides the solid into no more grains than it may have.
+std::string find_grain_fault(const material::Material& material, const geometry::TriangleMesh& surface) {
+  if (!(material.grain_size > 0.0)) return {};
   Vec3 low = Vec3::Constant(1e300), high = -low;
   for (const Vec3& p : surface.positions) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
   const double count = fracture::expected_grains(high - low, material);
-  if (count <= fracture::kMostSpaceGrains)
-    return std::make_shared<const fracture::SpaceGrains>(
-        fracture::make_space_grains(mesh, material, fracture::SolidSubject{}.seed));
+  if (count <= fracture::kMostSpaceGrains) return {};
   char text[256];
   std::snprintf(text, sizeof text,
                 "a grain_size of %.3g m makes some %.0f grains of it, and a solid has %.0f at most: give its "
                 "material %.2g m or more, or 0 for none",
                 material.grain_size, count, fracture::kMostSpaceGrains,
                 1.05 * material.grain_size * core::pow(count / fracture::kMostSpaceGrains, 1.0 / 3.0));
-  return core::Error{text};
+  return text;
 }
 
 /// What a solid's verdict needs; `surface` has its centre of mass in the origin.
 core::Result<fracture::SolidSubject> make_subject(const SolidDescription& solid,
                                                   const material::Material& material,
                                                   const geometry::TriangleMesh& surface, const Vec3& centre) {
+  if (const std::string fault = find_grain_fault(material, surface); !fault.empty())
+    return core::Error{fault};
   auto embedded = geometry::tetrahedralise(surface, options_of(solid));
   if (!embedded) return core::Error{"it cannot be divided into tetrahedra: " + embedded.error()};
   const auto& elements = embedded.value().elements;
   auto complex = geometry::build_solid_complex(elements, embedded.value().embedded.material);
   geometry::settle(complex);
   fracture::SolidSubject subject;
-  auto grains = make_grains(material, surface, elements->mesh);
-  if (!grains) return core::Error{grains.error()};
-  subject.grains = std::move(grains.value());
   subject.complex = std::make_shared<const geometry::SolidComplex>(std::move(complex));
   subject.material = material;
   // Vertices of the elements lie a little beyond the surface.
@@ -166,12 +157,15 @@ double element_size_of(const SolidDescription& solid) {
 
 std::string find_form_fault(const BodyDescription& description) {
   if (const auto* box = std::get_if<BoxDescription>(&description.form))
-    if (!(box->half_extent.minCoeff() > 0.0)) return "a box needs an extent above zero along every axis";
+    if (!(box->half_extent.minCoeff() > 0.0) || !box->half_extent.allFinite())
+      return "a box needs an extent above zero along every axis";
   if (const auto* sphere = std::get_if<SphereDescription>(&description.form))
-    if (!(sphere->radius > 0.0)) return "a sphere needs a radius above zero";
+    if (!(sphere->radius > 0.0) || !std::isfinite(sphere->radius))
+      return "a sphere needs a radius above zero";
   if (const auto* capsule = std::get_if<CapsuleDescription>(&description.form)) {
     if (!(capsule->radius > 0.0)) return "a capsule needs a radius above zero";
-    if (!(capsule->length > 2.0 * capsule->radius)) return "a capsule is longer than twice its radius";
+    if (!(capsule->length > 2.0 * capsule->radius) || !std::isfinite(capsule->length))
+      return "a capsule is longer than twice its radius";
   }
   if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
     std::string fault = find_mesh_fault(shell->mesh, shell->parts, "shell");

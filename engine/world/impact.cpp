@@ -36,6 +36,7 @@ void merge(Load& into, const Load& load) {
   into.other_impulse += load.other_impulse;
   into.impulse_body += load.impulse_body;
   into.closing_speed = std::max(into.closing_speed, load.closing_speed);
+  into.first_time = std::min(into.first_time, load.first_time);
   into.time = std::max(into.time, load.time);
   into.duration = std::max(into.duration, load.duration);
   into.spread = core::sqrt(into.spread * into.spread + load.spread * load.spread);  // areas add up
@@ -98,7 +99,7 @@ std::vector<Load> gather_loads(const OwnImpulses& impulses, body::ImpulseKind ki
     load.other_impulse = is_a ? entry.impulse_b : entry.impulse_a;
     load.point_world = entry.point_world;
     load.closing_speed = entry.closing_speed;
-    load.time = step_start + entry.time;
+    load.first_time = load.time = step_start + entry.time;
     load.duration = entry.duration;
     load.spread = entry.spread;
     if (pass_over && pass_over(load)) continue;

@@ -23,7 +23,8 @@ struct Load {
   Vec3 other_impulse = Vec3::Zero();  // N s, on the other, its body space
   Vec3 point_world = Vec3::Zero();    // m, when it happened
   double closing_speed = 0.0;         // m/s, greatest of the gathered collisions
-  double time = 0.0;                  // s, of the last impulse
+  double first_time = 0.0;            // s, of the first impulse
+  double time = 0.0;                  // s, of the last one
   double duration = 0.0;              // s, of a blast; 0: that of the impact
   double spread = 0.0;                // m, radius of the disc over which a blast came
 };
@@ -39,7 +40,7 @@ struct ComingDent {
 /// What a fragile body remembers of its impacts between steps. Part of the state.
 struct ImpactMemory {
   std::vector<Load> event;        // collision sums of the event that is under way
-  double event_duration = 0.0;    // s, of the event's impact as last evaluated
+  double event_duration = 0.0;    // s, the longest that its impact was evaluated with
   std::vector<Load> contact;      // contact impulses of the last 1/60 s, one entry a step and place
   std::vector<ComingDent> dents;  // of events that are over; the last one of `event`, as last evaluated, if
   bool has_open_dent = false;     // that is so

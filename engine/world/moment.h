@@ -23,7 +23,7 @@ struct BodyBits {
 };
 
 struct Moment {
-  const char* stage = "";   // that was just done: "acts", "motion", "joints", "fracture" or "sleep"
+  const char* stage = "";   // that was just done: "acts", "motion", "joints", "fracture", "dents" or "sleep"
   long step = 0;            // from 1
   int part = 0, parts = 0;  // of the step, from 1
   int pass = 0;             // from 1: more where something broke and the part was taken again

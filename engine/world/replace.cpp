@@ -135,13 +135,9 @@ double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double
   const Vec3 impulse = mass * (closing - left) * direction;
   struck->push(impulse, point);
   if (other) other->push(-impulse, point);
-  body::LoggedImpulse entry;
-  entry.kind = body::ImpulseKind::fracture;
-  entry.body_a = struck->id;
-  entry.body_b = impact.hardest.other;
-  entry.point_world = point;
-  entry.normal_world = direction;
-  entry.impulse_world = impulse;
+  body::LoggedImpulse entry =
+      body::log_impulse(body::ImpulseKind::fracture, struck->id, struck->pose, impact.hardest.other,
+                        other ? other->pose : Pose{}, point, direction, impulse);
   entry.closing_speed = closing;
   entry.effective_mass = mass;
   log.push_back(entry);

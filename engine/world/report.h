@@ -139,7 +139,7 @@ struct ConservationFigures {
 struct SolverFigures {
   double worst_residual = 0.0;  // relative, of the stress solves
   long solves = 0;
-  long skipped = 0;  // impacts that a bound showed to be harmless
+  long skipped = 0;  // impacts that a bound showed to be harmless, or that are like one just borne
   long factorisations = 0;
 };
 

@@ -36,8 +36,8 @@ struct WorldSettings {
   ContactScheme contact = ContactScheme::standard;
   std::optional<double> stress_window;  // s; the duration of every impact, where it is not to be computed
   double paper_duration = 1e-3;  // s; Criterion::paper compares the stress integral with strength times this
-  int crack_generations = 3;     // solves of one cracking body: radial cracks, rings, and what they leave
-  int piece_generations = 2;     // the same of a body that is itself a piece
+  int crack_generations = 3;     // solves of one cracking shell: radial cracks, rings, and what they leave
+  int piece_generations = 2;     // the same of a shell that is itself a piece; solids have six
   bool has_energy_guard = true;  // cracks use no more energy than there is; off: to see what that changes
   bool has_sleep = true;         // islands at rest fall asleep and cost nothing
   int substeps = 8;              // of a step, of bodies in contact

@@ -79,7 +79,6 @@ struct World::State {
   std::uint64_t hash = 0;
   double last_energy = 0.0;  // J
   bool is_disturbed = true;  // bodies were added, removed or pushed since the last step
-  Vec3 momentum_before = Vec3::Zero();
 };
 
 }  // namespace shatterbox::world

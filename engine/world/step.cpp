@@ -156,86 +156,106 @@ bool World::step() {
   return true;
 }
 
+/// A part of a step, moved.
+struct World::MovedPart {
+  dynamics::StepPart part;
+  int pass = 0;
+  std::vector<body::Body> before;  // at its begin
+  body::ImpulseLog given, log;     // all impulses; those of motion alone
+  dynamics::ContactReport moved;
+};
+
+World::MovedPart World::move_part(const dynamics::StepPart& part, int pass) {
+  MovedPart done{part, pass, {}, act(part), {}, {}};
+  tell_watcher("acts", part, pass);
+  done.before = state_->moving.bodies;
+  done.moved = move_bodies(part, done.log);
+  done.given.insert(done.given.end(), done.log.begin(), done.log.end());
+  tell_watcher("motion", part, pass);
+  return done;
+}
+
+World::PartEnd World::judge_part(const MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
+                                 dynamics::ContactReport& contact) {
+  State& s = *state_;
+  const double step = s.contact_settings.time_step;
+  const auto divide = [&](const std::optional<dynamics::StepPart>& finer) {
+    if (!finer) return false;
+    s.moving = std::move(snapshot);
+    part = *finer;
+    return true;
+  };
+  if (divide(divide_where_cut(part, done.moved))) return PartEnd::divided;
+  if (!s.moving.contact.joints.empty()) {
+    const bool may_go_back = s.settings.after_break == AfterBreak::go_back && done.pass + 1 < kMostPasses;
+    const bool goes_back = open_joints(judge_joints(part, done.given), snapshot, may_go_back);
+    tell_watcher("joints", part, done.pass);
+    if (goes_back) return PartEnd::broken;
+  }
+  const auto impacts =
+      judge_impacts(done.given, {done.before, time() + step * part.number / part.count, time()});
+  if (divide(divide_before_holes(impacts, part, time(), step))) {
+    s.borne.clear();  // their verdicts were not told
+    return PartEnd::divided;
+  }
+  for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
+  const std::size_t known_breaks = s.report.breaks.size();
+  const bool goes_back = s.report.stages.time(
+      "fracture", [&] { return break_bodies(book_verdicts(impacts, snapshot, done.pass), snapshot); });
+  tell_watcher("fracture", part, done.pass);
+  if (goes_back) {
+    if (s.contact_settings.has_ways)
+      divide_ways(done.before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies,
+                  static_cast<double>(part.number) / part.count, contact.ways, s.ended_ways);
+    if (part.number == 0) part.count = std::max(part.count, count_parts());
+    return PartEnd::broken;
+  }
+  if (!done.moved.is_unfinished) return PartEnd::stands;
+  s.moving = std::move(snapshot);
+  return PartEnd::tried;
+}
+
 void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) {
   State& s = *state_;
   core::StageTimer& timer = s.report.stages;
-  const bool has_joints = !s.moving.contact.joints.empty();
-  const bool may_break = !s.moving.fragiles.empty() || has_joints;
+  const bool may_break = !s.moving.fragiles.empty() || !s.moving.contact.joints.empty();
   dynamics::StepPart part{0, count_parts()};
-  bool was_tried = false;  // nothing broke by it
+  PartEnd end = PartEnd::stands;  // of the pass before
   for (int pass = 0; part.number < part.count;) {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
-    body::ImpulseLog given = act(part);
-    tell_watcher("acts", part, pass);
-    const std::vector<body::Body> before = s.moving.bodies;
-    body::ImpulseLog log;
     part.may_return = may_break;
     part.is_again = pass > 0;
     // Pieces that were just born in it often break as well.
-    part.is_trial =
-        pass > 0 && !was_tried && pass + 1 < kMostPasses && dynamics::may_be_tried(s.contact_settings, part);
-    was_tried = false;
-    dynamics::ContactReport moved = move_bodies(part, log);
-    given.insert(given.end(), log.begin(), log.end());
-    tell_watcher("motion", part, pass);
-    if (may_break) {
-      if (const auto finer = divide_where_cut(part, moved)) {
-        s.moving = std::move(snapshot);
-        part = *finer;
-        continue;
-      }
-      if (has_joints) {
-        const bool may_go_back = s.settings.after_break == AfterBreak::go_back && pass + 1 < kMostPasses;
-        const bool goes_back = open_joints(judge_joints(part, given), snapshot, may_go_back);
-        tell_watcher("joints", part, pass);
-        if (goes_back) {
-          ++pass;
-          continue;
-        }
-      }
-      const double step = s.contact_settings.time_step;
-      const auto impacts = judge_impacts(given, {before, time() + step * part.number / part.count, time()});
-      if (const auto finer = divide_before_holes(impacts, part, time(), step)) {
-        s.moving = std::move(snapshot);
-        part = *finer;
-        continue;
-      }
-      for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
-      const std::size_t known_breaks = s.report.breaks.size();
-      const bool goes_back = timer.time("fracture", [&] { return break_bodies(impacts, snapshot, pass); });
-      tell_watcher("fracture", part, pass);
-      if (goes_back) {
-        ++pass;
-        if (s.contact_settings.has_ways)
-          divide_ways(before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies,
-                      static_cast<double>(part.number) / part.count, contact.ways, s.ended_ways);
-        if (part.number == 0) part.count = std::max(part.count, count_parts());
-        continue;
-      }
-      if (moved.is_unfinished) {
-        s.moving = std::move(snapshot);
-        was_tried = true;
-        continue;
-      }
-    }
-    book_conservation(before, log, s.contact_settings.time_step / part.count);
-    s.log.insert(s.log.end(), given.begin(), given.end());
-    dynamics::add_part(part, std::move(moved), contact);
+    part.is_trial = pass > 0 && end != PartEnd::tried && pass + 1 < kMostPasses &&
+                    dynamics::may_be_tried(s.contact_settings, part);
+    MovedPart done = move_part(part, pass);
+    end = may_break ? judge_part(done, snapshot, part, contact) : PartEnd::stands;
+    if (end == PartEnd::broken) ++pass;
+    if (end != PartEnd::stands) continue;
+    book_conservation(done.before, done.log, s.contact_settings.time_step / part.count);
+    s.log.insert(s.log.end(), done.given.begin(), done.given.end());
+    dynamics::add_part(part, std::move(done.moved), contact);
     if (s.wants_to_stop && !s.begin.moving)
       s.begin.moving = std::move(snapshot);  // the next part has its own
     ++part.number;
     pass = 0;
   }
+  finish_parts(part.count, snapshot, contact);
+}
+
+void World::finish_parts(int count, const MovingState& snapshot, dynamics::ContactReport& contact) {
+  State& s = *state_;
+  const bool may_break = !s.moving.fragiles.empty() || !s.moving.contact.joints.empty();
   const bool may_yield = may_break && std::any_of(s.materials.begin(), s.materials.end(),
                                                   [](const material::Material& m) { return m.yield > 0.0; });
-  if (may_yield) timer.time("dents", [&] { dent_bodies(snapshot); });
-  if (may_yield) tell_watcher("dents", {part.count - 1, part.count}, 0);
+  if (may_yield) s.report.stages.time("dents", [&] { dent_bodies(snapshot); });
+  if (may_yield) tell_watcher("dents", {count - 1, count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
-    dynamics::end_step(s.contact_settings, contact, part.count, s.moving.contact);
-    timer.time("sleep",
-               [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+    dynamics::end_step(s.contact_settings, contact, count, s.moving.contact);
+    s.report.stages.time(
+        "sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
   }
-  tell_watcher("sleep", {part.count - 1, part.count}, 0);
+  tell_watcher("sleep", {count - 1, count}, 0);
 }
 
 std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log, const PartBegin& begin) {
@@ -254,7 +274,8 @@ std::vector<EvaluatedImpact> World::judge_impacts(const body::ImpulseLog& log, c
   return impacts;
 }
 
-bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, int pass) {
+std::vector<const EvaluatedImpact*> World::book_verdicts(std::span<const EvaluatedImpact> impacts,
+                                                         MovingState& snapshot, int pass) {
   State& s = *state_;
   const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
   std::vector<const EvaluatedImpact*> broken;
@@ -265,7 +286,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
       s.element_stress[impact.id] =
           std::make_shared<const std::vector<double>>(impact.figures().element_stress);
     if (impact.figures().verdict.outcome != fracture::Outcome::broke) {
-      if (impact.figures().generations > 0)
+      if (!impact.figures().needed_no_solve())
         s.report.impacts.push_back(describe_impact(impact, body, end_time));
       continue;
     }
@@ -283,17 +304,24 @@ bool World::break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& 
     // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
     if (impact.first_time > memory.charged_until) memory.generation = 0;
     ImpactRow row = describe_impact(impact, body, end_time);
-    if (memory.generation >= s.settings.most_generations || pass + 1 >= kMostPasses) {
-      row.verdict = "held: its impact event has used all its generations of breaking";
+    const bool has_used_all = memory.generation >= s.settings.most_generations;
+    if (has_used_all || pass + 1 >= kMostPasses) {
+      row.verdict = has_used_all ? "held: its impact event has used all its generations of breaking"
+                                 : "held: so much has broken in this step that it is not taken again";
       s.report.impacts.push_back(row);
       continue;
     }
     s.report.impacts.push_back(row);
     broken.push_back(&impact);
   }
-  if (broken.empty()) return false;
-  keep_begin(snapshot);
+  return broken;
+}
 
+bool World::break_bodies(std::span<const EvaluatedImpact* const> broken, MovingState& snapshot) {
+  if (broken.empty()) return false;
+  State& s = *state_;
+  const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
+  keep_begin(snapshot);
   const bool goes_back = s.settings.after_break == AfterBreak::go_back;
   if (goes_back) {
     for (const EvaluatedImpact* impact : broken)

@@ -102,8 +102,8 @@ double total_force(const std::vector<Load>& loads, double average) {
   return sum / average;
 }
 
-/// A shell no wider than `width` at its narrowest, or a solid's bar, bent by `force` over its whole size, has
-/// at most this stress.
+/// Pa, at most, where `force` (N) bends a body over its whole size: a solid as a bar of its least width, a
+/// shell as a strip of kLeastWidth of its size.
 double bending_bound(const body::Body& body, double force) {
   const double thickness = body.shape->thickness;
   const double reach = 2.0 * body.shape->bounding_radius;
@@ -157,73 +157,94 @@ std::optional<double> blast_duration_of(const std::vector<Load>& loads) {
   return hardest->duration;
 }
 
-/// The impact of this step on one body, if there is anything to evaluate.
-bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body& body, double time,
-                   ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
-  const double radius = kGatherRadius * body.shape->bounding_radius;
-  const bool is_paper = judge.settings.criterion == Criterion::paper;
-  std::vector<Load> hits;
-  if (is_paper)
-    gather_paper_step(log, body, radius, time, hits);
-  else
-    hits = gather_collisions(judge, log, body, radius, time, memory);
-
-  const double step = 1.0 / judge.settings.steps_per_second, average = contact_average(step);
+/// Contact of this step, and of those before that are not forgotten yet: its force, N.
+double gather_contact(const OwnImpulses& log, const body::Body& body, double radius, double time, double step,
+                      bool is_paper, ImpactMemory& memory) {
+  const double average = contact_average(step);
   forget_old_contact(memory, time, average, step);
   if (!is_paper)
     for (const Load& load : gather_loads(log, body::ImpulseKind::contact, body, radius, time))
       memory.contact.push_back(load);
+  return total_force(memory.contact, average);
+}
 
-  if (!memory.event.empty()) {
-    double last = -1e9, next = 1e9;
-    for (const Load& load : memory.event) last = std::max(last, load.time);
-    for (const Load& load : hits) next = std::min(next, load.time);
-    if (is_paper || next - last > 2.0 * memory.event_duration) {
-      memory.event.clear();
-      memory.has_open_dent = false;
-    }
+/// An event is over when no collision came for two durations; by the paper's criterion with its step.
+bool is_event_over(const ImpactMemory& memory, const std::vector<Load>& hits, double time, bool is_paper) {
+  double last = -1e9, next = hits.empty() ? time : 1e9;
+  for (const Load& load : memory.event) last = std::max(last, load.time);
+  for (const Load& load : hits) next = std::min(next, load.time);
+  return is_paper || next - last > 2.0 * memory.event_duration;
+}
+
+void add_to_event(ImpactMemory& memory, const std::vector<Load>& hits, double radius, double time,
+                  bool is_paper) {
+  if (!memory.event.empty() && is_event_over(memory, hits, time, is_paper)) {
+    memory.event.clear();
+    memory.event_duration = 0.0;
+    memory.has_open_dent = false;
   }
   add_to_event(memory.event, hits, radius);
+}
 
-  const double contact_force = total_force(memory.contact, average);
-  bool is_pressed = contact_force > memory.tested_growth * memory.tested_contact;
-  // Contact is an average over a time that a newborn piece has not lived yet.
-  if (!is_paper && time < memory.born + average) is_pressed = false;
-  if (is_pressed &&
-      bending_bound(body, contact_force) < material::borne_tension(candidate.fragile->material())) {
-    is_pressed = false;
-    if (hits.empty()) ++figures.skipped;
-  }
-  if (hits.empty() && !is_pressed) return false;
-
-  for (const Load& load : memory.event) {
+/// What presses on the body, and, of what was `struck` in this step, the event.
+void fill_candidate(const Judge& judge, const body::Body& body, double radius, double time, bool is_struck,
+                    const ImpactMemory& memory, Candidate& candidate) {
+  const bool is_paper = judge.settings.criterion == Criterion::paper;
+  const std::vector<Load> event = is_struck ? memory.event : std::vector<Load>{};
+  for (const Load& load : event) {
     candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
     if (judge.begin && !is_paper && load.time >= judge.begin->time &&
         candidate.fragile->material().yield > 0.0)
       candidate.impact.loads.back().striker = find_striker(*judge.begin, judge.log, body.id, load.other);
   }
-  const std::optional<double> blast = blast_duration_of(memory.event);
+  const std::optional<double> blast = blast_duration_of(event);
   // What presses at rest is nothing beside a blast, whose duration is that of all loads.
   if (!blast)
     for (const Load& load : gather_by_place(memory.contact, radius))
       candidate.impact.loads.push_back(judge.impact_load(body, load, false));
-  candidate.is_struck = !memory.event.empty();
-  const std::vector<Load>& told = candidate.is_struck ? memory.event : memory.contact;
+  candidate.is_struck = is_struck;
+  const std::vector<Load>& told = is_struck ? event : memory.contact;
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
     return a.impulse_body.squaredNorm() < b.impulse_body.squaredNorm();
   });
-  candidate.loads = memory.event;
+  candidate.loads = event;
   candidate.loads.insert(candidate.loads.end(), memory.contact.begin(), memory.contact.end());
   candidate.is_piece = memory.charged_event != 0;
   candidate.first_time = time;
-  for (const Load& load : memory.event) candidate.first_time = std::min(candidate.first_time, load.time);
-  candidate.impact.contact_average = average;
+  for (const Load& load : event) candidate.first_time = std::min(candidate.first_time, load.first_time);
+  candidate.impact.contact_average = contact_average(1.0 / judge.settings.steps_per_second);
   candidate.impact.spin_material = body.pose.rotation.conjugate() * body.angular_velocity;
   if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;
   if (candidate.fragile->contact_duration)
     candidate.impact.given_duration = candidate.fragile->contact_duration;
   if (blast) candidate.impact.given_duration = blast;
   if (is_paper) candidate.impact.given_duration = judge.settings.paper_duration;
+}
+
+/// The impact of this step on one body, if there is anything to evaluate.
+bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body& body, double time,
+                   ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
+  const double radius = kGatherRadius * body.shape->bounding_radius;
+  const double step = 1.0 / judge.settings.steps_per_second;
+  const bool is_paper = judge.settings.criterion == Criterion::paper;
+  std::vector<Load> hits;
+  if (is_paper)
+    gather_paper_step(log, body, radius, time, hits);
+  else
+    hits = gather_collisions(judge, log, body, radius, time, memory);
+  const double contact_force = gather_contact(log, body, radius, time, step, is_paper, memory);
+  add_to_event(memory, hits, radius, time, is_paper);
+
+  bool is_pressed = contact_force > memory.tested_growth * memory.tested_contact;
+  // Contact is an average over a time that a newborn piece has not lived yet.
+  if (!is_paper && time < memory.born + contact_average(step)) is_pressed = false;
+  if (is_pressed &&
+      bending_bound(body, contact_force) < material::borne_tension(candidate.fragile->material())) {
+    is_pressed = false;
+    if (hits.empty()) ++figures.skipped;
+  }
+  if (hits.empty() && !is_pressed) return false;
+  fill_candidate(judge, body, radius, time, !hits.empty(), memory, candidate);
   memory.tested_contact = std::max(memory.tested_contact, contact_force);
   return true;
 }
@@ -258,11 +279,19 @@ bool has_yielded(const fracture::Verdict& verdict) {
   return verdict.yield > 0.0 && verdict.von_mises > verdict.yield;
 }
 
-bool is_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
+/// Null: this is harder than what was borne, or nothing was.
+const BorneImpact* find_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
   const auto found = borne.find(candidate.body->id);
-  if (found == borne.end()) return false;
+  if (found == borne.end()) return nullptr;
   const double radius = kGatherRadius * candidate.body->shape->bounding_radius;
-  return load_growth(candidate.loads, found->second, radius) < found->second.most_growth;
+  return load_growth(candidate.loads, found->second, radius) < found->second.most_growth ? &found->second
+                                                                                         : nullptr;
+}
+
+/// `duration`: of the event's impact, s; 0: nothing struck.
+void keep_verdict(double duration, double tested_growth, ImpactMemory& memory) {
+  memory.event_duration = std::max(memory.event_duration, duration);
+  memory.tested_growth = tested_growth;
 }
 
 /// The dent of the event that is under way, in place of what it was when less of the event was known.
@@ -305,10 +334,12 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     if (!candidate.body) continue;
     candidate.fragile = fragiles.at(id).get();
     if (!gather_impact(judge, impulses[i], *candidate.body, time, memories[id], candidate, figures)) continue;
-    if (is_like_borne(candidate, borne))
+    if (const BorneImpact* like = find_like_borne(candidate, borne)) {
       ++figures.skipped;
-    else
+      keep_verdict(like->duration, like->tested_growth, memories[id]);
+    } else {
       candidates.push_back(std::move(candidate));
+    }
   }
 
   std::vector<EvaluatedImpact> evaluated(candidates.size());
@@ -338,18 +369,20 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedImpact& impact = evaluated[i];
     const fracture::DecisionFigures& decision = impact.figures();
+    const double ratio = decision.verdict.ratio;
+    const double duration = impact.is_struck ? decision.verdict.duration : 0.0;
+    const double tested_growth =
+        ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
     if ((decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only()) &&
         !has_yielded(decision.verdict))
-      borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict)};
+      borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict), duration,
+                          tested_growth};
     ImpactMemory& memory = memories[impact.id];
     if (impact.is_struck) await_dent(impact, *candidates[i].body, memory);
-    const double ratio = decision.verdict.ratio;
-    memory.tested_growth =
-        ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
-    memory.event_duration = std::max(memory.event_duration, decision.verdict.duration);
+    keep_verdict(duration, tested_growth, memory);
     figures.solves += decision.generations;
     figures.factorisations += decision.factorisations;
-    if (decision.generations == 0) ++figures.skipped;
+    if (decision.needed_no_solve()) ++figures.skipped;
     figures.worst_residual = std::max(figures.worst_residual, decision.residual);
   }
   return evaluated;

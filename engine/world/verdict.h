@@ -42,6 +42,9 @@ struct EvaluationFigures {
 struct BorneImpact {
   std::vector<Load> loads;   // collisions and contact
   double most_growth = 0.0;  // so many times these loads are borne without another solve
+  // What the body's memory keeps of the verdict.
+  double duration = 0.0;  // s; 0: nothing struck
+  double tested_growth = 1.1;
 };
 using BorneImpacts = std::map<body::BodyId, BorneImpact>;
 

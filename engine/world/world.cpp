@@ -1,6 +1,7 @@
 #include "engine/world/world.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "engine/material/tempering.h"
 #include "engine/world/state.h"
@@ -8,6 +9,8 @@
 namespace shatterbox::world {
 
 World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) {
+  if (settings.steps_per_second < 1 || settings.substeps < 1 || !settings.gravity.allFinite())
+    throw std::invalid_argument("a world needs a step a second, a substep and a finite gravity");
   state_->settings = settings;
   state_->contact_settings.time_step = 1.0 / settings.steps_per_second;
   state_->contact_settings.gravity = settings.gravity;

@@ -50,6 +50,7 @@ struct Ancestry {
 
 class World {
  public:
+  /// Throws std::invalid_argument: less than one step a second or substep, or a gravity that is not finite.
   explicit World(const WorldSettings& settings);
   ~World();
   World(World&&) noexcept;
@@ -61,6 +62,7 @@ class World {
 
   /// Adds a material and returns its number. Reasons for refusal: a value out of its range.
   core::Result<int> add_material(const material::Material& material);
+  /// Both materials must be there: std::out_of_range.
   void add_pair(const PairOverride& pair);
 
   /// Adds a body now: before the first step, or between two steps (the script's drop and projectile). Reasons
@@ -92,7 +94,8 @@ class World {
   bool move_hand(int hand, const Vec3& place);
   void release(int hand);
 
-  /// Factors and flaws of all breakable shapes, which would otherwise be made at the first hit. Optional.
+  /// Factors of all breakable shapes, or what their solves need, which would otherwise be made at the first
+  /// hit. Optional.
   void prepare();
 
   /// From now on `ways` tells how bodies went through the last step. Changes no result.
@@ -106,7 +109,8 @@ class World {
   void watch(Watcher watcher);
 
   /// Advances by one step of 1 / steps_per_second seconds. False if it was asked to stop: then everything is
-  /// as before the step, but for the times of its stages and pictures of stress, and it can be taken again.
+  /// as before the step, but for the impulse log, the times of its stages and pictures of stress, and it can
+  /// be taken again.
   bool step();
 
   std::span<const body::Body> bodies() const;
@@ -143,6 +147,19 @@ class World {
 
   /// All parts of the step, up to sleep. `snapshot`: at the begin of the part that is taken.
   void take_parts(dynamics::ContactReport& contact, MovingState& snapshot);
+  struct MovedPart;
+  MovedPart move_part(const dynamics::StepPart& part, int pass);
+  /// What becomes of a part that was moved. Anything but `stands`: it is taken again, from its begin.
+  enum class PartEnd : std::uint8_t {
+    stands,
+    divided,  // in shorter ones
+    broken,   // with the pieces in place of the whole
+    tried,    // to its end: nothing broke by it
+  };
+  PartEnd judge_part(const MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
+                     dynamics::ContactReport& contact);
+  /// Stages "dents" and "sleep", behind the last of `count` parts.
+  void finish_parts(int count, const MovingState& snapshot, dynamics::ContactReport& contact);
   int count_parts() const;
   std::optional<dynamics::StepPart> divide_where_cut(const dynamics::StepPart& part,
                                                      const dynamics::ContactReport& moved) const;
@@ -152,9 +169,11 @@ class World {
   dynamics::ContactReport move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log);
   /// Stage "stress", of the impulses of one part.
   std::vector<EvaluatedImpact> judge_impacts(const body::ImpulseLog& log, const PartBegin& begin);
-  /// Stage "fracture": books verdicts, goes back and puts pieces in place. True if the part must be taken
-  /// again.
-  bool break_bodies(std::span<const EvaluatedImpact> impacts, MovingState& snapshot, int pass);
+  /// Tells the report of all impacts, and lets what cracks in one piece crack. Returns those that break.
+  std::vector<const EvaluatedImpact*> book_verdicts(std::span<const EvaluatedImpact> impacts,
+                                                    MovingState& snapshot, int pass);
+  /// Stage "fracture": goes back and puts pieces in place. True if the part must be taken again.
+  bool break_bodies(std::span<const EvaluatedImpact* const> broken, MovingState& snapshot);
   /// Stage "dents": what impacts that are over have left.
   void dent_bodies(const MovingState& snapshot);
   /// Stage "joints", of the impulses of one part.

@@ -79,9 +79,4 @@ void Framebuffer::bind() const {
   glViewport(0, 0, width_, height_);
 }
 
-void Framebuffer::resolve_to(const Framebuffer& target) const {
-  glBlitNamedFramebuffer(name(), target.name(), 0, 0, width_, height_, 0, 0, width_, height_,
-                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
-}
-
 }  // namespace shatterbox::render::gpu

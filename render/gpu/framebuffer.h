@@ -21,7 +21,6 @@ class Framebuffer {
   Framebuffer(int width, int height, int samples, unsigned colour_format, unsigned depth_format);
 
   void bind() const;  // and sets the viewport
-  void resolve_to(const Framebuffer& target) const;
   unsigned name() const { return handle_.get(); }
   int width() const { return width_; }
   int height() const { return height_; }

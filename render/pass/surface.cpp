@@ -26,7 +26,12 @@ void draw_items(const MeshStore& meshes, const Changes& changes, bool is_glass, 
 Layer::Layer(int width, int height)
     : seen(width, height, GL_RGBA32UI, gpu::Filter::nearest),
       depth(width, height, GL_DEPTH_COMPONENT32F, gpu::Filter::nearest),
-      target({&seen}, &depth) {}
+      target({&seen}, &depth) {
+  // Made in the midst of a film it is nowhere drawn but in the tiles that change.
+  const float farthest = 1.0F;
+  glDepthMask(GL_TRUE);
+  glClearNamedFramebufferfv(target.name(), GL_DEPTH, 0, &farthest);
+}
 
 void Layer::bind(unsigned seen_unit, unsigned depth_unit) const {
   seen.bind(seen_unit);

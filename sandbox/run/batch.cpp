@@ -143,7 +143,8 @@ const std::vector<report::Column> kResults{{"status", "1"},
 
 std::vector<report::Cell> results_of(const Row& row) {
   const report::Cell status = row.status < 0 ? report::Cell{} : report::Cell{static_cast<long>(row.status)};
-  if (!row.report.is_object()) {
+  // One of a comparison has several runs in it, and no results of its own.
+  if (!row.report.is_object() || row.report.contains("shots")) {
     std::vector<report::Cell> nothing(kResults.size());
     nothing.front() = status;
     return nothing;

@@ -116,6 +116,11 @@ Push read_push(TableReader& reader, int body, const SceneDescription& scene) {
   if (body >= 0 && scene.bodies[static_cast<std::size_t>(body)].motion != body::Motion::dynamic)
     reader.add_problem_at("body", "what is static or scripted cannot be pushed",
                           "give it motion = \"dynamic\"");
+  // Beside the centre of mass it may turn.
+  if (body >= 0 && impulse && impulse->squaredNorm() > 0.0 && !push.point &&
+      scene.bodies[static_cast<std::size_t>(body)].locked.let_move(*impulse).isZero(0.0))
+    reader.add_problem_at("body", "it is pushed along axes that are fixed",
+                          "take the axis out of fixed, or push it another way");
   return push;
 }
 

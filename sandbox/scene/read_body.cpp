@@ -13,19 +13,6 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere", "capsule"};
-const std::vector<std::string> kMaterialKeys{"young",
-                                             "poisson",
-                                             "strength",
-                                             "fracture_energy",
-                                             "weibull_modulus",
-                                             "flaw_area",
-                                             "crack_spacing",
-                                             "grain_size",
-                                             "grain_strength",
-                                             "friction",
-                                             "rolling_friction",
-                                             "restitution",
-                                             "surface_compression"};
 const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up", "breakable", "support"};
 
 Support read_support(TableReader& reader) {
@@ -233,7 +220,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.look.name = reader.choice("look", kLookNames).value_or("");
   body.look.colours = read_colours(reader);
   reader.foreign(
-      kMaterialKeys,
+      material_keys(),
       fmt::format("it belongs to a material: [[material]] with name = \"mine\" and like = \"{}\", and "
                   "material = \"mine\" here",
                   material));

@@ -16,6 +16,9 @@ int find_material(const std::string& name, const Place& place, SceneDescription&
 /// The number of the body of that name; -1 if there is none.
 int find_body(const SceneDescription& scene, const std::string& name);
 
+/// All keys of a [[material]] but its name and what it is like.
+std::vector<std::string> material_keys();
+
 void read_material(const TomlValue& table, std::size_t index, SceneDescription& scene, Problems& problems);
 void read_pair(const TomlValue& table, SceneDescription& scene, Problems& problems);
 

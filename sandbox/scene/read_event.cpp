@@ -66,6 +66,24 @@ void read_when(TableReader& reader, EventEntry& event) {
   if (when) event.when = *when == "rest" ? When::rest : When::first_break;
 }
 
+/// What is thrown is one body, which goes where it is thrown.
+void check_projectile(TableReader& reader, const EventEntry& event, const SceneDescription& scene) {
+  if (event.body < 0) return;
+  const BodyEntry& body = scene.bodies[static_cast<std::size_t>(event.body)];
+  if (body.repeat.total() > 1)
+    reader.add_problem_at("body", "a projectile is one body, and this one has copies",
+                          "remove its repeat, or let it fall by do = \"drop\"");
+  const auto& thrown = std::get<Projectile>(event.action);
+  const std::string hint = "take the axis out of fixed, or throw it another way";
+  if (const Vec3* target = std::get_if<Vec3>(&thrown.target); target != nullptr && thrown.from) {
+    const Vec3 way = *target - *thrown.from;
+    if (body.locked.let_move(way) != way)
+      reader.add_problem_at("body", "it is thrown along an axis that is fixed", hint);
+  }
+  if (body.locked.let_turn(thrown.spin) != thrown.spin)
+    reader.add_problem_at("body", "it is thrown with a spin about an axis that is fixed", hint);
+}
+
 }  // namespace
 
 void read_event(const TomlValue& table, std::size_t index, SceneDescription& scene, Problems& problems) {
@@ -84,6 +102,7 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   if (*verb == "projectile") {
     event.body = read_thrown_body(reader, event.name, true, scene);
     event.action = read_projectile(reader, scene);
+    check_projectile(reader, event, scene);
     reader.foreign({"position"}, "a projectile starts at \"from\"");
   } else if (*verb == "drop") {
     event.body = read_thrown_body(reader, event.name, false, scene);

@@ -59,7 +59,45 @@ MaterialEntry starting_point(TableReader& reader, const std::string& name, const
   return entry;
 }
 
+/// The numbers of a [[material]].
+struct MaterialNumber {
+  const char* key;
+  double material::Material::*member;
+  Range range;
+};
+
+const std::vector<MaterialNumber>& material_numbers() {
+  using material::Material;
+  static const std::vector<MaterialNumber> numbers{
+      {"density", &Material::density, positive("kg/m3")},
+      {"young", &Material::young, positive("Pa")},
+      {"poisson", &Material::poisson, between(0.0, 0.4999)},
+      {"strength", &Material::strength, positive("Pa")},
+      {"fracture_energy", &Material::fracture_energy, not_negative("J/m2")},
+      {"yield", &Material::yield, not_negative("Pa")},
+      {"elongation", &Material::elongation, positive()},
+      {"plasticity", &Material::plasticity, not_negative()},
+      {"surface_compression", &Material::surface_compression, not_negative("Pa")},
+      {"weibull_modulus", &Material::weibull_modulus, positive()},
+      {"flaw_area", &Material::flaw_area, positive("m2")},
+      {"crack_spacing", &Material::crack_spacing, positive()},
+      {"friction", &Material::friction, not_negative()},
+      {"rolling_friction", &Material::rolling_friction, not_negative("m")},
+      {"restitution", &Material::restitution, between(0.0, 1.0)},
+      {"thickness", &Material::thickness, positive("m")},
+      {"grain_size", &Material::grain_size, not_negative("m")},
+      {"grain_strength", &Material::grain_strength, between(0.0, 1.0)},
+  };
+  return numbers;
+}
+
 }  // namespace
+
+std::vector<std::string> material_keys() {
+  std::vector<std::string> keys{"grain_direction"};
+  for (const MaterialNumber& number : material_numbers()) keys.emplace_back(number.key);
+  return keys;
+}
 
 int find_material(const std::string& name, const Place& place, SceneDescription& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -91,27 +129,8 @@ void read_material(const TomlValue& table, std::size_t index, SceneDescription& 
   entry.place = table.place;
   material::Material& m = entry.material;
   m.name = name;
-  const std::vector<std::tuple<const char*, double*, Range>> numbers{
-      {"density", &m.density, positive("kg/m3")},
-      {"young", &m.young, positive("Pa")},
-      {"poisson", &m.poisson, between(0.0, 0.4999)},
-      {"strength", &m.strength, positive("Pa")},
-      {"fracture_energy", &m.fracture_energy, not_negative("J/m2")},
-      {"yield", &m.yield, not_negative("Pa")},
-      {"elongation", &m.elongation, positive()},
-      {"plasticity", &m.plasticity, not_negative()},
-      {"surface_compression", &m.surface_compression, not_negative("Pa")},
-      {"weibull_modulus", &m.weibull_modulus, positive()},
-      {"flaw_area", &m.flaw_area, positive("m2")},
-      {"crack_spacing", &m.crack_spacing, positive()},
-      {"friction", &m.friction, not_negative()},
-      {"rolling_friction", &m.rolling_friction, not_negative("m")},
-      {"restitution", &m.restitution, between(0.0, 1.0)},
-      {"thickness", &m.thickness, positive("m")},
-      {"grain_size", &m.grain_size, not_negative("m")},
-      {"grain_strength", &m.grain_strength, between(0.0, 1.0)},
-  };
-  for (const auto& [key, target, range] : numbers) *target = reader.number(key, range).value_or(*target);
+  for (const auto& [key, member, range] : material_numbers())
+    m.*member = reader.number(key, range).value_or(m.*member);
   m.grain_direction = reader.vector("grain_direction", any_number()).value_or(m.grain_direction);
   reader.finish();
   if (const auto fault = material::find_fault(m)) reader.add_problem(table.place, *fault);

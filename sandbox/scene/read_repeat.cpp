@@ -50,6 +50,10 @@ void read_count(TableReader& reader, Repeat& repeat) {
   if (repeat.layout == Layout::grid) {
     reader.add_problem(layer->place, "a grid has no layers", "write count = 100, layer = [5, 5]");
   }
+  if (static_cast<double>(repeat.layer[0]) * repeat.layer[1] > kMostCopies) {
+    reader.add_problem(layer->place, fmt::format("more than {} copies in a layer", kMostCopies));
+    repeat.layer = {1, 1};
+  }
   repeat.layout = Layout::layers;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -83,50 +84,66 @@ void read_settings(const TomlValue& table, SceneDescription& scene, Problems& pr
   reader.finish();
 }
 
-/// All names given, in the order of the text.
-std::vector<const TomlValue*> names_in(const TomlValue& tree) {
-  std::vector<const TomlValue*> names;
-  for (const char* list_name : {"body", "material", "joint", "event"}) {
-    const TomlValue* list = tree.find(list_name);
+struct Named {
+  std::string name;
+  Place place;
+  bool is_given = false;  // otherwise it is called by its kind and number
+};
+
+/// All names, those given in the order of the text first.
+std::vector<Named> names_in(const TomlValue& tree) {
+  std::vector<Named> names;
+  for (const char* kind : {"body", "material", "joint", "event"}) {
+    const TomlValue* list = tree.find(kind);
     if (list == nullptr || !list->is_array()) continue;
-    for (const TomlValue& item : list->items) {
-      const TomlValue* name = item.find("name");
-      if (name != nullptr && name->is_text()) names.push_back(name);
+    for (std::size_t i = 0; i < list->items.size(); ++i) {
+      const TomlValue* name = list->items[i].find("name");
+      if (name == nullptr)
+        names.push_back({name_or_number(list->items[i], kind, i), list->items[i].place, false});
+      else if (name->is_text())
+        names.push_back({name->text, name->place, true});
     }
   }
-  std::stable_sort(names.begin(), names.end(), [](const TomlValue* a, const TomlValue* b) {
-    return a->place.file == b->place.file && a->place.line < b->place.line;
-  });
+  std::vector<std::string> files;
+  for (const Named& n : names)
+    if (std::find(files.begin(), files.end(), n.place.file) == files.end()) files.push_back(n.place.file);
+  const auto order = [&](const Named& n) {
+    return std::tuple(!n.is_given, std::find(files.begin(), files.end(), n.place.file), n.place.line);
+  };
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const Named& a, const Named& b) { return order(a) < order(b); });
   return names;
 }
 
 /// Names share one space: bodies, materials, joints, events and the words that --set knows.
 void check_names(const TomlValue& tree, Problems& problems) {
   const std::vector<std::string> words{"scene", "camera", "light", "render", "pair"};
-  std::vector<const TomlValue*> seen;
-  for (const TomlValue* name : names_in(tree)) {
-    const auto bad = name->text.find_first_of(".[]=\"");
-    if (name->text.empty() || bad != std::string::npos) {
-      const std::string what =
-          name->text.empty() ? "is empty" : fmt::format("contains '{}'", name->text[bad]);
-      book(problems, name->place, fmt::format("the name \"{}\" {}", name->text, what),
+  std::vector<Named> seen;
+  for (const Named& named : names_in(tree)) {
+    const std::string& name = named.name;
+    const auto bad = name.find_first_of(".[]=\"");
+    if (name.empty() || bad != std::string::npos) {
+      const std::string what = name.empty() ? "is empty" : fmt::format("contains '{}'", name[bad]);
+      book(problems, named.place, fmt::format("the name \"{}\" {}", name, what),
            "names are used as in --set NAME.key=value and name[2]: use letters, digits, - and _");
       continue;
     }
-    if (std::find(words.begin(), words.end(), name->text) != words.end()) {
-      book(problems, name->place, fmt::format("nothing can be named \"{}\"", name->text),
+    if (std::find(words.begin(), words.end(), name) != words.end()) {
+      book(problems, named.place, fmt::format("nothing can be named \"{}\"", name),
            "it is the name of a part of the scene file");
       continue;
     }
-    const auto twin = std::find_if(seen.begin(), seen.end(),
-                                   [name](const TomlValue* other) { return other->text == name->text; });
-    if (twin == seen.end()) {
-      seen.push_back(name);
-    } else {
-      book(problems, name->place, fmt::format("the name \"{}\" is taken", name->text),
+    const auto twin =
+        std::find_if(seen.begin(), seen.end(), [&](const Named& other) { return other.name == name; });
+    if (twin == seen.end())
+      seen.push_back(named);
+    else if (named.is_given)
+      book(problems, named.place, fmt::format("the name \"{}\" is taken", name),
            fmt::format("the first is at {}; bodies, materials, joints and events share their names",
-                       describe((*twin)->place)));
-    }
+                       describe(twin->place)));
+    else
+      book(problems, twin->place, fmt::format("the name \"{}\" is taken", name),
+           fmt::format("what is at {} has no name and is called so; give it one", describe(named.place)));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "engine/geometry/closest_points.h"
 #include "engine/geometry/crossings.h"
 #include "engine/geometry/generators.h"
+#include "engine/geometry/winding_number.h"
 
 namespace shatterbox::sandbox::script {
 
@@ -108,25 +109,12 @@ bool is_in_box(const Placed& form, const Placed& box) {
          std::any_of(form.surface.positions.begin(), form.surface.positions.end(), is_inside);
 }
 
-/// How often a closed surface is wound about a point, from the solid angles of its triangles: 1 inside.
-double winding_number(const TriangleMesh& surface, const Vec3& point) {
-  double angle = 0.0;
-  for (const geometry::Triangle& t : surface.triangles) {
-    const Vec3 a = surface.positions[static_cast<std::size_t>(t[0])] - point;
-    const Vec3 b = surface.positions[static_cast<std::size_t>(t[1])] - point;
-    const Vec3 c = surface.positions[static_cast<std::size_t>(t[2])] - point;
-    const double x = a.norm(), y = b.norm(), z = c.norm();
-    angle += 2.0 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
-  }
-  return angle / (4.0 * core::kPi);
-}
-
 /// One whose surface does not cross the solid's lies wholly in it.
 bool is_in_solid(const Placed& form, const Placed& solid) {
   const bool has_inside = solid.kind == ShapeKind::solid || solid.kind == ShapeKind::capsule;
   if (!has_inside || form.kind == ShapeKind::plane) return false;
   const Vec3& point = form.kind == ShapeKind::sphere ? form.pose.translation : form.surface.positions.front();
-  return winding_number(solid.surface, point) > 0.5;
+  return geometry::WindingNumber(solid.surface).about(point) > 0.5;
 }
 
 bool cross(const Placed& a, const Placed& b) {
@@ -185,7 +173,7 @@ bool holds(const body::Body& body, const Vec3& point) {
       return own.norm() < form.radius;
     default:
       return (point.array() > form.least.array()).all() && (point.array() < form.most.array()).all() &&
-             std::abs(winding_number(form.surface, point)) > 0.5;
+             std::abs(geometry::WindingNumber(form.surface).about(point)) > 0.5;
   }
 }
 

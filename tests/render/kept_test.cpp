@@ -270,6 +270,17 @@ TEST_CASE("glass that is gone is not seen again where other glass comes near") {
   }
 }
 
+TEST_CASE("glass that comes into a film without any is seen where it is, and nowhere else") {
+  for (const Quality quality : kQualities) {
+    Frame frame = plain_frame();
+    frame.draws.clear();
+    static_cast<void>(compare_films(kSize, quality, frame, 4, [&](Frame& f, int i) {
+      if (i == 1) f.draws.push_back(at(make_pane(2, 3.0F, 0.1F), {0.6F, 0.9F, 0.0F}, glass()));
+      f.draws.back().world_from_body = glm::rotate(f.draws.back().world_from_body, -0.3F, glm::vec3(0, 0, 1));
+    }));
+  }
+}
+
 TEST_CASE("a still frame is kept whole, a small change draws little, a camera's way draws all") {
   Frame frame = still_life();
   Renderer renderer(kSize, Quality::preview);

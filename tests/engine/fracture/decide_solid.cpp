@@ -19,6 +19,7 @@
 #include "engine/geometry/solid_surface.h"
 #include "engine/geometry/tetrahedralise.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/untrapped.h"
 
 using namespace shatterbox;
 using namespace shatterbox::fracture;
@@ -98,6 +99,19 @@ TEST_CASE("decide solid: the verdict's stress is the beam's") {
   CHECK(most > 0.75 * expected);  // averaged, five cells deep, under a patch
   CHECK(decision.verdict.outcome == Outcome::held);
   CHECK(decision.verdict.stress <= most);
+}
+
+TEST_CASE("decide solid: where a solve has no answer the verdict says why") {
+  const SolidSubject subject = box(Vec3(0.2, 0.02, 0.02), 0.02, "ceramic", 3);
+  const Impact impact = hit(Vec3(0.0, 0.0, 0.02), -Vec3::UnitZ(), 1.0, 6.0);
+  const test::Untrapped untrapped;
+  FractureSettings settings;
+  settings.solve_residual = std::nan("");  // which no residual is below
+  const SolidDecision decision = decide_solid(subject, impact, settings);
+  CHECK(decision.verdict.outcome == Outcome::not_evaluated);
+  CHECK(decision.verdict.reason.find("did not settle") != std::string::npos);
+  CHECK(!decision.needed_no_solve());
+  CHECK(decision.cracks == 0);
 }
 
 TEST_CASE("decide solid: a beam struck in the middle breaks across, and nothing is lost") {

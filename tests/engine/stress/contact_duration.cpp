@@ -84,48 +84,6 @@ TEST_CASE("in series with a spring: energy is kept, a soft body sets the duratio
   REQUIRE(peak_force(contact, mass, 0.0) == 0.0);
 }
 
-TEST_CASE("duration: balanced for a slow blow, screened at a power of two for a quick one") {
-  DurationProblem problem;
-  problem.contact = glass_balls();
-  problem.mass = 0.04;
-  problem.speed = 3.0;
-  std::vector<int> asked;
-  // A body whose compliance falls with s, as that of a big plate does.
-  const auto plate = [&](bool is_screened, int exponent) {
-    asked.push_back(is_screened ? exponent : -999);
-    const double elastic = is_screened ? 1e-3 / screening_of(exponent) : 1e-4;
-    return BodyCompliance{2.0 * elastic, elastic};
-  };
-  problem.first_period = 1e-4;
-  const ImpactDuration slow = find_duration(problem, plate);
-  REQUIRE_FALSE(slow.is_screened);
-  REQUIRE(slow.solve_count == 1);
-  REQUIRE(slow.duration >= 0.5 * problem.first_period);
-
-  asked.clear();
-  problem.first_period = 1.0;
-  const ImpactDuration quick = find_duration(problem, plate);
-  REQUIRE(quick.is_screened);
-  REQUIRE(quick.solve_count <= 7);
-  REQUIRE(asked.front() == -999);
-  REQUIRE(asked.back() == quick.screening_exponent);
-  // A fixed point, up to the rounding to a power of two and a last step of one.
-  REQUIRE(std::abs(quantise_screening(1.0 / quick.duration) - quick.screening_exponent) <= 1);
-  REQUIRE(quick.duration == series_duration(problem.mass, quick.contact_compliance, quick.body.elastic));
-
-  problem.counts_inertia = true;
-  const ImpactDuration heavy = find_duration(problem, plate);
-  REQUIRE(heavy.duration > quick.duration);
-
-  problem.given_duration = 0.01;
-  const ImpactDuration given = find_duration(problem, plate);
-  REQUIRE(given.solve_count == 1);
-  REQUIRE(given.duration == 0.01);
-  REQUIRE(given.screening_exponent == quantise_screening(100.0));
-  REQUIRE(0.5 * given.peak_force * given.peak_force * given.body.elastic <=
-          0.5 * problem.mass * problem.speed * problem.speed * (1.0 + 1e-12));
-}
-
 TEST_CASE("snapshots of a penalty's force: the peak for short steps, one deep overlap for long ones") {
   const double duration = 1e-3, omega = core::kPi / duration;
   REQUIRE(seen_over_peak({}, duration) == 1.0);

@@ -9,6 +9,7 @@
 #include "engine/geometry/mass_properties.h"
 #include "engine/world/world.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/untrapped.h"
 
 using namespace shatterbox;
 
@@ -98,8 +99,9 @@ constexpr double kBroken = 0.013;  // s after it has met the floor: it has broke
 
 /// A plaster slab that falls on its corner from that height, m; `after` it has met the floor, s.
 world::World drop_slab(double height, double grain_size = 0.0,
-                       double after = test::kIsSanitized ? kBroken : 0.1) {
-  world::World w{world::WorldSettings{}};
+                       double after = test::kIsSanitized ? kBroken : 0.1,
+                       const world::WorldSettings& settings = {}) {
+  world::World w{settings};
   material::Material plaster = *material::find_preset("plaster");
   plaster.grain_size = grain_size;
   REQUIRE(w.add_material(plaster).ok());
@@ -172,6 +174,45 @@ TEST_CASE("a solid with grains breaks along them, into pieces as whole as any") 
     if (body.shape->kind != body::ShapeKind::solid) continue;
     CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
   }
+}
+
+TEST_CASE("grains are drawn by the scene's seed, each body's own") {
+  const auto bytes_of_grains = [](std::uint64_t seed, int copies) {
+    world::WorldSettings settings;
+    settings.seed = seed;
+    world::World w{settings};
+    material::Material plaster = *material::find_preset("plaster");
+    plaster.grain_size = 0.05;
+    REQUIRE(w.add_material(plaster).ok());
+    world::BodyDescription slab = make_slab(Vec3(0.3, 0.03, 0.2), Vec3::Zero());
+    auto& solid = std::get<world::SolidDescription>(slab.form);
+    solid.is_breakable = true;
+    solid.element_size = 0.05;
+    for (int i = 0; i < copies; ++i) {
+      slab.pose.translation.y() = i;
+      REQUIRE(w.add_body(slab).ok());
+    }
+    for (const world::PartCount& part : w.inventory())
+      if (part.part == "grains") return std::pair(part.count, part.bytes);
+    return std::pair(0L, 0.0);
+  };
+  const auto one = bytes_of_grains(1, 1);
+  CHECK(one.first == 1);
+  CHECK(bytes_of_grains(1, 1) == one);
+  CHECK(bytes_of_grains(2, 1).second != one.second);
+  const auto two = bytes_of_grains(1, 2);
+  CHECK(two.first == 2);
+  CHECK(two.second != 2.0 * one.second);
+}
+
+TEST_CASE("an impact whose stress has no answer is told of, and nothing breaks by it") {
+  const test::Untrapped untrapped;
+  world::WorldSettings settings;
+  settings.solve_residual = std::nan("");  // which no residual is below
+  const world::World w = drop_slab(1.5, 0.0, 0.005, settings);
+  CHECK(w.report().breaks.empty());
+  REQUIRE_FALSE(w.report().impacts.empty());
+  CHECK(w.report().impacts[0].verdict.starts_with("not evaluated: the solve did not settle"));
 }
 
 TEST_CASE("more grains than a solid can have are refused in words") {

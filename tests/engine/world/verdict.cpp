@@ -20,6 +20,7 @@ struct Hit {
   world::Fragiles fragiles;
   world::BorneImpacts borne;
   world::EvaluationFigures figures;
+  world::WorldSettings settings;
 
   explicit Hit(double fracture_energy) {
     auto elements = std::make_shared<geometry::ShellElements>();
@@ -48,17 +49,25 @@ struct Hit {
     fragiles[kStruck] = fragile;
   }
 
-  /// One pass, from memories as they were at the step's beginning.
-  std::vector<world::EvaluatedImpact> judge(double speed, const Vec3& place) {
+  body::LoggedImpulse impulse(body::ImpulseKind kind, double speed, const Vec3& place) const {
     body::LoggedImpulse entry;
-    entry.kind = body::ImpulseKind::collision;
+    entry.kind = kind;
     entry.body_a = kStruck;
     entry.body_b = kOther;
     entry.point_a = entry.point_world = place;
     entry.impulse_a = entry.impulse_world = -1.3 * speed * bodies[0].shape->mass * place.normalized();
-    entry.closing_speed = speed;
+    entry.closing_speed = kind == body::ImpulseKind::collision ? speed : 0.0;
+    return entry;
+  }
+
+  /// One pass, from memories as they were at the step's beginning.
+  std::vector<world::EvaluatedImpact> judge(double speed, const Vec3& place) {
     std::map<body::BodyId, world::ImpactMemory> memories;
-    return world::evaluate_stress(bodies, {entry}, fragiles, {}, {}, 0.0, memories, borne, figures);
+    return judge({impulse(body::ImpulseKind::collision, speed, place)}, 0.0, memories);
+  }
+  std::vector<world::EvaluatedImpact> judge(const body::ImpulseLog& log, double time,
+                                            std::map<body::BodyId, world::ImpactMemory>& memories) {
+    return world::evaluate_stress(bodies, log, fragiles, settings, {}, time, memories, borne, figures);
   }
 };
 
@@ -84,6 +93,53 @@ TEST_CASE("an impact that was borne is not solved again, however near it came, b
     CHECK(hit.judge(1.1 / std::min(1.0, verdict.ratio) * speed, side).size() == 1);
     CHECK(hit.judge(speed, Vec3(-side)).size() == 1);
   }
+}
+
+TEST_CASE("an event lasts for two durations after its last collision, whatever touches the body meanwhile") {
+  const Vec3 side(0.04, 0.0, 0.0);
+  using Kind = body::ImpulseKind;
+  for (const bool is_touched : {false, true}) {
+    for (const double wait : {1.5, 2.5}) {
+      Hit hit(8.0);
+      std::map<body::BodyId, world::ImpactMemory> memories;
+      const body::ImpulseLog collision = {hit.impulse(Kind::collision, 0.4, side)};
+      const auto first = hit.judge(collision, 0.0, memories);
+      REQUIRE(first.size() == 1);
+      const double duration = first[0].figures().verdict.duration;
+      REQUIRE(duration > 0.0);
+      hit.borne = {};
+      if (is_touched) hit.judge({hit.impulse(Kind::contact, 1e-6, side)}, 0.7 * duration, memories);
+      CHECK(memories[kStruck].event_duration == duration);
+      const auto second = hit.judge(collision, wait * duration, memories);
+      REQUIRE(second.size() == 1);
+      const double impulse = first[0].figures().verdict.impulse;
+      CHECK(second[0].figures().verdict.impulse == Approx(wait < 2.0 ? 2.0 * impulse : impulse));
+      CHECK(second[0].first_time == Approx(wait < 2.0 ? 0.0 : wait * duration));
+    }
+  }
+}
+
+TEST_CASE("what presses for long does not make an event longer") {
+  Hit hit(8.0);
+  hit.settings.stress_window.reset();
+  const Vec3 side(0.04, 0.0, 0.0);
+  std::map<body::BodyId, world::ImpactMemory> memories;
+  const auto pressed = hit.judge({hit.impulse(body::ImpulseKind::contact, 30.0, side)}, 0.0, memories);
+  REQUIRE(pressed.size() == 1);
+  CHECK(!pressed[0].is_struck);
+  CHECK(pressed[0].figures().verdict.duration > 0.01);
+  CHECK(memories[kStruck].event_duration == 0.0);
+}
+
+TEST_CASE("a pass that is taken again remembers what was found of a body that bore it") {
+  Hit hit(8.0);
+  const body::ImpulseLog log = {hit.impulse(body::ImpulseKind::collision, 0.4, Vec3(0.04, 0.0, 0.0))};
+  std::map<body::BodyId, world::ImpactMemory> first, again;
+  REQUIRE(hit.judge(log, 0.0, first).size() == 1);
+  CHECK(hit.judge(log, 0.0, again).empty());
+  CHECK(first[kStruck].event_duration > 0.0);
+  CHECK(again[kStruck].event_duration == first[kStruck].event_duration);
+  CHECK(again[kStruck].tested_growth == first[kStruck].tested_growth);
 }
 
 TEST_CASE("a piece that gives up its factors is judged as before, and a whole body keeps its own") {

@@ -94,6 +94,12 @@ TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
   CHECK(fs::last_write_time(second / "report.json") != later);
   CHECK(read_json(folder / "out/summary.json")["rows"][1].back() == table["rows"][1].back());
 
+  // Two runs beside each other are no one run, of which there would be results.
+  REQUIRE(
+      program(folder, "batch good.toml -o two -- --no-render --seconds 0.1 --compare balls.radius=0.05,0.04")
+          .status == 0);
+  CHECK(read_json(folder / "two/summary.json")["rows"][0].back().is_null());
+
   const Outcome failed = program(folder, "batch bad.toml good.toml -o mixed -- --no-render --seconds 0.1");
   CHECK(failed.status == 2);
   CHECK(failed.err.find("mixed/bad/log.txt") != std::string::npos);

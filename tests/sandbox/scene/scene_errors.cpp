@@ -62,6 +62,8 @@ const Broken kCorpus[] = {
     {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 0}\n", "t.toml:3:", "from 1 to 100000", ""},
     {"[[body]]\nkind = \"sphere\"\nrepeat = {count = [1000, 1000, 1]}\n",
      "t.toml:3:", "more than 100000 copies", ""},
+    {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 1, layer = [100000, 100000]}\n",
+     "t.toml:3:", "more than 100000 copies in a layer", ""},
     // Names.
     {"[[body]]\nname = \"a.b\"\nkind = \"sphere\"\n", "t.toml:2:8", "contains '.'", "--set NAME.key=value"},
     {"[[body]]\nname = \"\"\nkind = \"sphere\"\n", "t.toml:2:8", "is empty", ""},
@@ -69,6 +71,8 @@ const Broken kCorpus[] = {
      "the name \"a\" is taken", "the first is at t.toml:2:8"},
     {"[[material]]\nname = \"a\"\nlike = \"glass\"\n[[body]]\nname = \"a\"\nkind = \"sphere\"\n",
      "t.toml:5:8", "is taken", "share their names"},
+    {"[[body]]\nkind = \"plane\"\n[[body]]\nname = \"body1\"\nkind = \"sphere\"\n", "t.toml:4:8",
+     "the name \"body1\" is taken", "what is at t.toml:1:1 has no name and is called so"},
     {"[[body]]\nname = \"camera\"\nkind = \"sphere\"\n", "t.toml:2:8", "nothing can be named \"camera\"", ""},
     // Choices.
     {"[[body]]\nkind = \"spere\"\n", "t.toml:2:8", "unknown kind \"spere\"", "did you mean \"sphere\"?"},
@@ -76,6 +80,8 @@ const Broken kCorpus[] = {
      "write kind = \"solid\""},
     {"[[body]]\nkind = \"shell\"\nshape = \"bowl\"\nstrength = 1e9\n", "t.toml:4:1",
      "\"strength\" does not belong here", "[[material]]"},
+    {"[[body]]\nkind = \"box\"\nsize = 1\nelongation = 0.2\n", "t.toml:4:1",
+     "\"elongation\" does not belong here", "[[material]]"},
     {"[[body]]\nkind = \"shell\"\nshape = \"bowel\"\n", "t.toml:3:9", "unknown shape \"bowel\"",
      "did you mean \"bowl\"?"},
     {"[[body]]\nkind = \"sphere\"\nmaterial = \"glas\"\n", "t.toml:3:12", "there is no material \"glas\"",
@@ -185,6 +191,18 @@ const Broken kCorpus[] = {
      "at_body"},
     {"[[event]]\nat=0\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[0,0,0]\nspeed=1\n", "t.toml:5:10",
      "where the projectile starts", ""},
+    {"[[event]]\nat=0\ndo=\"projectile\"\nfrom=[0,0,0]\nat_point=[1,0,0]\nspeed=1\nbody={kind=\"sphere\", "
+     "repeat={count=5}}\n",
+     "t.toml:7:", "a projectile is one body", "drop"},
+    {"[[body]]\nname=\"b\"\nkind=\"sphere\"\nfixed=[\"y\"]\n[[event]]\nat=0\ndo=\"projectile\"\nbody=\"b\"\n"
+     "from=[0,0,0]\nat_point=[1,1,0]\nspeed=1\n",
+     "t.toml:8:6", "it is thrown along an axis that is fixed", "take the axis out of fixed"},
+    {"[[body]]\nname=\"b\"\nkind=\"sphere\"\nfixed=[\"rx\"]\n[[event]]\nat=0\ndo=\"projectile\"\nbody=\"b\"\n"
+     "from=[0,0,0]\nat_point=[1,0,0]\nspeed=1\nspin=[1,0,0]\n",
+     "t.toml:8:6", "it is thrown with a spin about an axis that is fixed", "take the axis out of fixed"},
+    {"[[body]]\nname=\"b\"\nkind=\"sphere\"\nfixed=[\"y\"]\n[[event]]\nat=0\ndo=\"push\"\nbody=\"b\"\n"
+     "impulse=[0,1,0]\n",
+     "t.toml:8:6", "it is pushed along axes that are fixed", "take the axis out of fixed"},
     {"[[event]]\nat=-1\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[1,0,0]\nspeed=1\n", "t.toml:2:4",
      "from 0 to", ""},
     {"[[event]]\nat=0\ndo = \"drop\"\nspeed=1\nbody={kind=\"sphere\"}\n", "t.toml:4:1",
