@@ -204,10 +204,11 @@ std::string make_summary(const RunRecord& record) {
           error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
-  text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds,
-                      slowness > 1.0
-                          ? fmt::format("{:.1f} times slower than real time", slowness)
-                          : fmt::format("{:.1f} times faster than real time", 1.0 / std::max(slowness, 1e-9)),
+  const std::string pace =
+      !(slowness > 0.0) ? std::string("no step was taken")
+      : slowness > 1.0  ? fmt::format("{:.1f} times slower than real time", slowness)
+                        : fmt::format("{:.1f} times faster than real time", 1.0 / std::max(slowness, 1e-9));
+  text += fmt::format("{:.1f} s on the clock: {}; state {}\n", record.wall_seconds, pace,
                       hex_digits(record.state_hash));
   for (const std::string& output : record.outputs) text += "wrote " + output + "\n";
   return text;

@@ -41,7 +41,8 @@ std::vector<std::string> Throws::missed() const {
         fmt::format("what event \"{}\" threw hit nothing{}", event.name,
                     flight.has_hit_floor ? " but the floor" : ""),
         is_at_body
-            ? "it is aimed at where its target is when it is thrown: throw it faster, from nearer, or later"
+            ? "it is aimed at where its target would be if it went on as it did: throw it faster, from "
+              "nearer, or later"
             : "look where its target is by then: at_body = \"name\" aims at a body wherever that is"}));
   }
   return sentences;

@@ -19,7 +19,10 @@ std::vector<Partner> find_partners(const JointEntry& joint, const BuiltScene& bu
   for (const body::Body& body : built.world.bodies()) {
     const auto origin = built.origins.find(body.id);
     if (origin == built.origins.end()) continue;
-    if (std::find(joint.bodies.begin(), joint.bodies.end(), origin->second.entry) == joint.bodies.end())
+    const Origin& who = origin->second;
+    if (std::none_of(joint.partners.begin(), joint.partners.end(), [&](const JointPartner& partner) {
+          return partner.body == who.entry && (partner.copy < 0 || partner.copy == who.copy);
+        }))
       continue;
     partners.push_back({body.id, body.pose.translation, body.shape->bounding_radius});
   }
@@ -39,11 +42,13 @@ void add_joints(const SceneDescription& scene, BuiltScene& built, Problems& prob
     const std::vector<Partner> partners = find_partners(entry, built);
     int made = 0;
     for (std::size_t i = 0; i < partners.size(); ++i) {
-      for (std::size_t k = i + 1; k < partners.size(); ++k) {
+      const std::size_t last = entry.is_chain ? std::min(i + 2, partners.size()) : partners.size();
+      for (std::size_t k = i + 1; k < last; ++k) {
         const Partner &a = partners[i], &b = partners[k];
         const double reach = a.reach + b.reach + (mortar != nullptr ? mortar->gap : 0.0);
         const bool is_far = a.reach > 0.0 && b.reach > 0.0 && (a.place - b.place).norm() > reach;
         if (mortar != nullptr && is_far) continue;
+        if (entry.is_chain) std::get<world::PivotDescription>(joint.form).point = 0.5 * (a.place + b.place);
         joint.body_a = a.id;
         joint.body_b = b.id;
         const auto number = built.world.add_joint(joint);
@@ -51,9 +56,10 @@ void add_joints(const SceneDescription& scene, BuiltScene& built, Problems& prob
         made += number.value() > 0 ? 1 : 0;
       }
     }
-    const bool is_somebody_away = std::any_of(entry.bodies.begin(), entry.bodies.end(), [&](int body) {
-      return scene.bodies[static_cast<std::size_t>(body)].is_held_back;
-    });
+    const bool is_somebody_away =
+        std::any_of(entry.partners.begin(), entry.partners.end(), [&](const JointPartner& partner) {
+          return scene.bodies[static_cast<std::size_t>(partner.body)].is_held_back;
+        });
     if (made > 0 || is_somebody_away) continue;
     book(problems, entry.place,
          mortar == nullptr

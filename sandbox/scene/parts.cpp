@@ -25,4 +25,14 @@ std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Bod
   return Vec3(moment / mass);
 }
 
+Vec3 velocity_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry) {
+  double mass = 0.0;
+  Vec3 momentum = Vec3::Zero();
+  for (const body::Body* body : parts_of(built, bodies, entry)) {
+    mass += body->shape->mass;
+    momentum += body->shape->mass * body->velocity;
+  }
+  return mass > 0.0 ? Vec3(momentum / mass) : Vec3(Vec3::Zero());
+}
+
 }  // namespace shatterbox::sandbox::scene

@@ -16,4 +16,7 @@ std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const
 /// Where the body is: its centre of mass, or that of all its pieces, m. Nothing if it is not there.
 std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry);
 
+/// Its momentum over its mass, m/s; zero if it is not there or has no mass.
+Vec3 velocity_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry);
+
 }  // namespace shatterbox::sandbox::scene

@@ -75,7 +75,7 @@ Quat read_rotation(TableReader& reader) {
 
 CapsuleForm read_capsule(TableReader& reader) {
   CapsuleForm form;
-  const auto radius = reader.number("radius", positive("m")), length = reader.number("length", positive("m"));
+  const auto radius = reader.number("radius", extent()), length = reader.number("length", extent());
   if (radius && !reader.has("length")) form.length = 4.0 * *radius;
   if (length && !reader.has("radius")) form.radius = 0.25 * *length;
   form.radius = radius.value_or(form.radius);
@@ -99,7 +99,7 @@ decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind
   reader.foreign(kMeshKeys, fmt::format("it is for kind = \"shell\" or \"solid\"; this is a {}", kind));
   if (kind == "sphere") {
     SphereForm form;
-    form.radius = reader.number("radius", positive("m")).value_or(form.radius);
+    form.radius = reader.number("radius", extent()).value_or(form.radius);
     reader.foreign(shape_keys(), "a sphere has a radius only");
     reader.foreign({"size"}, "a sphere has a radius only");
     return form;
@@ -107,7 +107,7 @@ decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind
   if (kind == "capsule") return read_capsule(reader);
   if (kind == "box") {
     BoxForm form;
-    form.size = reader.number_or_vector("size", positive("m")).value_or(form.size);
+    form.size = reader.number_or_vector("size", extent()).value_or(form.size);
     if (!reader.has("size")) {
       reader.add_problem(reader.table().place, fmt::format("{} has no size", reader.what()),
                          "add size = [x, y, z] in metres");
@@ -192,11 +192,8 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   }
   const std::string form_kind = kind.value_or("shell");
   body.form = read_form(reader, form_kind, scene);
-  if (const MeshForm* form = find_mesh_form(body.form)) {
+  if (find_mesh_form(body.form) != nullptr) {
     body.support = read_support(reader);
-    const bool has_support = !std::holds_alternative<std::monostate>(body.support);
-    if (!form->is_breakable && has_support)
-      reader.add_problem_at("support", "only a breakable body has a support", "use motion = \"static\"");
     if (form_kind == "solid" && std::holds_alternative<EdgeSupport>(body.support))
       reader.add_problem_at("support", "a solid has no open border to be held by",
                             "use \"foot\" or {box = [[x, y, z], [x, y, z]]}");

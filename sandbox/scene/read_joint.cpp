@@ -1,6 +1,8 @@
 #include "sandbox/scene/read_joint.h"
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -13,29 +15,45 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-/// The number of the body that one item of `between` names; -1 with a problem.
-int read_partner(TableReader& reader, const TomlValue& item, const SceneDescription& scene) {
+/// Whom one item of `between` names: a body with all its copies, or one of them, "name[2]". None, with a
+/// problem, if there is no such.
+std::optional<JointPartner> read_partner(TableReader& reader, const TomlValue& item,
+                                         const SceneDescription& scene) {
   if (!item.is_text()) {
     reader.add_problem(item.place,
                        fmt::format("between is a list of names, but has {}", kind_in_words(item)));
-    return -1;
+    return std::nullopt;
   }
-  const int found = find_body(scene, item.text);
+  const std::size_t bracket = item.text.find('[');
+  const std::string name = item.text.substr(0, bracket);
+  const int found = find_body(scene, name);
   if (found < 0) {
     std::vector<std::string> names;
     for (const BodyEntry& body : scene.bodies) names.push_back(body.name);
-    reader.add_problem(item.place, fmt::format("there is no body \"{}\"", item.text),
-                       hint_for_name(item.text, names, "bodies"));
-    return -1;
+    reader.add_problem(item.place, fmt::format("there is no body \"{}\"", name),
+                       hint_for_name(name, names, "bodies"));
+    return std::nullopt;
   }
   const BodyEntry& body = scene.bodies[static_cast<std::size_t>(found)];
   if (body.is_held_back || body.repeat.every > 0.0) {
-    reader.add_problem(
-        item.place, fmt::format("body \"{}\" is not there from the start, and cannot be joined", item.text),
-        "join bodies that no event and no \"every\" brings in");
-    return -1;
+    reader.add_problem(item.place,
+                       fmt::format("body \"{}\" is not there from the start, and cannot be joined", name),
+                       "join bodies that no event and no \"every\" brings in");
+    return std::nullopt;
   }
-  return found;
+  if (bracket == std::string::npos) return JointPartner{found, -1};
+  int number = 0;
+  const char* const end = item.text.data() + item.text.size();
+  const auto parsed = std::from_chars(item.text.data() + bracket + 1, end, number);
+  if (parsed.ec != std::errc{} || parsed.ptr + 1 != end || *parsed.ptr != ']' || number < 1 ||
+      number > body.repeat.total()) {
+    reader.add_problem(item.place, fmt::format("there is no \"{}\"", item.text),
+                       body.repeat.total() > 1
+                           ? fmt::format("its copies are {0}[1] to {0}[{1}]", name, body.repeat.total())
+                           : fmt::format("\"{}\" has no copies", name));
+    return std::nullopt;
+  }
+  return JointPartner{found, body.repeat.total() > 1 ? number - 1 : -1};
 }
 
 void read_partners(TableReader& reader, JointEntry& joint, const SceneDescription& scene) {
@@ -46,24 +64,32 @@ void read_partners(TableReader& reader, JointEntry& joint, const SceneDescriptio
     return;
   }
   for (const TomlValue& item : list->items) {
-    const int body = read_partner(reader, item, scene);
-    if (body >= 0 && std::find(joint.bodies.begin(), joint.bodies.end(), body) == joint.bodies.end())
-      joint.bodies.push_back(body);
+    const auto partner = read_partner(reader, item, scene);
+    if (partner && std::find(joint.partners.begin(), joint.partners.end(), *partner) == joint.partners.end())
+      joint.partners.push_back(*partner);
   }
 }
 
-/// A point joins two bodies, each of which is one.
-void check_point(TableReader& reader, const JointEntry& joint, const SceneDescription& scene) {
-  if (!reader.has("at"))
+/// A point joins two bodies, each of which is one, or a row of copies.
+void check_point(TableReader& reader, JointEntry& joint, const SceneDescription& scene) {
+  const auto is_one = [&](const JointPartner& partner) {
+    return partner.copy >= 0 || scene.bodies[static_cast<std::size_t>(partner.body)].repeat.total() == 1;
+  };
+  joint.is_chain = joint.partners.size() == 1 && !is_one(joint.partners[0]);
+  if (joint.is_chain) {
+    reader.foreign({"at"}, "each copy holds the next half way between them");
+    return;
+  }
+  const TomlValue* at = reader.value("at");
+  if (at == nullptr)
     reader.add_problem(reader.table().place, fmt::format("{} has no \"at\"", reader.what()),
                        "add at = [0, 1, 0]: the point that both bodies share, where they stand at the start");
-  if (!reader.value("between")) return;
-  const bool has_copies = std::any_of(joint.bodies.begin(), joint.bodies.end(), [&](int body) {
-    return scene.bodies[static_cast<std::size_t>(body)].repeat.total() > 1;
-  });
-  if (joint.bodies.size() == 2 && !has_copies) return;
+  auto& pivot = std::get<world::PivotDescription>(joint.form);
+  pivot.point = reader.vector("at", coordinate()).value_or(pivot.point);
+  if (reader.value("between") == nullptr) return;
+  if (joint.partners.size() == 2 && is_one(joint.partners[0]) && is_one(joint.partners[1])) return;
   reader.add_problem_at("between", fmt::format("{} holds a point of two bodies", reader.what()),
-                        "name two that have no copies");
+                        "name two, a copy as in \"bead[2]\"; or one that has copies: each holds the next");
 }
 
 }  // namespace
@@ -79,14 +105,13 @@ void read_joint(const TomlValue& table, std::size_t index, SceneDescription& sce
   joint.strength = reader.number("strength", positive("Pa")).value_or(joint.strength);
   if (is_point) {
     world::PivotDescription pivot;
-    pivot.point = reader.vector("at", coordinate()).value_or(pivot.point);
     pivot.area = reader.number("area", positive("m2")).value_or(pivot.area);
     joint.form = pivot;
     check_point(reader, joint, scene);
     reader.foreign({"gap", "shear_strength"}, "belongs to kind = \"mortar\"");
   } else {
     world::MortarDescription mortar;
-    mortar.gap = reader.number("gap", positive("m")).value_or(mortar.gap);
+    mortar.gap = reader.number("gap", extent()).value_or(mortar.gap);
     joint.form = mortar;
     joint.shear_strength = reader.number("shear_strength", positive("Pa")).value_or(joint.shear_strength);
     reader.foreign({"at", "area"}, "belongs to kind = \"point\"");

@@ -84,7 +84,7 @@ const std::vector<MaterialNumber>& material_numbers() {
       {"friction", &Material::friction, not_negative()},
       {"rolling_friction", &Material::rolling_friction, not_negative("m")},
       {"restitution", &Material::restitution, between(0.0, 1.0)},
-      {"thickness", &Material::thickness, positive("m")},
+      {"thickness", &Material::thickness, extent()},
       {"grain_size", &Material::grain_size, not_negative("m")},
       {"grain_strength", &Material::grain_strength, between(0.0, 1.0)},
   };

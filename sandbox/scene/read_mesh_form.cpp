@@ -66,7 +66,7 @@ std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDes
 
 SlabShape read_slab(TableReader& reader) {
   SlabShape slab;
-  slab.size = reader.number_or_vector("size", positive("m")).value_or(slab.size);
+  slab.size = reader.number_or_vector("size", extent()).value_or(slab.size);
   if (!reader.has("size"))
     reader.add_problem(reader.table().place, fmt::format("{} has no size", reader.what()),
                        "add size = [x, y, z] in metres");
@@ -81,9 +81,9 @@ struct NamedSize {
 /// A size and others that follow it in proportion, unless they are given.
 void read_scaled(TableReader& reader, NamedSize lead, const std::vector<NamedSize>& others) {
   const double usual = *lead.size;
-  *lead.size = reader.number(lead.key, positive("m")).value_or(usual);
+  *lead.size = reader.number(lead.key, extent()).value_or(usual);
   for (const NamedSize& other : others)
-    *other.size = reader.number(other.key, positive("m")).value_or(*other.size * (*lead.size / usual));
+    *other.size = reader.number(other.key, extent()).value_or(*other.size * (*lead.size / usual));
 }
 
 MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_sheet) {
@@ -94,39 +94,39 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
   if (shape == "ornament") {
     geometry::OrnamentSizes sizes;
     sizes.has_cap = true;
-    set("radius", sizes.radius, positive("m"));
+    set("radius", sizes.radius, extent());
     sizes.neck_radius = 0.225 * sizes.radius;
     sizes.neck_height = 0.2 * sizes.radius;
-    set("neck_radius", sizes.neck_radius, positive("m"));
-    set("neck_height", sizes.neck_height, positive("m"));
+    set("neck_radius", sizes.neck_radius, extent());
+    set("neck_height", sizes.neck_height, extent());
     sizes.has_cap = reader.truth("cap").value_or(sizes.has_cap);
     return sizes;
   }
   if (shape == "bowl") {
     geometry::BowlSizes sizes;
-    set("radius", sizes.rim_radius, positive("m"));
+    set("radius", sizes.rim_radius, extent());
     sizes.foot_radius = 0.44 * sizes.rim_radius;
     sizes.foot_height = 0.075 * sizes.rim_radius;
     sizes.height = 0.875 * sizes.rim_radius;
-    set("foot_radius", sizes.foot_radius, positive("m"));
+    set("foot_radius", sizes.foot_radius, extent());
     set("foot_height", sizes.foot_height, not_negative("m"));
-    set("height", sizes.height, positive("m"));
+    set("height", sizes.height, extent());
     return sizes;
   }
   if (shape == "pane") {
     PaneShape sizes;
-    set("width", sizes.width, positive("m"));
-    set("height", sizes.height, positive("m"));
+    set("width", sizes.width, extent());
+    set("height", sizes.height, extent());
     return sizes;
   }
   if (shape == "boat") {
     geometry::BoatSizes sizes;
-    set("length", sizes.length, positive("m"));
+    set("length", sizes.length, extent());
     sizes.beam = 0.4 * sizes.length;
     sizes.depth = 0.2 * sizes.length;
     sizes.sheer = 0.1 * sizes.length;
-    set("beam", sizes.beam, positive("m"));
-    set("depth", sizes.depth, positive("m"));
+    set("beam", sizes.beam, extent());
+    set("depth", sizes.depth, extent());
     set("sheer", sizes.sheer, not_negative("m"));
     return sizes;
   }
@@ -145,7 +145,7 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
     std::vector<NamedSize> others{
         {"radius", &sizes.radius}, {"neck_radius", &sizes.neck_radius}, {"neck_length", &sizes.neck_length}};
     // A sheet's wall is its thickness; here it only rounds the edge of the bottom.
-    double edge = sizes.wall * reader.number("height", positive("m")).value_or(sizes.height) / sizes.height;
+    double edge = sizes.wall * reader.number("height", extent()).value_or(sizes.height) / sizes.height;
     if (!is_sheet) others.push_back({"wall", &sizes.wall});
     read_scaled(reader, {"height", &sizes.height}, others);
     if (!is_sheet) return sizes;
@@ -154,7 +154,7 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
   }
   if (shape == "figure") {
     FigureShape sizes;
-    set("height", sizes.height, positive("m"));
+    set("height", sizes.height, extent());
     return sizes;
   }
   if (shape == "egg") {
@@ -164,7 +164,7 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
     return sizes;
   }
   SphereShape sizes;
-  set("radius", sizes.radius, positive("m"));
+  set("radius", sizes.radius, extent());
   return sizes;
 }
 
@@ -199,7 +199,7 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
   if (reader.has("mesh")) {
     if (auto files = read_mesh_files(reader, scene)) form.shape = std::move(*files);
     reader.foreign(kShapeKeys, "sizes belong to a shape; a mesh takes scale or size = [x, y, z]");
-    form.size = reader.vector("size", positive("m"));
+    form.size = reader.vector("size", extent());
     reader.value("shape");
   } else {
     const auto shape = read_shape_name(reader, shapes);
@@ -210,13 +210,13 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
     }
     reader.value("mesh");
     form.shape = read_shape(reader, shape.value_or("sphere"), &shapes == &kShellShapes);
-    form.edge_length = reader.number("edge_length", positive("m"));
+    form.edge_length = reader.number("edge_length", extent());
     if (shape) {
       reader.foreign(kShapeKeys, fmt::format("it is no size of shape \"{}\"", *shape));
     } else {
       for (const std::string& key : kShapeKeys) reader.value(key);  // one fault is enough
     }
-    if (shape != "slab") form.size = reader.vector("size", positive("m"));
+    if (shape != "slab") form.size = reader.vector("size", extent());
   }
   form.scale = reader.number_or_vector("scale", positive()).value_or(form.scale);
   if (form.size && reader.has("scale")) {
@@ -235,14 +235,14 @@ const std::vector<std::string>& shape_keys() {
 ShellForm read_shell(TableReader& reader, const SceneDescription& scene) {
   ShellForm form;
   read_mesh_form(reader, scene, kShellShapes, form);
-  form.thickness = reader.number("thickness", positive("m"));
+  form.thickness = reader.number("thickness", extent());
   return form;
 }
 
 SolidForm read_solid(TableReader& reader, const SceneDescription& scene) {
   SolidForm form;
   read_mesh_form(reader, scene, kSolidShapes, form);
-  form.element_size = reader.number("element_size", positive("m"));
+  form.element_size = reader.number("element_size", extent());
   return form;
 }
 

@@ -57,7 +57,7 @@ void read_lens(TableReader& reader, SceneDescription& scene) {
   } else if (const TomlValue* focus = reader.value("focus"); focus != nullptr && focus->is_text()) {
     camera.focus = read_named_body(reader, "focus", scene);
   } else if (focus != nullptr) {
-    if (const auto distance = reader.as_number(*focus, "focus", positive("m"))) camera.focus = *distance;
+    if (const auto distance = reader.as_number(*focus, "focus", extent())) camera.focus = *distance;
   }
   if (camera.aperture <= 0.0 && camera.shutter <= 0.0)
     reader.foreign({"samples"}, "one picture a frame is enough without shutter and aperture");
@@ -127,7 +127,7 @@ void read_render(const TomlValue& table, RenderEntry& render, Problems& problems
   render.look = reader.choice("look", kLookNames).value_or("");
   render.ground = reader.choice("ground", kGroundNames).value_or("");
   render.ground_colour = read_colour(reader, "ground_colour");
-  render.checker = reader.number("checker", positive("m")).value_or(0.0);
+  render.checker = reader.number("checker", extent()).value_or(0.0);
   render.backdrop = reader.choice("backdrop", kBackdropNames).value_or(render.backdrop);
   render.overlay = reader.choice("overlay", kOverlayNames).value_or(render.overlay);
   render.overlay_most = reader.number("overlay_most", positive());

@@ -164,11 +164,19 @@ inline bool can_break(const BodyEntry& body) {
 
 /// Who is held together: all of these, and their copies, by mortar where they face each other; two, at a
 /// point.
+struct JointPartner {
+  int body = 0;   // number in SceneDescription::bodies
+  int copy = -1;  // of its repeat, from 0; -1: all
+
+  bool operator==(const JointPartner&) const = default;
+};
+
 struct JointEntry {
   Place place;
   std::string name;
-  std::vector<int> bodies;  // numbers in SceneDescription::bodies
+  std::vector<JointPartner> partners;
   std::variant<world::MortarDescription, world::PivotDescription> form;
+  bool is_chain = false;  // of points: each copy of the partner holds the next half way between them
   // Mortar of class M2.5 to M9 on clay bricks: about what EN 1996-1-1 tells as flexural and initial shear
   // strength, which are characteristic values (0.1 and 0.2 MPa), as a mean.
   double strength = 0.3e6;        // Pa, in tension

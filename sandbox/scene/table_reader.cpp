@@ -64,7 +64,10 @@ std::optional<double> TableReader::as_number(const TomlValue& value, const std::
   }
   const bool too_small = range.least_is_open ? value.real <= range.least : value.real < range.least;
   if (too_small || value.real > range.most) {
-    add_problem(value.place, fmt::format("{} must be {}, but is {:g}", name, describe(range), value.real));
+    const bool is_beyond_all = value.real > range.most && range.most == kHuge;
+    add_problem(value.place, fmt::format("{} must be {}, but is {:g}", name,
+                                         is_beyond_all ? fmt::format("at most {:g}", kHuge) : describe(range),
+                                         value.real));
     return std::nullopt;
   }
   return value.real;

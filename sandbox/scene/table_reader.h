@@ -33,6 +33,10 @@ inline Range not_negative(std::string_view unit = "") {
 inline Range between(double least, double most, std::string_view unit = "") {
   return {least, most, false, unit};
 }
+/// Of a thing: far above rounding at places of some metres, and within them.
+inline Range extent() {
+  return between(1e-9, 1e6, "m");
+}
 /// Of a place.
 inline Range coordinate() {
   return between(-1e6, 1e6, "m");

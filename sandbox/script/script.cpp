@@ -63,6 +63,27 @@ Vec3 seen_at(const scene::ScreenPlace& place, const Sight& sight, const world::W
   return share ? Vec3(sight.eye + *share * (far - sight.eye)) : there;
 }
 
+/// s, of a flight along `way` (m) with that speed; the quicker of two, nothing where it does not reach so
+/// far.
+std::optional<double> flight_time(const Vec3& way, double speed, const Vec3& gravity) {
+  // |way - g t2/2| = speed t is quadratic in t2 = t^2.
+  const double a = 0.25 * gravity.squaredNorm();
+  const double b = way.dot(gravity) + speed * speed;
+  const double c = way.squaredNorm();
+  const double discriminant = b * b - 4.0 * a * c;
+  if (discriminant < 0.0 || b <= 0.0) return std::nullopt;
+  return core::sqrt(2.0 * c / (b + core::sqrt(discriminant)));  // the lesser root, without cancellation
+}
+
+/// What goes up or down faster than rest lets it falls.
+MovingTarget moving_target(const scene::BuiltScene& built, int entry, const Vec3& centre) {
+  constexpr double kFalling = 0.1;  // s of free fall: so fast nothing settles
+  const Vec3& gravity = built.world.settings().gravity;
+  const Vec3 velocity = scene::velocity_of(built, built.world.bodies(), entry);
+  const bool is_falling = std::abs(velocity.dot(gravity)) > kFalling * gravity.squaredNorm();
+  return {centre, velocity, is_falling};
+}
+
 /// The motion of what an event brings in, or a sentence why it cannot be.
 core::Result<world::BodyDescription> describe(const scene::EventEntry& event, const scene::BuiltScene& built,
                                               const std::function<Sight()>& look,
@@ -88,7 +109,8 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
   } else {
     const auto centre = scene::centre_of(built, built.world.bodies(), std::get<int>(projectile.target));
     if (!centre) return core::Error{"its target is not there"};
-    target = *centre;
+    target = lead(from, moving_target(built, std::get<int>(projectile.target), *centre), projectile.speed,
+                  built.world.settings().gravity);
   }
   const Vec3 way = target - from;
   const double distance = way.norm();
@@ -264,17 +286,24 @@ std::vector<std::string> Script::play(scene::BuiltScene& built, const Look& sigh
 }
 
 std::optional<Vec3> aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity) {
-  // |target - from - g t2/2| = speed t is quadratic in t2 = t^2.
   const Vec3 way = target - from;
-  const double a = 0.25 * gravity.squaredNorm();
-  const double b = way.dot(gravity) + speed * speed;
-  const double c = way.squaredNorm();
-  const double discriminant = b * b - 4.0 * a * c;
-  if (discriminant < 0.0 || b <= 0.0) return std::nullopt;
-  const double time_squared =
-      2.0 * c / (b + core::sqrt(discriminant));  // the lesser root, without cancellation
-  const double time = core::sqrt(time_squared);
-  return Vec3((way - 0.5 * time_squared * gravity) / time);
+  const auto time = flight_time(way, speed, gravity);
+  if (!time) return std::nullopt;
+  return Vec3((way - 0.5 * *time * *time * gravity) / *time);
+}
+
+Vec3 lead(const Vec3& from, const MovingTarget& target, double speed, const Vec3& gravity) {
+  constexpr int kRounds = 100;
+  Vec3 place = target.place;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto time = flight_time(place - from, speed, gravity);
+    if (!time) break;
+    Vec3 next = target.place + *time * target.velocity;
+    if (target.is_falling) next += 0.5 * *time * *time * gravity;
+    if ((next - place).norm() < 1e-9 * (1.0 + (place - from).norm())) return next;
+    place = next;
+  }
+  return target.place;
 }
 
 }  // namespace shatterbox::sandbox::script

@@ -92,4 +92,13 @@ class Script {
 /// quicker of the two ways; nothing where the speed does not reach that far.
 std::optional<Vec3> aim(const Vec3& from, const Vec3& target, double speed, const Vec3& gravity);
 
+/// What moves, and how it goes on: falling, or at its velocity.
+struct MovingTarget {
+  Vec3 place = Vec3::Zero();     // m
+  Vec3 velocity = Vec3::Zero();  // m/s
+  bool is_falling = false;
+};
+/// The place where something thrown from there would meet it, m; where it is now, if nothing would.
+Vec3 lead(const Vec3& from, const MovingTarget& target, double speed, const Vec3& gravity);
+
 }  // namespace shatterbox::sandbox::script

@@ -105,13 +105,13 @@ TEST_CASE("what the README tells a newcomer to save and run can be run") {
     while (std::getline(lines, line) && line.starts_with("    ")) block += line.substr(4) + "\n";
     folder.write(name, block);
   };
-  save("vase.toml");
+  save("ball.toml");
   save("throws.toml");
-  const Outcome check = program(folder, "check vase.toml --script throws.toml");
+  const Outcome check = program(folder, "check ball.toml --script throws.toml");
   CAPTURE(check.out, check.err);
   CHECK(check.status == 0);
   CHECK(check.err.empty());
-  const Outcome run = program(folder, "run vase.toml --script throws.toml --seconds 1.6 --no-render");
+  const Outcome run = program(folder, "run ball.toml --script throws.toml --seconds 1.6 --no-render");
   CAPTURE(run.out, run.err);
   CHECK(run.status == 0);
   CHECK(run.out.find(" pieces, ") != std::string::npos);

@@ -337,6 +337,32 @@ TEST_CASE("mortar joins copies where they touch and says so where none do") {
   CHECK(problems[0].message.find("look against each other") != std::string::npos);
 }
 
+TEST_CASE("points join copies by their numbers, and a row of copies each to the next") {
+  const std::string beads =
+      "[[body]]\nname = \"bead\"\nkind = \"sphere\"\nradius = 0.04\nposition = [0, 2, 0]\n"
+      "repeat = {count = 4, spacing = [0.1, 0, 0]}\n"
+      "[[body]]\nname = \"hook\"\nkind = \"box\"\nsize = 0.1\nmotion = \"static\"\nposition = [-0.1, 2, 0]\n"
+      "[[joint]]\nname = \"chain\"\nkind = \"point\"\nbetween = [\"bead\"]\n"
+      "[[joint]]\nname = \"top\"\nkind = \"point\"\nbetween = [\"hook\", \"bead[1]\"]\nat = [-0.05, 2, 0]\n";
+  const Reading reading = read(beads);
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  auto built = build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  const auto& joints = built->world.report().joints;
+  REQUIRE(joints.size() == 4);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(joints[static_cast<std::size_t>(i)].body_a == "bead[" + std::to_string(i + 1) + "]");
+    CHECK(joints[static_cast<std::size_t>(i)].body_b == "bead[" + std::to_string(i + 2) + "]");
+  }
+  CHECK(joints[3].body_a == "bead[1]");
+  CHECK(joints[3].body_b == "hook");
+  // The chain hangs: it swings down about its hook, no longer than it was.
+  for (int i = 0; i < 60; ++i) built->world.step();
+  for (const body::Body& body : built->world.bodies())
+    if (body.name == "bead[4]") CHECK((body.pose.translation - Vec3(-0.05, 2.0, 0.0)).norm() < 0.3501);
+}
+
 TEST_CASE("a scene beyond what the engine bears says so at load") {
   const auto notes = [](const std::string& text) {
     const Reading reading = read(text);

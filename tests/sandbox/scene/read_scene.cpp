@@ -135,7 +135,7 @@ TEST_CASE("the option --set is checked with the scene's own words, and named as 
     CHECK(reading.text.find(std::string("--set ") + change) != std::string::npos);
     CHECK(reading.text.find(part) != std::string::npos);
   };
-  refused("ball.radius=-1", "greater than 0 m");
+  refused("ball.radius=-1", "from 1e-09 to 1e+06 m");
   refused("ball.radios=1", "did you mean \"radius\"?");
   refused("bal.radius=1", "did you mean \"ball\"?");
   refused("ball.material=stel", "did you mean \"steel\"?");

@@ -39,6 +39,25 @@ TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
   }
 }
 
+TEST_CASE("a moving target is led, whether it falls or rolls, and one that runs away is aimed at where it is") {
+  const Vec3 gravity(0, -9.81, 0), from(-2, 0.5, 1);
+  for (const bool is_falling : {false, true}) {
+    const script::MovingTarget target{Vec3(0.3, 1.2, 0), Vec3(1.5, -2.0, 0.7), is_falling};
+    const Vec3 place = script::lead(from, target, 10.0, gravity);
+    const Vec3 velocity = script::aim(from, place, 10.0, gravity).value();
+    double least = 1e9;
+    for (int i = 0; i <= 100000; ++i) {
+      const double t = i * 1e-5;
+      const Vec3 thrown = from + t * velocity + 0.5 * t * t * gravity;
+      const Vec3 there = target.place + t * target.velocity + (is_falling ? 0.5 : 0.0) * t * t * gravity;
+      least = std::min(least, (thrown - there).norm());
+    }
+    CHECK(least < 2e-4);
+  }
+  const script::MovingTarget gone{Vec3(1, 0, 0), Vec3(20, 0, 0), false};
+  CHECK(script::lead(Vec3::Zero(), gone, 10.0, Vec3::Zero()) == gone.place);
+}
+
 TEST_CASE("a target out of reach is told") {
   CHECK_FALSE(script::aim(Vec3::Zero(), Vec3(1000, 0, 0), 1.0, Vec3(0, -9.81, 0)).has_value());
   CHECK_FALSE(script::aim(Vec3::Zero(), Vec3(0, 1, 0), 4.42, Vec3(0, -9.81, 0)).has_value());  // v2 < 2 g h
