@@ -54,11 +54,13 @@ std::string break_lines(const RunRecord& record) {
                                  breaks.size() > kMostRows ? ", the first:" : ":");
   for (std::size_t i = 0; i < std::min(breaks.size(), kMostRows); ++i) {
     const world::BreakRow& row = breaks[i];
+    const bool is_much = row.elastic_energy >= 1.0;
+    const double scale = is_much ? 1.0 : 1e3;
     text += fmt::format(
-        "  {:7.3f} s  {:<16} {:>4} {}, {:.3g} cm2 of new area ({:.0f} % on grain boundaries), {:.3g} "
-        "of {:.3g} mJ spent{}{}\n",
-        row.time, row.body, row.pieces, row.pieces == 1 ? "piece" : "pieces", 1e4 * row.new_area,
-        100.0 * row.grain_share, 1e3 * row.fracture_energy, 1e3 * row.elastic_energy,
+        "  {:7.3f} s  {:<16} {:>4} {}, {:.3g} cm2 of new area{}, {:.3g} of {:.3g} {} spent{}{}\n", row.time,
+        row.body, row.pieces, row.pieces == 1 ? "piece" : "pieces", 1e4 * row.new_area,
+        row.grain_share > 0.0 ? fmt::format(" ({:.0f} % on grain boundaries)", 100.0 * row.grain_share) : "",
+        scale * row.fracture_energy, scale * row.elastic_energy, is_much ? "J" : "mJ",
         row.energy_guard_active ? ", stopped by the energy" : "",
         row.generation_bound_active ? ", stopped by the bound on generations" : "");
   }
@@ -68,14 +70,21 @@ std::string break_lines(const RunRecord& record) {
 std::string joint_line(const RunRecord& record) {
   const auto& joints = record.world.joints;
   if (joints.empty()) return {};
-  const auto opened =
-      std::count_if(joints.begin(), joints.end(), [](const auto& joint) { return joint.opened >= 0.0; });
+  long opened = 0;
+  const world::JointRow *first = nullptr, *hardest = nullptr;  // that opened; of those that hold
+  for (const world::JointRow& joint : joints) {
+    if (joint.opened >= 0.0) {
+      ++opened;
+      if (first == nullptr || joint.opened < first->opened) first = &joint;
+    } else if (hardest == nullptr || joint.most_ratio > hardest->most_ratio) {
+      hardest = &joint;
+    }
+  }
   std::string text = fmt::format("{}, {} of them opened",
                                  counted(static_cast<long>(joints.size()), "joint", "joints"), opened);
-  const world::JointRow* hardest = nullptr;
-  for (const world::JointRow& joint : joints)
-    if (joint.opened < 0.0 && (hardest == nullptr || joint.most_ratio > hardest->most_ratio))
-      hardest = &joint;
+  if (first != nullptr)
+    text += fmt::format(", the first at {:.3f} s, {} to {}: {}", first->opened, first->body_a, first->body_b,
+                        first->verdict);
   if (hardest != nullptr)
     text += fmt::format("; of the others {} to {} {}", hardest->body_a, hardest->body_b, hardest->verdict);
   return text + "\n";
