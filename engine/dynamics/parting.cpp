@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/core/index.h"
@@ -14,7 +15,9 @@ using body::Body;
 using body::ShapeKind;
 using core::at;
 
-constexpr double kAside = 0.03;  // of the usual gap: just more than the least that is kept
+constexpr double kAside = 0.03;      // of the usual gap: just more than the least that is kept
+constexpr double kSideless = 1e-13;  // of how far they are from the origin: nearer surfaces have no side
+constexpr double kAlike = 0.9;       // of the contacts' count, is the sum of normals that agree
 
 class Parting {
  public:
@@ -57,8 +60,24 @@ class Parting {
     return g > 0.0 ? Vec3(-settings_.gravity / g) : Vec3(Vec3::UnitY() + 0.1 * Vec3::UnitX());
   }
 
+  // The side of b that a is on, if those contacts that are apart tell of one: pieces are born beside each
+  // other, and may touch in a point.
+  std::optional<Vec3> find_side(const WorkPair& pair) const {
+    const double far = bodies_[at(pair.a)].pose.translation.norm() + pair.size;
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (const collision::Contact& c : pair.contacts) {
+      if (!(c.gap > kSideless * far)) continue;
+      sum += c.normal;
+      ++count;
+    }
+    if (count == 0 || !(sum.norm() > kAlike * count)) return std::nullopt;
+    return Vec3(sum.normalized());
+  }
+
   // From the other towards the mover.
   Vec3 direction(const WorkPair& pair, int mover) const {
+    if (const auto side = find_side(pair)) return mover == pair.a ? *side : Vec3(-*side);
     const Vec3 first = pair.contacts.front().normal;
     Vec3 sum = Vec3::Zero();
     for (const collision::Contact& c : pair.contacts) {

@@ -257,6 +257,33 @@ TEST_CASE("surfaces placed exactly in each other part without a push, and none h
   }
 }
 
+TEST_CASE("sheets beside each other that touch in a point part to the sides on which they are") {
+  // A fan in the plane x = 0, and one beside it whose middle vertex is in the middle of the first.
+  constexpr double kRadius = 0.05, kApart = 1e-4;
+  const auto make_fan = [](double x, double middle) {
+    geometry::TriangleMesh mesh;
+    mesh.positions.push_back(Vec3(middle, 0.5, 0.0));
+    for (int k = 0; k < 8; ++k) {
+      const double angle = 0.25 * core::kPi * (k + 0.3);
+      mesh.positions.push_back(Vec3(x, 0.5 + kRadius * std::sin(angle), kRadius * std::cos(angle)));
+      mesh.triangles.push_back({0, k + 1, (k + 1) % 8 + 1});
+    }
+    return test::make_shell(mesh);
+  };
+  for (const double side : {1.0, -1.0}) {
+    test::Scene scene;
+    scene.settings.gravity.setZero();
+    scene.add(make_fan(0.0, 0.0));
+    scene.add(make_fan(side * kApart, 0.0));
+    const Vec3 before = scene.bodies[1].pose.translation;
+    scene.step();
+    CHECK(scene.report.parted.size() == 1);
+    const Vec3 moved = scene.bodies[1].pose.translation - before;
+    CHECK(side * moved.x() > 0.9 * moved.norm());
+    CHECK(scene.report.crossing_pairs == 0);
+  }
+}
+
 TEST_CASE("balls of one place and size cannot part: they are named, and fall") {
   geometry::Meshing meshing;
   meshing.edge_length = 0.05;

@@ -342,8 +342,9 @@ TEST_CASE("points join copies by their numbers, and a row of copies each to the 
       "[[body]]\nname = \"bead\"\nkind = \"sphere\"\nradius = 0.04\nposition = [0, 2, 0]\n"
       "repeat = {count = 4, spacing = [0.1, 0, 0]}\n"
       "[[body]]\nname = \"hook\"\nkind = \"box\"\nsize = 0.1\nmotion = \"static\"\nposition = [-0.1, 2, 0]\n"
-      "[[joint]]\nname = \"chain\"\nkind = \"point\"\nbetween = [\"bead\"]\n"
-      "[[joint]]\nname = \"top\"\nkind = \"point\"\nbetween = [\"hook\", \"bead[1]\"]\nat = [-0.05, 2, 0]\n";
+      "[[joint]]\nname = \"chain\"\nkind = \"point\"\nbetween = [\"bead\"]\nstrength = 1e9\n"
+      "[[joint]]\nname = \"top\"\nkind = \"point\"\nbetween = [\"hook\", \"bead[1]\"]\nat = [-0.05, 2, 0]\n"
+      "strength = 1e9\n";
   const Reading reading = read(beads);
   REQUIRE(reading.scene.has_value());
   Problems problems;
