@@ -19,6 +19,8 @@ namespace {
 
 using Size = std::size_t;
 
+constexpr double kMostSheetGrains = 20000.0;  // of which making takes a second
+
 /// Of a breakable solid whose element size is not given.
 constexpr int kUsualTetrahedra = 10000;
 /// Share of the body's size within which pieces of a solid still sit beside each other.
@@ -99,30 +101,40 @@ double width_of(const std::vector<Vec3>& points, double volume) {
   return volume / (box(1) * box(2));
 }
 
-/// A sentence, or nothing, if the material divides the solid into no more grains than it may have.
-std::string find_grain_fault(const material::Material& material, const geometry::TriangleMesh& surface) {
+std::string too_many_grains(const material::Material& material, double count, double most, double dimension) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "a grain_size of %.3g m makes some %.3g grains of it, and a body has %.0f at most: give its "
+                "material %.2g m or more, or 0 for none",
+                material.grain_size, count, most,
+                1.05 * material.grain_size * core::pow(count / most, 1.0 / dimension));
+  return text;
+}
+
+/// A sentence, or nothing, if the material divides the body into no more grains than it may have.
+std::string find_grain_fault(const material::Material& material, const geometry::TriangleMesh& surface,
+                             bool is_solid) {
   if (!(material.grain_size > 0.0)) return {};
+  if (!is_solid) {
+    const double count = geometry::surface_area(surface) / (material.grain_size * material.grain_size);
+    return count > kMostSheetGrains ? too_many_grains(material, count, kMostSheetGrains, 2.0) : std::string();
+  }
   Vec3 low = Vec3::Constant(1e300), high = -low;
   for (const Vec3& p : surface.positions) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
   const double count = fracture::expected_grains(high - low, material);
-  if (count <= fracture::kMostSpaceGrains) return {};
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "a grain_size of %.3g m makes some %.0f grains of it, and a solid has %.0f at most: give its "
-                "material %.2g m or more, or 0 for none",
-                material.grain_size, count, fracture::kMostSpaceGrains,
-                1.05 * material.grain_size * core::pow(count / fracture::kMostSpaceGrains, 1.0 / 3.0));
-  return text;
+  return count > fracture::kMostSpaceGrains
+             ? too_many_grains(material, count, fracture::kMostSpaceGrains, 3.0)
+             : std::string();
 }
 
 /// What a solid's verdict needs; `surface` has its centre of mass in the origin.
 core::Result<fracture::SolidSubject> make_subject(const SolidDescription& solid,
                                                   const material::Material& material,
                                                   const geometry::TriangleMesh& surface, const Vec3& centre) {
-  if (const std::string fault = find_grain_fault(material, surface); !fault.empty())
+  if (const std::string fault = find_grain_fault(material, surface, true); !fault.empty())
     return core::Error{fault};
   auto embedded = geometry::tetrahedralise(surface, options_of(solid));
   if (!embedded) return core::Error{"it cannot be divided into tetrahedra: " + embedded.error()};
@@ -237,6 +249,8 @@ core::Result<SharedForm> make_form(const ShellDescription& shell, const Substanc
   form.shape = make_shell_shape(*mesh, fragile, shell.thickness);
   form.centre = mass.centre;
   if (!substance.breaks) return form;
+  if (const std::string fault = find_grain_fault(substance.material, shell.mesh, false); !fault.empty())
+    return core::Error{fault};
   fracture::ShellSubject subject = make_subject(shell, substance.material, mesh);
   subject.material.density = density;
   subject.systems =

@@ -215,7 +215,7 @@ TEST_CASE("an impact whose stress has no answer is told of, and nothing breaks b
   CHECK(w.report().impacts[0].verdict.starts_with("not evaluated: the solve did not settle"));
 }
 
-TEST_CASE("more grains than a solid can have are refused in words") {
+TEST_CASE("more grains than a body can have are refused in words") {
   world::World w{world::WorldSettings{}};
   material::Material plaster = *material::find_preset("plaster");
   plaster.grain_size = 1e-3;
@@ -226,6 +226,11 @@ TEST_CASE("more grains than a solid can have are refused in words") {
   REQUIRE_FALSE(id.ok());
   CHECK(id.error().find("grain_size of 0.001 m") != std::string::npos);
   CHECK(id.error().find("or more") != std::string::npos);
+  world::BodyDescription sheet;
+  world::ShellDescription shell;
+  shell.mesh = geometry::make_sphere(0.1, {0.03, 0.0, 1}).value();
+  sheet.form = shell;
+  CHECK(w.add_body(sheet).error().find("grain_size of 0.001 m makes some 1.2") != std::string::npos);
 }
 
 TEST_CASE("solids: a break has the same bits for any number of threads") {
