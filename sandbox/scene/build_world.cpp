@@ -307,6 +307,8 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
         if (!id) fault = id.error();
       }
       if (!id) {
+        const std::string own = "body '" + description.name + "': ";  // as the engine begins
+        if (fault.starts_with(own)) fault.erase(0, own.size());
         book(problems, body.place, fmt::format("body \"{}\": {}", description.name, fault), "");
         break;
       }
