@@ -109,7 +109,7 @@ TEST_CASE("what was interrupted with Ctrl-C goes on too") {
   CHECK(count_frames(folder, "v.mp4") == 480);
 }
 
-TEST_CASE("Ctrl-C breaks off a step that takes seconds, and the run goes on to the same end", "[.]") {
+TEST_CASE("Ctrl-C breaks off a step that takes seconds and the run goes on to the same end", "[.]") {
   const Folder folder;
   std::string scene = kBreakingScene;
   scene.replace(scene.find("edge_length = 0.03"), 18, "edge_length = 0.0015");
