@@ -7,6 +7,7 @@
 #include "engine/collision/analytic_contact.h"
 #include "engine/core/index.h"
 #include "engine/dynamics/motion_work.h"
+#include "engine/dynamics/shift_test.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -95,22 +96,32 @@ class Parting {
   bool set_aside(const WorkPair& pair, int mover) {
     const double length = kAside * settings_.kept_gap * pair.size;
     const Vec3 first = direction(pair, mover);
-    const Vec3 ways[] = {first,         -first,         up(),          -up(),
-                         Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitZ()};
-    for (const Vec3& way : ways) {
-      if (bodies_[at(mover)].locked.let_move(way) != way) continue;
-      Pose pose = bodies_[at(mover)].pose;
-      pose.translation += length * way;
-      if (!is_free(mover, pose)) continue;
-      bodies_[at(mover)].pose = pose;
-      return true;
+    const int other = mover == pair.a ? pair.b : pair.a;
+    const Vec3 between = bodies_[at(mover)].pose.translation - bodies_[at(other)].pose.translation;
+    std::vector<Vec3> ways = {first,         -first,         up(),          -up(),
+                              Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitZ()};
+    if (between.norm() > kSideless * pair.size) ways.push_back(between.normalized());
+    for (int k = 0; k < 8; ++k)
+      ways.push_back(Vec3(k & 1 ? 1.0 : -1.0, k & 2 ? 1.0 : -1.0, k & 4 ? 1.0 : -1.0).normalized());
+    // Rather through nobody; where every way goes through somebody, to where nobody is crossed.
+    for (const bool may_pass : {false, true}) {
+      for (const Vec3& way : ways) {
+        if (bodies_[at(mover)].locked.let_move(way) != way) continue;
+        Pose pose = bodies_[at(mover)].pose;
+        pose.translation += length * way;
+        if (!is_free(mover, pose, may_pass ? 0.0 : length)) continue;
+        bodies_[at(mover)].pose = pose;
+        return true;
+      }
     }
     return false;
   }
 
-  bool is_free(int mover, const Pose& pose) const {
+  // With a length (m), whether the way there is, too.
+  bool is_free(int mover, const Pose& pose, double length) const {
     const WorkBody& w = work_.bodies[at(mover)];
     const collision::PlacedCollider placed = collision::place_collider(*w.collider, pose);
+    const collision::PlacedCollider before = collision::place_collider(*w.collider, bodies_[at(mover)].pose);
     return std::all_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
       if (pair.a != mover && pair.b != mover) return true;
       if (state_.pairs[at(pair.state)].is_exempt) return true;
@@ -127,7 +138,10 @@ class Parting {
       Vec3 normal;
       if (pair.is_analytic)
         return collision::analytic_gap(*w.shape, pose, *other.shape, there, normal) >= 0.0;
-      return !collision::crosses(placed, collision::place_collider(*other.collider, there));
+      const collision::PlacedCollider standing = collision::place_collider(*other.collider, there);
+      const bool has_surfaces = w.collider->radius == 0.0 && other.collider->radius == 0.0;
+      return !collision::crosses(placed, standing) &&
+             !(length > 0.0 && has_surfaces && goes_through(before, placed, standing, length));
     });
   }
 
