@@ -104,27 +104,29 @@ class Parting {
     for (int k = 0; k < 8; ++k)
       ways.push_back(Vec3(k & 1 ? 1.0 : -1.0, k & 2 ? 1.0 : -1.0, k & 4 ? 1.0 : -1.0).normalized());
     // Rather through nobody; where every way goes through somebody, to where nobody is crossed.
-    for (const bool may_pass : {false, true}) {
-      for (const Vec3& way : ways) {
-        if (bodies_[at(mover)].locked.let_move(way) != way) continue;
-        Pose pose = bodies_[at(mover)].pose;
-        pose.translation += length * way;
-        if (!is_free(mover, pose, may_pass ? 0.0 : length)) continue;
-        bodies_[at(mover)].pose = pose;
-        return true;
-      }
+    const Pose start = bodies_[at(mover)].pose;
+    std::optional<Pose> chosen;
+    for (const Vec3& way : ways) {
+      if (bodies_[at(mover)].locked.let_move(way) != way) continue;
+      const Pose pose{start.rotation, start.translation + length * way};
+      if (!is_free(mover, pose)) continue;
+      const bool is_clear = !passes_somebody(mover, pose, length);
+      if (is_clear || !chosen) chosen = pose;
+      if (is_clear) break;
     }
-    return false;
+    if (chosen) bodies_[at(mover)].pose = *chosen;
+    return chosen.has_value();
   }
 
-  // With a length (m), whether the way there is, too.
-  bool is_free(int mover, const Pose& pose, double length) const {
+  bool is_asked(const WorkPair& pair, int mover) const {
+    return (pair.a == mover || pair.b == mover) && !state_.pairs[at(pair.state)].is_exempt;
+  }
+
+  bool is_free(int mover, const Pose& pose) const {
     const WorkBody& w = work_.bodies[at(mover)];
     const collision::PlacedCollider placed = collision::place_collider(*w.collider, pose);
-    const collision::PlacedCollider before = collision::place_collider(*w.collider, bodies_[at(mover)].pose);
     return std::all_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
-      if (pair.a != mover && pair.b != mover) return true;
-      if (state_.pairs[at(pair.state)].is_exempt) return true;
+      if (!is_asked(pair, mover)) return true;
       const int number = pair.a == mover ? pair.b : pair.a;
       const WorkBody& other = work_.bodies[at(number)];
       const Pose& there = bodies_[at(number)].pose;
@@ -138,10 +140,22 @@ class Parting {
       Vec3 normal;
       if (pair.is_analytic)
         return collision::analytic_gap(*w.shape, pose, *other.shape, there, normal) >= 0.0;
-      const collision::PlacedCollider standing = collision::place_collider(*other.collider, there);
-      const bool has_surfaces = w.collider->radius == 0.0 && other.collider->radius == 0.0;
-      return !collision::crosses(placed, standing) &&
-             !(length > 0.0 && has_surfaces && goes_through(before, placed, standing, length));
+      return !collision::crosses(placed, collision::place_collider(*other.collider, there));
+    });
+  }
+
+  // On the way to that pose, `length` (m) from here.
+  bool passes_somebody(int mover, const Pose& pose, double length) const {
+    const collision::Collider& own = *work_.bodies[at(mover)].collider;
+    if (own.radius > 0.0) return false;
+    const auto before = collision::place_collider(own, bodies_[at(mover)].pose),
+               after = collision::place_collider(own, pose);
+    return std::any_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
+      if (!is_asked(pair, mover) || pair.is_plane || pair.is_analytic) return false;
+      const int number = pair.a == mover ? pair.b : pair.a;
+      const collision::Collider& other = *work_.bodies[at(number)].collider;
+      return other.radius == 0.0 &&
+             goes_through(before, after, collision::place_collider(other, bodies_[at(number)].pose), length);
     });
   }
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <set>
+#include <utility>
 
 #include "engine/core/elementary.h"
 #include "engine/geometry/generators.h"
@@ -20,6 +21,15 @@ namespace {
 
 const ShellForm& first_shell(const Reading& reading) {
   return std::get<ShellForm>(reading.scene->bodies.front().form);
+}
+
+BuiltScene build(const std::string& text) {
+  const Reading reading = read(text);
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  auto built = build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  return std::move(*built);
 }
 
 }  // namespace
@@ -317,21 +327,16 @@ TEST_CASE("mortar joins copies where they touch and says so where none do") {
       "repeat = {count = [3, 2, 1], spacing = [0.2005, 0.1005, 1], bond = 0.5}\n"
       "[[body]]\nname = \"floor\"\nkind = \"plane\"\n"
       "[[joint]]\nname = \"mortar\"\nbetween = [\"brick\", \"floor\"]\n";
-  const Reading reading = read(wall);
-  REQUIRE(reading.scene.has_value());
-  Problems problems;
-  const auto built = build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
-  const auto& joints = built->world.report().joints;
+  const BuiltScene built = build(wall);
+  const auto& joints = built.world.report().joints;
   CHECK(joints.size() == 2 * 2 + 5 + 3);  // in the courses, between them, and on the floor
   CHECK(joints.front().name == "mortar");
-  const Reading apart = read(wall + "gap = 0.0001\n");
-  REQUIRE(apart.scene.has_value());
-  CHECK(build_world(*apart.scene, problems).has_value());  // the floor is near enough
+  build(wall + "gap = 0.0001\n");  // the floor is near enough
   const Reading none = read(
       "[[body]]\nname = \"a\"\nkind = \"box\"\nsize = 1\nposition = [0, 1, 0]\n[[body]]\nname = \"b\"\n"
       "kind = \"box\"\nsize = 1\nposition = [0, 3, 0]\n[[joint]]\nbetween = [\"a\", \"b\"]\n");
   REQUIRE(none.scene.has_value());
+  Problems problems;
   CHECK(!build_world(*none.scene, problems).has_value());
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("look against each other") != std::string::npos);
@@ -345,12 +350,8 @@ TEST_CASE("points join copies by their numbers, and a row of copies each to the 
       "[[joint]]\nname = \"chain\"\nkind = \"point\"\nbetween = [\"bead\"]\nstrength = 1e9\n"
       "[[joint]]\nname = \"top\"\nkind = \"point\"\nbetween = [\"hook\", \"bead[1]\"]\nat = [-0.05, 2, 0]\n"
       "strength = 1e9\n";
-  const Reading reading = read(beads);
-  REQUIRE(reading.scene.has_value());
-  Problems problems;
-  auto built = build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
-  const auto& joints = built->world.report().joints;
+  BuiltScene built = build(beads);
+  const auto& joints = built.world.report().joints;
   REQUIRE(joints.size() == 4);
   for (int i = 0; i < 3; ++i) {
     CHECK(joints[static_cast<std::size_t>(i)].body_a == "bead[" + std::to_string(i + 1) + "]");
@@ -359,8 +360,8 @@ TEST_CASE("points join copies by their numbers, and a row of copies each to the 
   CHECK(joints[3].body_a == "bead[1]");
   CHECK(joints[3].body_b == "hook");
   // The chain hangs: it swings down about its hook, no longer than it was.
-  for (int i = 0; i < 60; ++i) built->world.step();
-  for (const body::Body& body : built->world.bodies())
+  for (int i = 0; i < 60; ++i) built.world.step();
+  for (const body::Body& body : built.world.bodies())
     if (body.name == "bead[4]") CHECK((body.pose.translation - Vec3(-0.05, 2.0, 0.0)).norm() < 0.3501);
 }
 
