@@ -56,7 +56,8 @@ test::Scene room_scene(std::uint64_t seed, double restitution) {
   return scene;
 }
 
-void check_room(double restitution, long steps) {
+/// `least_collisions`: steps with impulses, at least, or the room was not alive.
+void check_room(double restitution, long steps, long least_collisions) {
   auto scene = room_scene(3, restitution);
   const double start = scene.kinetic();
   double most = 0.0, rise = 0.0, last = start;
@@ -77,7 +78,7 @@ void check_room(double restitution, long steps) {
                             << last / start << ", steps with impulses " << collisions << ", hits " << hits
                             << ", cut " << cut);
   CHECK(most <= start * (1.0 + 1e-9));
-  CHECK(collisions > steps / 200);
+  CHECK(collisions > least_collisions);
   CHECK(scene.report.crossing_pairs == 0);
 }
 
@@ -191,11 +192,15 @@ TEST_CASE("what tumbles and meets wins no energy, however far it turns in a step
 }
 
 TEST_CASE("a closed room never has more energy than it began with") {
-  for (const double restitution : {1.0, 0.9}) check_room(restitution, test::how_many(2000, 200));
+  const long steps = test::how_many(2000, 200);
+  for (const double restitution : {1.0, 0.9}) check_room(restitution, steps, steps / 200);
 }
 
 TEST_CASE("a closed room over 1e5 steps", "[.][long]") {
-  for (const double restitution : {1.0, 0.5}) check_room(restitution, 100000);
+  check_room(1.0, 100000, 500);
+  // Speeds fall as 1 / time (Haff 1983), so collisions grow as its logarithm: about 90 in each threefold
+  // time.
+  check_room(0.5, 100000, 250);
 }
 
 TEST_CASE("a splinter on a floor that resists its rolling wins no energy, whichever way it lies") {
