@@ -56,8 +56,9 @@ test::Scene room_scene(std::uint64_t seed, double restitution) {
   return scene;
 }
 
-/// `least_collisions`: steps with impulses, at least, or the room was not alive.
-void check_room(double restitution, long steps, long least_collisions) {
+/// `least_collisions`: steps with impulses, at least, or the room was not alive. Returns the share of the
+/// energy that is left.
+double check_room(double restitution, long steps, long least_collisions) {
   auto scene = room_scene(3, restitution);
   const double start = scene.kinetic();
   double most = 0.0, rise = 0.0, last = start;
@@ -80,6 +81,7 @@ void check_room(double restitution, long steps, long least_collisions) {
   CHECK(most <= start * (1.0 + 1e-9));
   CHECK(collisions > least_collisions);
   CHECK(scene.report.crossing_pairs == 0);
+  return last / start;
 }
 
 double least_squares_slope(const std::vector<double>& values) {
@@ -198,9 +200,9 @@ TEST_CASE("a closed room never has more energy than it began with") {
 
 TEST_CASE("a closed room over 1e5 steps", "[.][long]") {
   check_room(1.0, 100000, 500);
-  // Speeds fall as 1 / time (Haff 1983), so collisions grow as its logarithm: about 90 in each threefold
-  // time.
-  check_room(0.5, 100000, 250);
+  // Speeds fall as 1 / time (Haff 1983), so collisions grow only as its logarithm: 394 to 751 steps with
+  // impulses in eight seeds, after which .09 to .7 % of the energy is left.
+  CHECK(check_room(0.5, 100000, 250) < 0.01);
 }
 
 TEST_CASE("a splinter on a floor that resists its rolling wins no energy, whichever way it lies") {
