@@ -23,7 +23,8 @@ constexpr double kMostDice = 2000.0;  // that are played without a word
 constexpr double kFinestGrain = 1.8;  // elements that it takes to tell a grain
 
 /// About the frame's origin and about the centre of mass, which is known.
-void find_radii(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
+void measure_mesh(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
+  plan.box = geometry::box_of(mesh);
   for (const Vec3& p : mesh.positions) {
     plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
     plan.reach = std::max(plan.reach, (p - plan.centre).norm());
@@ -49,7 +50,7 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
           "second; it may be smaller, thicker, or of less surface_compression",
           body.name, dice, 1e6 * die));
   }
-  find_radii(built->mesh, plan);
+  measure_mesh(built->mesh, plan);
   shell.mesh = std::move(built->mesh);
   shell.parts = std::move(built->parts);
   return shell;
@@ -71,7 +72,7 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
 void measure(const world::SolidDescription& solid, BodyPlan& plan) {
   plan.bounding_radius = plan.reach = 0.0;
   plan.centre = geometry::solid_mass_properties(solid.mesh, 1.0).centre;
-  find_radii(solid.mesh, plan);
+  measure_mesh(solid.mesh, plan);
 }
 
 /// A solid's mesh has an inside: closed, of one or several parts that each enclose some.
@@ -137,12 +138,16 @@ std::optional<BodyPlan> plan_body(const BodyEntry& body, const SceneDescription&
   description.contact_duration = body.contact_duration;
   if (const auto* box = std::get_if<BoxForm>(&body.form)) {
     description.form = world::BoxDescription{0.5 * box->size};
+    plan.box = {-0.5 * box->size, 0.5 * box->size};
     plan.bounding_radius = plan.reach = 0.5 * box->size.norm();
   } else if (const auto* sphere = std::get_if<SphereForm>(&body.form)) {
     description.form = world::SphereDescription{sphere->radius};
+    plan.box = {Vec3::Constant(-sphere->radius), Vec3::Constant(sphere->radius)};
     plan.bounding_radius = plan.reach = sphere->radius;
   } else if (const auto* capsule = std::get_if<CapsuleForm>(&body.form)) {
     description.form = world::CapsuleDescription{capsule->radius, capsule->length};
+    const Vec3 half(capsule->radius, 0.5 * capsule->length, capsule->radius);
+    plan.box = {-half, half};
     plan.bounding_radius = plan.reach = 0.5 * capsule->length;
   } else if (const auto* form = std::get_if<ShellForm>(&body.form)) {
     auto shell = describe_shell(body, *form, scene, plan, notes, problems);

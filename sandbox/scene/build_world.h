@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/geometry/bvh.h"
 #include "engine/world/world.h"
 #include "sandbox/scene/scene_description.h"
 
@@ -16,6 +17,7 @@ namespace shatterbox::sandbox::scene {
 /// One [[body]], ready to be added at its own place.
 struct BodyPlan {
   world::BodyDescription description;
+  geometry::Box box;             // m, about all of it, in the frame of its mesh; of planes about nothing
   double bounding_radius = 0.0;  // m, about the frame's origin; 0 for planes
   Vec3 centre = Vec3::Zero();    // centre of mass in the mesh's frame, m
   double reach = 0.0;            // m, of the farthest point from there

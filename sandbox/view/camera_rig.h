@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/frame/frame.h"
 #include "sandbox/view/camera.h"
 #include "sandbox/view/moment.h"
 

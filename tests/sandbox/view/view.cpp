@@ -1,5 +1,4 @@
-// The bridge: poses, cracks and looks arrive in the frame; every name has its look; the camera follows its
-// path.
+// The bridge: poses, cracks and looks arrive in the frame; every name has its look.
 #include "sandbox/view/view.h"
 
 #include <catch2/catch.hpp>
@@ -7,7 +6,6 @@
 #include <algorithm>
 
 #include "engine/geometry/edge_topology.h"
-#include "sandbox/view/camera.h"
 #include "sandbox/view/looks.h"
 #include "tests/sandbox/scene/reading.h"
 
@@ -116,68 +114,6 @@ TEST_CASE("a light preset is a sun with a sky and a backdrop that single keys ov
   for (const std::string& light : scene::kLightNames) {
     const std::string backdrop = view::usual_backdrop(light);
     CHECK(std::count(scene::kBackdropNames.begin(), scene::kBackdropNames.end(), backdrop) == 1);
-  }
-}
-
-TEST_CASE("the camera passes its keyframes and stands still before and after") {
-  const auto reading = scene::read(
-      "[[body]]\nkind = \"sphere\"\n[camera]\npath = [{at = 1, position = [0,0,5], target = [0,0,0], fov = "
-      "30},"
-      "{at = 2, position = [1,0,5]}, {at = 4, position = [2,0,5], fov = 50}]\n");
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  const auto at = [&reading](double time) { return view::viewpoint_at(reading.scene->camera, {}, time); };
-  CHECK(at(0.0).position.x() == Approx(0.0));
-  CHECK(at(1.0).fov == Approx(30.0));
-  CHECK(at(2.0).position.x() == Approx(1.0));
-  CHECK(at(4.0).position.x() == Approx(2.0));
-  CHECK(at(9.0).fov == Approx(50.0));
-  // Continuous, velocity included.
-  const double before = (at(2.0).position.x() - at(1.999).position.x()) / 0.001;
-  const double after = (at(2.001).position.x() - at(2.0).position.x()) / 0.001;
-  CHECK(before == Approx(after).margin(0.01));
-}
-
-TEST_CASE("what a camera without a place must see reaches down to where bodies will land") {
-  const auto subject_of = [](const std::string& text) {
-    const auto reading = scene::read(text);
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    const auto plan = scene::plan_bodies(*reading.scene, problems);
-    REQUIRE(plan.has_value());
-    return view::find_subject(*reading.scene, *plan);
-  };
-  const std::string ball = "[[body]]\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2, 0]\n";
-  const view::Subject falling = subject_of("[[body]]\nkind = \"plane\"\nposition = [0, 0.5, 0]\n" + ball);
-  CHECK(falling.centre.y() == Approx(0.5 * (2.1 + 0.5)));
-  CHECK(falling.radius >= 0.8);
-  CHECK(subject_of(ball).centre.y() == Approx(2.0));  // nothing below
-  const view::Subject held =
-      subject_of("[[body]]\nkind = \"plane\"\nposition = [0, 0.5, 0]\n" + ball + "motion = \"static\"\n");
-  CHECK(held.centre.y() == Approx(2.0));
-}
-
-TEST_CASE("a camera without a place goes down with what only falls, and stands where things are thrown") {
-  const auto look = [](const std::string& text, double time) {
-    const auto reading =
-        scene::read("[[body]]\nkind = \"plane\"\n[[body]]\nkind = \"sphere\"\nradius = 0.1\n" + text);
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    const auto plan = scene::plan_bodies(*reading.scene, problems);
-    REQUIRE(plan.has_value());
-    return view::viewpoint_at(reading.scene->camera, view::find_subject(*reading.scene, *plan), time);
-  };
-  const std::string falling = "position = [0, 2, 0]\n";
-  CHECK(look(falling, 0.0).target.y() == Approx(2.0).margin(0.01));
-  CHECK(look(falling, 0.4).target.y() == Approx(2.0 - 0.5 * 9.81 * 0.16).margin(0.01));
-  CHECK(look(falling, 0.8).target.y() == Approx(0.0).margin(1e-9));
-  CHECK((look(falling, 0.8).position - look(falling, 0.8).target).norm() < 1.0);
-  for (const char* more : {"velocity = [3, 0, 0]\n", "motion = \"static\"\n"}) {
-    const auto begin = look(falling + more, 0.0), end = look(falling + more, 1.0);
-    CHECK(begin.target == end.target);
-    CHECK(begin.position == end.position);
   }
 }
 

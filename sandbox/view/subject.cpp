@@ -1,0 +1,184 @@
+#include "sandbox/view/subject.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <variant>
+
+#include "engine/geometry/bvh.h"
+#include "sandbox/view/framing.h"
+
+namespace shatterbox::sandbox::view {
+namespace {
+
+using Corners = std::array<Vec3, 8>;
+
+constexpr double kRoomForPieces = 2.0;  // times as wide as what fell
+constexpr double kWorthGoing = 1.3;     // times as far the eye would have to be, to see all of the fall
+
+Corners corners_of(const geometry::Box& box, const Pose& pose) {
+  Corners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 corner((i & 1) != 0 ? box.high.x() : box.low.x(), (i & 2) != 0 ? box.high.y() : box.low.y(),
+                      (i & 4) != 0 ? box.high.z() : box.low.z());
+    corners[i] = pose.apply(corner);
+  }
+  return corners;
+}
+
+// The way that what has these corners would fall to the nearest plane below it that is at most `kSteepest`
+// steep; none if there is none, or if nothing pulls.
+Vec3 way_down(const scene::SceneDescription& scene, const Corners& corners) {
+  constexpr double kSteepest = 0.7;  // cosine of the angle between gravity and the plane's normal
+  const Vec3& gravity = scene.world.gravity;
+  double nearest = std::numeric_limits<double>::max();
+  for (const scene::BodyEntry& entry : scene.bodies) {
+    if (!std::holds_alternative<scene::PlaneForm>(entry.form)) continue;
+    const Vec3 normal = entry.rotation * Vec3::UnitY();
+    const double sinking = -normal.dot(gravity);
+    if (sinking <= kSteepest * gravity.norm()) continue;
+    double way = std::numeric_limits<double>::max();
+    for (const Vec3& corner : corners) way = std::min(way, normal.dot(corner - entry.position) / sinking);
+    if (way > 0.0) nearest = std::min(nearest, way);
+  }
+  return nearest < std::numeric_limits<double>::max() ? Vec3(nearest * gravity) : Vec3(Vec3::Zero());
+}
+
+// What fell, on the floor, with room for pieces around it.
+Corners spread_out(Corners corners, const Vec3& way) {
+  if (way.isZero(0.0)) return corners;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& corner : corners) middle += corner / 8.0;
+  const Vec3 down = way.normalized();
+  for (Vec3& corner : corners) {
+    const Vec3 from_middle = corner - middle;
+    corner =
+        middle + way + kRoomForPieces * from_middle - (kRoomForPieces - 1.0) * from_middle.dot(down) * down;
+  }
+  return corners;
+}
+
+void add(const Corners& corners, std::vector<Vec3>& all) {
+  all.insert(all.end(), corners.begin(), corners.end());
+}
+
+Vec3 middle_of(const std::vector<Vec3>& points) {
+  geometry::Box box;
+  for (const Vec3& p : points) box.include(p);
+  return 0.5 * (box.low + box.high);
+}
+
+// By how much from its own place the body comes into the world: not at all, or as events drop it.
+std::vector<Vec3> find_entrances(const scene::SceneDescription& scene, std::size_t number) {
+  const scene::BodyEntry& body = scene.bodies[number];
+  if (!body.is_held_back) return {Vec3::Zero()};
+  std::vector<Vec3> shifts;
+  for (const scene::EventEntry& event : scene.events) {
+    const auto* drop = std::get_if<scene::Drop>(&event.action);
+    if (drop == nullptr || event.body != static_cast<int>(number)) continue;
+    shifts.emplace_back(drop->position.value_or(body.position) - body.position);
+  }
+  return shifts;
+}
+
+// Of each body whether joints hold it to something that does not fall.
+std::vector<char> find_hung(const scene::SceneDescription& scene) {
+  std::vector<char> is_hung(scene.bodies.size(), 0);
+  const auto holds = [&](const scene::JointPartner& partner) {
+    const auto number = static_cast<std::size_t>(partner.body);
+    return is_hung[number] != 0 || scene.bodies[number].motion != body::Motion::dynamic;
+  };
+  for (bool is_settled = false; !is_settled;) {
+    is_settled = true;
+    for (const scene::JointEntry& joint : scene.joints) {
+      if (std::none_of(joint.partners.begin(), joint.partners.end(), holds)) continue;
+      for (const scene::JointPartner& partner : joint.partners) {
+        if (holds(partner)) continue;
+        is_hung[static_cast<std::size_t>(partner.body)] = 1;
+        is_settled = false;
+      }
+    }
+  }
+  return is_hung;
+}
+
+// The fall of all that moves, if all that happens is that it falls and is thrown at: nothing follows a path,
+// or comes in later.
+std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene::ScenePlan& plan,
+                              const std::vector<char>& is_hung) {
+  constexpr double kSideways = 0.5;  // m/s
+  Fall fall;
+  fall.acceleration = scene.world.gravity.norm();
+  if (!(fall.acceleration > 0.0)) return std::nullopt;
+  const Vec3 down = scene.world.gravity / fall.acceleration;
+  std::vector<Vec3> landed;  // without room for pieces
+  bool moves = false;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& body = scene.bodies[i];
+    if (body.path || body.repeat.every > 0.0) return std::nullopt;
+    if (body.is_held_back && !find_entrances(scene, i).empty()) return std::nullopt;
+    if (body.is_held_back) continue;  // thrown
+    if (plan.bodies[i].reach <= 0.0) continue;
+    const bool is_falling = body.motion == body::Motion::dynamic && is_hung[i] == 0;
+    const double speed = body.velocity.dot(down);
+    if (is_falling && (speed < 0.0 || (body.velocity - speed * down).norm() > kSideways)) return std::nullopt;
+    for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i)) {
+      const Corners corners = corners_of(plan.bodies[i].box, pose);
+      const Vec3 way = is_falling ? way_down(scene, corners) : Vec3(Vec3::Zero());
+      add(corners, fall.from);
+      add(spread_out(corners, way), fall.to);
+      for (const Vec3& corner : corners) landed.push_back(corner + way);
+    }
+    if (!is_falling) continue;
+    fall.speed = moves ? std::min(fall.speed, speed) : speed;
+    moves = true;
+  }
+  if (!moves) return std::nullopt;
+  fall.way = (middle_of(landed) - middle_of(fall.from)).norm();
+  return fall;
+}
+
+}  // namespace
+
+Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
+  Subject subject;
+  const std::vector<char> is_hung = find_hung(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& body = scene.bodies[i];
+    const scene::BodyPlan& planned = plan.bodies[i];
+    if (planned.bounding_radius <= 0.0) continue;
+    for (const Vec3& shift : find_entrances(scene, i)) {
+      for (const Pose& own : scene::copy_poses(body, scene.world.seed, i)) {
+        const Pose pose{own.rotation, own.translation + shift};
+        const Corners corners = corners_of(planned.box, pose);
+        add(corners, subject.corners);
+        if (body.path) {  // in any attitude
+          const Vec3 reach = Vec3::Constant(planned.bounding_radius);
+          for (const body::Keyframe& key : body.path->keys)
+            add(corners_of({-reach, reach},
+                           {Quat::Identity(), pose.translation + key.position - body.position}),
+                subject.corners);
+        }
+        if (body.motion != body::Motion::dynamic || is_hung[i] != 0) continue;
+        if (const Vec3 way = way_down(scene, corners); way != Vec3::Zero())
+          add(spread_out(corners, way), subject.corners);
+      }
+    }
+  }
+  if (subject.corners.empty())
+    add(corners_of({Vec3::Constant(-1.0), Vec3::Constant(1.0)}, Pose()), subject.corners);
+  subject.centre = middle_of(subject.corners);
+  subject.fall = find_fall(scene, plan, is_hung);
+  if (subject.fall) {
+    const Framing framing{scene.camera.up, scene.camera.fov, std::nullopt};
+    const auto distance = [&](const std::vector<Vec3>& corners) {
+      const Viewpoint view = frame_points(corners, framing);
+      return (view.position - view.target).norm();
+    };
+    const double closest = std::max(distance(subject.fall->from), distance(subject.fall->to));
+    if (distance(subject.corners) < kWorthGoing * closest) subject.fall.reset();
+  }
+  return subject;
+}
+
+}  // namespace shatterbox::sandbox::view

@@ -1,0 +1,156 @@
+// Where the camera is: on its path, and without a place where all is seen.
+#include "sandbox/view/camera.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/elementary.h"
+#include "engine/core/random.h"
+#include "tests/sandbox/scene/reading.h"
+
+using namespace shatterbox;
+using namespace shatterbox::sandbox;
+
+namespace {
+
+struct Look {
+  scene::SceneDescription scene;
+  view::Subject subject;
+
+  view::Viewpoint at(double time) const { return view::viewpoint_at(scene.camera, subject, time); }
+};
+
+Look look_at(const std::string& text) {
+  const auto reading = scene::read(text);
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  scene::Problems problems;
+  const auto plan = scene::plan_bodies(*reading.scene, problems);
+  REQUIRE(plan.has_value());
+  return {*reading.scene, view::find_subject(*reading.scene, *plan)};
+}
+
+// How far from the middle of a picture of 4 : 3 the points are, 1 at its rim: the most along width and
+// height.
+Eigen::Vector2d spread(const view::Viewpoint& eye, const std::vector<Vec3>& points, const Vec3& up) {
+  const Vec3 ahead = (eye.target - eye.position).normalized(), right = ahead.cross(up).normalized();
+  const double half = std::tan(eye.fov * core::kPi / 360.0);
+  Eigen::Vector2d most(0.0, 0.0);
+  for (const Vec3& p : points) {
+    const Vec3 way = p - eye.position;
+    const double scale = half * way.dot(ahead);
+    REQUIRE(scale > 0.0);
+    most = most.cwiseMax(Eigen::Vector2d(std::abs(way.dot(right)) / (scale * 4.0 / 3.0),
+                                         std::abs(way.dot(right.cross(ahead))) / scale));
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("the camera passes its keyframes and stands still before and after") {
+  const auto reading = scene::read(
+      "[[body]]\nkind = \"sphere\"\n[camera]\npath = [{at = 1, position = [0,0,5], target = [0,0,0], fov = "
+      "30},"
+      "{at = 2, position = [1,0,5]}, {at = 4, position = [2,0,5], fov = 50}]\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  const auto at = [&reading](double time) { return view::viewpoint_at(reading.scene->camera, {}, time); };
+  CHECK(at(0.0).position.x() == Approx(0.0));
+  CHECK(at(1.0).fov == Approx(30.0));
+  CHECK(at(2.0).position.x() == Approx(1.0));
+  CHECK(at(4.0).position.x() == Approx(2.0));
+  CHECK(at(9.0).fov == Approx(50.0));
+  // Continuous, velocity included.
+  const double before = (at(2.0).position.x() - at(1.999).position.x()) / 0.001;
+  const double after = (at(2.001).position.x() - at(2.0).position.x()) / 0.001;
+  CHECK(before == Approx(after).margin(0.01));
+}
+
+TEST_CASE("an eye without a place has all points in its picture, as large as they may be") {
+  core::Random random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    view::Framing framing;
+    framing.fov = random.uniform(5.0, 110.0);
+    framing.up = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    const double size = std::pow(10.0, random.uniform(-3, 4));
+    const Vec3 shape(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+    std::vector<Vec3> points;
+    for (int i = 0; i < 12; ++i)
+      points.emplace_back(size * Vec3(shape.x() * random.uniform(-1, 1),
+                                      3.0 + shape.y() * random.uniform(-1, 1),
+                                      shape.z() * random.uniform(-1, 1)));
+    const Eigen::Vector2d free = spread(view::frame_points(points, framing), points, framing.up);
+    CHECK(free.maxCoeff() <= 0.75 + 1e-9);
+    if (framing.fov < 50.0) CHECK(free.maxCoeff() == Approx(0.75));
+    framing.target = points[0];
+    const view::Viewpoint aimed = view::frame_points(points, framing);
+    CHECK(aimed.target == points[0]);
+    CHECK(spread(aimed, points, framing.up).maxCoeff() <= 0.75 + 1e-9);
+  }
+}
+
+TEST_CASE("an eye without a place looks at the wider side") {
+  const auto away = [](const Vec3& size) {
+    const view::Viewpoint eye = view::frame_points({-size, size, Vec3(size.x(), size.y(), -size.z())}, {});
+    return Vec3(eye.position - eye.target);
+  };
+  const Vec3 before = away({2.0, 1.0, 0.1}), beside = away({0.1, 1.0, 2.0});
+  CHECK(before.z() > 2.0 * before.x());
+  CHECK(beside.x() > 2.0 * std::abs(beside.z()));
+  CHECK(before.y() > 0.0);
+  CHECK(beside.y() > 0.0);
+}
+
+TEST_CASE("what a camera without a place must see reaches down to where bodies will land") {
+  const auto centre = [](const std::string& text) { return look_at(text).subject.centre.y(); };
+  const std::string floor = "[[body]]\nname = \"floor\"\nkind = \"plane\"\nposition = [0, 0.5, 0]\n";
+  const std::string ball =
+      "[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2, 0]\n";
+  CHECK(centre(floor + ball) == Approx(0.5 * (2.1 + 0.5)));
+  CHECK(centre(ball) == Approx(2.0));  // nothing below
+  CHECK(centre(floor + ball + "motion = \"static\"\n") == Approx(2.0));
+  const std::string hook =
+      "[[body]]\nname = \"hook\"\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2.2, 0]\n"
+      "motion = \"static\"\n";
+  const std::string joint = "[[joint]]\nkind = \"point\"\nbetween = [\"hook\", \"ball\"]\nat = [0, 2.1, 0]\n";
+  CHECK(centre(floor + ball + hook + joint) == Approx(2.1));  // it hangs
+}
+
+TEST_CASE("a camera without a place sees where things are dropped, though nothing is there yet") {
+  const Look look = look_at(
+      "[[body]]\nkind = \"plane\"\n[[body]]\nname = \"egg\"\nkind = \"sphere\"\nradius = 0.1\n"
+      "[[event]]\nat = 1\ndo = \"drop\"\nbody = \"egg\"\nposition = [5, 2, 0]\n");
+  CHECK(look.subject.centre.x() == Approx(5.0));
+  CHECK(look.subject.centre.y() == Approx(1.05));
+  CHECK(!look.subject.fall);
+}
+
+TEST_CASE("a camera without a place goes down with what falls, and stands where more happens") {
+  const std::string ball =
+      "[[body]]\nkind = \"plane\"\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.1\n"
+      "position = [0, 2, 0]\n";
+  const std::string thrown =
+      "[[event]]\nat = 0.2\ndo = \"projectile\"\nfrom = [1, 2, 1]\nat_body = \"ball\"\nspeed = 9\n";
+  for (const std::string& text : {ball, ball + thrown}) {
+    const Look look = look_at(text);
+    REQUIRE(look.subject.fall);
+    CHECK(look.subject.fall->way == Approx(1.9));
+    for (const double time : {0.0, 0.2, 0.4, 0.6, 0.8}) {
+      const double height = std::max(2.0 - 0.5 * 9.81 * time * time, 0.1);
+      CHECK(spread(look.at(time), {Vec3(0.0, height + 0.1, 0.0), Vec3(0.0, height - 0.1, 0.0)}, Vec3::UnitY())
+                .maxCoeff() < 0.9);
+    }
+    CHECK((look.at(0.8).position - look.at(0.8).target).norm() < 1.5);
+  }
+  for (const std::string more :
+       {"velocity = [3, 0, 0]\n", "motion = \"static\"\n",
+        "[[body]]\nname = \"egg\"\nkind = \"sphere\"\nradius = 0.1\n[[event]]\nat = 1\ndo = \"drop\"\nbody = "
+        "\"egg\"\nposition = [0, 1, 0]\n"}) {
+    const Look look = look_at(ball + more);
+    CHECK(look.at(0.0).target == look.at(1.0).target);
+    CHECK(look.at(0.0).position == look.at(1.0).position);
+  }
+}
