@@ -1,6 +1,8 @@
 // Joints through the door: what opens them, and what they leave unchanged.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 #include "engine/audit/audit.h"
 #include "engine/core/elementary.h"
 #include "engine/world/joints.h"
@@ -268,6 +270,44 @@ TEST_CASE("a chain folds up and falls in a heap, and nothing in it crosses") {
     CHECK(world.report().contact.longest_cut <= 3);
     for (const world::JointRow& row : world.report().joints) CHECK(row.opened < 0.0);
   }
+}
+
+TEST_CASE("a chain that a blow tears opens at one of its links, and another one beside it holds") {
+  world::World world = make_world(240, false);
+  const int steel = world.add_material(*material::find_preset("steel")).value();
+  const auto hang_chain = [&](double x) {
+    const auto hook = add_brick(world, steel, Vec3(x, 3, 0), body::Motion::fixed);
+    body::BodyId last = hook;
+    for (int k = 0; k < 6; ++k) {
+      world::BodyDescription ball;
+      ball.form = world::SphereDescription{k == 5 ? 0.15 : 0.02};
+      ball.material = steel;
+      ball.pose.translation = Vec3(x, k == 5 ? 2.1 : 2.85 - 0.1 * k, 0);
+      const body::BodyId id = world.add_body(ball).value();
+      world::JointDescription joint;
+      joint.body_a = last;
+      joint.body_b = id;
+      joint.form = world::PivotDescription{Vec3(x, 2.9 - 0.1 * k, 0), 1e-4};
+      joint.strength = 5e8;  // bears five tons
+      REQUIRE(world.add_joint(joint));
+      last = id;
+    }
+    return last;
+  };
+  hang_chain(0.0);
+  hang_chain(1.0);
+  world::BodyDescription stone;  // it rolls off the ball's side after it has torn the chain
+  stone.form = world::SphereDescription{0.1};
+  stone.material = steel;
+  stone.pose.translation = Vec3(-0.1, 2.5, 0);
+  stone.velocity = Vec3(0, -10, 0);
+  world.add_body(stone).value();
+  while (world.time() < 0.2) world.step();
+  const auto& rows = world.report().joints;
+  REQUIRE(rows.size() == 12);
+  const auto is_open = [](const world::JointRow& row) { return row.opened >= 0.0; };
+  CHECK(std::count_if(rows.begin(), rows.begin() + 6, is_open) == 1);
+  CHECK(std::count_if(rows.begin() + 6, rows.end(), is_open) == 0);
 }
 
 TEST_CASE("what touches where it is hinged turns about that place freely") {
