@@ -67,7 +67,7 @@ TEST_CASE("every scene that comes along passes its check and says what must be s
        {"ornament",    "window",      "bowl",     "boats_pile", "boats_edge", "ornaments", "card_house",
         "plate_stack", "bowls",       "rain",     "reel",       "tablet",     "lintel",    "wall",
         "brick_wall",  "mortar_wall", "dominoes", "blast",      "arch",       "vase",      "egg",
-        "bottle",      "slab",        "walls",    "armadillo",  "step_size",  "tempered"}) {
+        "bottle",      "slab",        "walls",    "armadillo",  "step_size",  "tempered",  "wrecking_ball"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);
