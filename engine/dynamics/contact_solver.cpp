@@ -50,6 +50,7 @@ void IslandSolver::run() {
 
 void IslandSolver::take_part(int substeps) {
   kick();
+  joints_.aim();
   is_before_drift_ = true;
   find_arrivals();
   start_warm(0.5);
@@ -58,6 +59,7 @@ void IslandSolver::take_part(int substeps) {
   drift();
   kick();
   prepare(substeps);
+  joints_.take_back();
   find_late_arrivals();
   if (may_strike_on_) strike();
   start_warm(0.5);
@@ -162,6 +164,7 @@ void IslandSolver::kick() {
 }
 
 void IslandSolver::drift() {
+  joints_.lend();
   each_body([&](WorkBody& b) {
     b.way += b.velocity * step_;
     const bool is_fast = b.spin.squaredNorm() * step_ * step_ > kFastSpin * kFastSpin;

@@ -74,6 +74,7 @@ struct ContactState {
   std::vector<Joint> joints;      // ascending number; those that hold
   double substep = 0.0;           // s, of the impulses that contacts remember
   int next_parts = 1;             // in which the next step is taken: many bodies collide
+  double swing = 0.0;             // rad/s, the fastest of what joints pull taut
   std::shared_ptr<SearchShelf> shelf = std::make_shared<SearchShelf>();
 
   PairState* find_pair(body::BodyId a, body::BodyId b);

@@ -21,6 +21,7 @@ constexpr double kStiffest = 1e3;
 constexpr double kUnmoved = 1e12;     // times as heavy is what cannot move
 constexpr double kMended = 0.3;       // of what joints are off, in a substep,
 constexpr double kMostMended = 2e-3;  // of the lesser reach, and rad: no more of it
+constexpr double kMostClosing = 1.0;  // 1/s, of these, where contacts are in the way
 
 // After so many substeps.
 Pose pose_of(const WorkBody& body, int substeps) {
@@ -68,6 +69,7 @@ void JointSolver::begin() {
     WorkJoint& joint = work_.joints[at(k)];
     joint.total = joint.total_couple = joint.total_world = joint.total_couple_world = Vec3::Zero();
     joint.given = joint.given_couple = Vec3::Zero();
+    joint.most = 0.0;
   }
   if (factor_) return;
   factor_ = std::make_unique<Factor>();
@@ -104,6 +106,10 @@ void JointSolver::place(int substeps) {
     const Pose a = pose_of(body(joint.a), substeps), b = pose_of(body(joint.b), substeps);
     const Vec3 on_a = a.apply(joint.joint->frame_a.translation);
     const Vec3 on_b = b.apply(joint.joint->frame_b.translation);
+    const Quat turn = (b.rotation * joint.joint->frame_b.rotation) *
+                      (a.rotation * joint.joint->frame_a.rotation).conjugate();
+    joint.off = on_b - on_a;
+    joint.off_turn = (turn.w() < 0.0 ? -2.0 : 2.0) * turn.vec();
     joint.point = 0.5 * (on_a + on_b);
     joint.arm_a = joint.point - a.translation;
     joint.arm_b = joint.point - b.translation;
@@ -116,7 +122,6 @@ void JointSolver::place(int substeps) {
             : Mat3(s * joint.axes * joint.joint->moments.asDiagonal() * joint.axes.transpose());
   }
   assemble();
-  find_mending(substeps);
 }
 
 void JointSolver::assemble() {
@@ -173,49 +178,74 @@ void JointSolver::add_pushes(const WorkJoint& joint, const Vec3& linear, const V
   if (dof(joint.b) >= 0) pushes.segment<6>(dof(joint.b)) -= motion_at(joint.arm_b).transpose() * force;
 }
 
-// How fast each joint must close. By one move of all bodies, so that no joint is bidden what another forbids:
-// being so stiff they would strain each other without end.
-void JointSolver::find_mending(int substeps) {
-  VecX pushes = VecX::Zero(dof_count_);
-  double share = kMended;
-  for (const int k : island_.joints) {
-    const WorkJoint& joint = work_.joints[at(k)];
-    const Pose a = pose_of(body(joint.a), substeps), b = pose_of(body(joint.b), substeps);
-    const Vec3 off = b.apply(joint.joint->frame_b.translation) - a.apply(joint.joint->frame_a.translation);
-    const Quat turn = (b.rotation * joint.joint->frame_b.rotation) *
-                      (a.rotation * joint.joint->frame_a.rotation).conjugate();
-    const Vec3 off_turn = (turn.w() < 0.0 ? -2.0 : 2.0) * turn.vec();
-    add_pushes(joint, off, off_turn, pushes);
-    const double reach = std::min(body(joint.a).reach, body(joint.b).reach);
-    const double far = std::max(off.norm() / reach, joint.joint->is_pivot ? 0.0 : off_turn.norm());
-    if (share * far > kMostMended) share = kMostMended / far;
-  }
-  const VecX speeds = share / step_ * factor_->solver.solve(pushes);
-  for (const int k : island_.joints) {
-    WorkJoint& joint = work_.joints[at(k)];
-    Six mending = Six::Zero();
-    if (dof(joint.a) >= 0) mending += motion_at(joint.arm_a) * speeds.segment<6>(dof(joint.a));
-    if (dof(joint.b) >= 0) mending -= motion_at(joint.arm_b) * speeds.segment<6>(dof(joint.b));
-    joint.mending = mending.head<3>();
-    joint.mending_turn = mending.tail<3>();
+// How far, m, b's point would be off a's at the substep's end if the joint did not open at its start: arms
+// turn on arcs, while velocities are straight.
+Vec3 JointSolver::off_by_turning(const WorkJoint& joint) const {
+  const auto sag = [&](const WorkBody& b, const Vec3& arm) {
+    const Vec3 turn = step_ * b.spin;
+    return Vec3(rotation_by(turn) * arm - arm - turn.cross(arm));
+  };
+  return sag(work_.bodies[at(joint.b)], joint.arm_b) - sag(work_.bodies[at(joint.a)], joint.arm_a);
+}
+
+// Whose contacts bear something, or did in the substep before.
+void JointSolver::find_pressed() {
+  is_pressed_.assign(work_.bodies.size(), 0);
+  for (const int k : island_.contacts) {
+    const SolverContact& c = work_.contacts[at(k)];
+    if (c.impulse[0] > 0.0 || c.warm[0] > 0.0) is_pressed_[at(c.a)] = is_pressed_[at(c.b)] = 1;
   }
 }
 
-void JointSolver::hold(bool mends) {
-  if (is_empty()) return;
+bool JointSolver::is_pressed(const WorkJoint& joint) const {
+  return is_pressed_[at(joint.a)] != 0 || is_pressed_[at(joint.b)] != 0;
+}
+
+// The share of what a joint is off that is mended, so that it moves no further than `most` of the lesser
+// reach, and rad.
+double JointSolver::mended_share(const WorkJoint& joint, double most) const {
+  const double reach = std::min(work_.bodies[at(joint.a)].reach, work_.bodies[at(joint.b)].reach);
+  const double far = std::max(joint.off.norm() / reach, joint.joint->is_pivot ? 0.0 : joint.off_turn.norm());
+  return kMended * far > most ? most / far : kMended;
+}
+
+// By one motion of all bodies, so that no joint is bidden what another forbids: being so stiff they would
+// strain each other without end. What contacts are in the way of is mended by a speed, which sweeps hold
+// against them.
+void JointSolver::find_closing() {
   VecX pushes = VecX::Zero(dof_count_);
-  std::vector<Six> wanted(island_.joints.size());
-  for (std::size_t n = 0; n < island_.joints.size(); ++n) {
-    const WorkJoint& joint = work_.joints[at(island_.joints[n])];
-    const WorkBody &a = body(joint.a), &b = body(joint.b);
-    wanted[n] << b.velocity + b.spin.cross(joint.arm_b) - a.velocity - a.spin.cross(joint.arm_a),
-        b.spin - a.spin;
-    if (mends) wanted[n].head<3>() += joint.mending;
-    if (mends) wanted[n].tail<3>() += joint.mending_turn;
-    add_pushes(joint, wanted[n].head<3>(), wanted[n].tail<3>(), pushes);
+  for (const int k : island_.joints) {
+    const WorkJoint& joint = work_.joints[at(k)];
+    const double share = is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
+    add_pushes(joint, off_by_turning(joint) + share * joint.off, share * joint.off_turn, pushes);
   }
+  const VecX speeds = factor_->solver.solve(pushes) / step_;
+  for (const int k : island_.joints) {
+    WorkJoint& joint = work_.joints[at(k)];
+    Six closing = Six::Zero();
+    if (dof(joint.a) >= 0) closing += motion_at(joint.arm_a) * speeds.segment<6>(dof(joint.a));
+    if (dof(joint.b) >= 0) closing -= motion_at(joint.arm_b) * speeds.segment<6>(dof(joint.b));
+    joint.closing = closing.head<3>();
+    joint.closing_turn = closing.tail<3>();
+  }
+}
+
+// Links that are pulled taut turn at other speeds by the joints' impulses than they came with.
+void JointSolver::aim() {
+  if (is_empty()) return;
+  find_pressed();
+  find_closing();
+  hold(true);
+  find_closing();
+}
+
+// The impulses with which joints come to close so fast, as nearly as all of them can. These, not the changes
+// that they are found by, are given to the bodies: both get the same to the last bit.
+void JointSolver::give(const std::vector<Six>& wanted, Vec3 WorkJoint::*impulses, Vec3 WorkJoint::*couples) {
+  VecX pushes = VecX::Zero(dof_count_);
+  for (std::size_t n = 0; n < island_.joints.size(); ++n)
+    add_pushes(work_.joints[at(island_.joints[n])], wanted[n].head<3>(), wanted[n].tail<3>(), pushes);
   const VecX change = factor_->solver.solve(pushes);
-  // Impulses, not these changes, are given to the bodies: both get the same to the last bit.
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     WorkJoint& joint = work_.joints[at(island_.joints[n])];
     Six left = wanted[n];
@@ -223,18 +253,55 @@ void JointSolver::hold(bool mends) {
     if (dof(joint.b) >= 0) left += motion_at(joint.arm_b) * change.segment<6>(dof(joint.b));
     const Vec3 impulse = joint.linear_stiffness * left.head<3>();
     const Vec3 couple = joint.turn_stiffness * left.tail<3>();
-    const auto push = [&](WorkBody& b, const Vec3& arm, double sign) {
-      if (b.inverse_mass == 0.0) return;
-      const Vec3 velocity = b.locked.let_move(sign * b.inverse_mass * impulse);
-      const Vec3 spin = sign * (b.inverse_inertia * (arm.cross(impulse) + couple));
-      b.velocity += velocity;
-      b.spin += spin;
-      b.stirred += velocity.lpNorm<1>() + b.reach * spin.lpNorm<1>();
-    };
-    push(body(joint.a), joint.arm_a, 1.0);
-    push(body(joint.b), joint.arm_b, -1.0);
-    joint.given += impulse;
-    joint.given_couple += couple;
+    push(joint, impulse, couple);
+    joint.*impulses += impulse;
+    joint.*couples += couple;
+  }
+}
+
+void JointSolver::push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple) {
+  const auto push_one = [&](WorkBody& b, const Vec3& arm, double sign) {
+    if (b.inverse_mass == 0.0) return;
+    const Vec3 velocity = b.locked.let_move(sign * b.inverse_mass * impulse);
+    const Vec3 spin = sign * (b.inverse_inertia * (arm.cross(impulse) + couple));
+    b.velocity += velocity;
+    b.spin += spin;
+    b.stirred += velocity.lpNorm<1>() + b.reach * spin.lpNorm<1>();
+  };
+  push_one(body(joint.a), joint.arm_a, 1.0);
+  push_one(body(joint.b), joint.arm_b, -1.0);
+}
+
+void JointSolver::hold(bool closes) {
+  if (is_empty()) return;
+  std::vector<Six> wanted(island_.joints.size());
+  for (std::size_t n = 0; n < island_.joints.size(); ++n) {
+    const WorkJoint& joint = work_.joints[at(island_.joints[n])];
+    const WorkBody &a = body(joint.a), &b = body(joint.b);
+    wanted[n] << b.velocity + b.spin.cross(joint.arm_b) - a.velocity - a.spin.cross(joint.arm_a),
+        b.spin - a.spin;
+    if (closes) wanted[n].head<3>() += joint.closing;
+    if (closes) wanted[n].tail<3>() += joint.closing_turn;
+  }
+  give(wanted, &WorkJoint::given, &WorkJoint::given_couple);
+}
+
+void JointSolver::lend() {
+  if (is_empty()) return;
+  std::vector<Six> wanted(island_.joints.size());
+  for (std::size_t n = 0; n < island_.joints.size(); ++n) {
+    WorkJoint& joint = work_.joints[at(island_.joints[n])];
+    joint.lent = joint.lent_couple = Vec3::Zero();
+    const double share = is_pressed(joint) ? 0.0 : mended_share(joint, kMostMended) / step_;
+    wanted[n] << share * joint.off, share * joint.off_turn;
+  }
+  give(wanted, &WorkJoint::lent, &WorkJoint::lent_couple);
+}
+
+void JointSolver::take_back() {
+  for (const int k : island_.joints) {
+    const WorkJoint& joint = work_.joints[at(k)];
+    push(joint, -joint.lent, -joint.lent_couple);
   }
 }
 
@@ -242,6 +309,7 @@ void JointSolver::book() {
   for (const int k : island_.joints) {
     WorkJoint& joint = work_.joints[at(k)];
     joint.total_world += joint.given;
+    joint.most = std::max(joint.most, joint.given.norm());
     joint.total_couple_world += joint.given_couple;
     joint.total += joint.axes.transpose() * joint.given;
     joint.total_couple += joint.axes.transpose() * joint.given_couple;

@@ -20,9 +20,15 @@ class JointSolver {
   void begin();
   /// Where the bodies are after so many substeps.
   void place(int substeps);
-  /// Changes velocities so that no joint opens or turns; or so that what they are off, as bodies went
-  /// straight through a substep, is mended by the end of the next.
-  void hold(bool mends);
+  /// How fast each joint must close, that it is not off at the end of the substep that begins with these
+  /// spins.
+  void aim();
+  /// Changes velocities so that no joint opens or turns; or so that they close as they must.
+  void hold(bool closes);
+  /// Before the drift: speeds that mend a share of what joints are off, and are taken back when bodies are
+  /// placed behind it: where contacts are in the way, what is left of them would be energy.
+  void lend();
+  void take_back();
   /// Adds what this substep gave to that of the step.
   void book();
 
@@ -31,16 +37,24 @@ class JointSolver {
 
   WorkBody& body(int i);
   int dof(int i) const;
+  void give(const std::vector<Eigen::Matrix<double, 6, 1>>& wanted, Vec3 WorkJoint::*impulses,
+            Vec3 WorkJoint::*couples);
+  void push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple);
   void add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn, VecX& pushes) const;
   void make_stiffnesses();
   void assemble();
-  void find_mending(int substeps);
+  void find_pressed();
+  bool is_pressed(const WorkJoint& joint) const;
+  double mended_share(const WorkJoint& joint, double most) const;
+  void find_closing();
+  Vec3 off_by_turning(const WorkJoint& joint) const;
 
   const Island& island_;
   const double step_;
   MotionWork& work_;
   std::vector<int> first_dof_;  // per body of the world; -1: nothing moves it
   int dof_count_ = 0;
+  std::vector<char> is_pressed_;  // per body of the world
   std::unique_ptr<Factor> factor_;
 };
 

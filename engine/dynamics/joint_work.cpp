@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "engine/core/index.h"
 
@@ -17,6 +18,34 @@ int find_number(const MotionWork& work, body::BodyId id) {
 
 std::pair<int, int> ordered(int a, int b) {
   return {std::min(a, b), std::max(a, b)};
+}
+
+// By how much a body that a couple across `arm` turns can turn at most, 1/(kg m2).
+double yield_across(const WorkBody& body, const Vec3& arm) {
+  const Vec3 u = arm.unitOrthogonal(), v = arm.normalized().cross(u);
+  const double uu = u.dot(body.inverse_inertia * u), vv = v.dot(body.inverse_inertia * v);
+  const double uv = u.dot(body.inverse_inertia * v), half = 0.5 * (uu - vv);
+  return 0.5 * (uu + vv) + std::sqrt(half * half + uv * uv);
+}
+
+// rad/s: a link that is pulled at both ends swings about its centre as a pendulum does, the faster the harder
+// it is pulled.
+double find_swing(const MotionWork& work) {
+  std::map<int, double> squares;  // of each body's
+  for (const WorkJoint& joint : work.joints) {
+    if (!joint.joint->is_pivot) continue;
+    const double force = joint.most / work.substep;
+    const auto pull = [&](int number, const Vec3& arm) {
+      const WorkBody& body = work.bodies[at(number)];
+      if (body.inverse_mass == 0.0 || arm.isZero(0.0)) return;
+      squares[number] += force * arm.norm() * yield_across(body, arm);
+    };
+    pull(joint.a, joint.arm_a);
+    pull(joint.b, joint.arm_b);
+  }
+  double most = 0.0;
+  for (const auto& [number, square] : squares) most = std::max(most, square);
+  return std::sqrt(most);
 }
 
 }  // namespace
@@ -107,6 +136,7 @@ void remember_joints(const MotionWork& work, ContactState& state) {
     state.joints[at(w.state)].impulse = w.total;
     state.joints[at(w.state)].couple = w.total_couple;
   }
+  state.swing = find_swing(work);
 }
 
 }  // namespace shatterbox::dynamics

@@ -28,7 +28,7 @@ core::DisjointSets join_bodies(const MotionWork& work);
 /// together are the joint's force and couple.
 void log_joints(const MotionWork& work, body::ImpulseLog& log);
 
-/// Writes what joints gave to the state.
+/// Writes what joints gave to the state, and how fast they swing what they pull.
 void remember_joints(const MotionWork& work, ContactState& state);
 
 }  // namespace shatterbox::dynamics

@@ -178,15 +178,18 @@ struct WorkJoint {
   // At the present pose: one point for both bodies, and the axes of a's frame.
   Vec3 point = Vec3::Zero(), arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
   Mat3 axes = Mat3::Identity();
-  Vec3 mending = Vec3::Zero(), mending_turn = Vec3::Zero();  // m/s, rad/s of a against b that put it right
+  Vec3 off = Vec3::Zero(), off_turn = Vec3::Zero();          // m, rad, of b against a
+  Vec3 closing = Vec3::Zero(), closing_turn = Vec3::Zero();  // m/s, rad/s of a against b before the drift
   // N s by m/s, and N m s by rad/s; of a square metre of the first kind.
   double stiffness = 0.0, linear_stiffness = 0.0;
   Mat3 turn_stiffness = Mat3::Zero();
 
   Vec3 given = Vec3::Zero(), given_couple = Vec3::Zero();  // N s, N m s on a in this substep, world
+  Vec3 lent = Vec3::Zero(), lent_couple = Vec3::Zero();    // the same, for the drift only
   // Of the whole step: in the joint's axes as they were, and in the world's.
   Vec3 total = Vec3::Zero(), total_couple = Vec3::Zero();
   Vec3 total_world = Vec3::Zero(), total_couple_world = Vec3::Zero();
+  double most = 0.0;  // N s, of a substep
 };
 
 struct Island {

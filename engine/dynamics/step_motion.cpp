@@ -33,6 +33,11 @@ constexpr int kCrowdParts = 2;  // of one after which, of so many of them, more 
 constexpr int kCrowdHits = 5;   // and at least so many in all
 constexpr int kLeastHits = 50;
 
+// Links of a chain that is pulled taut swing by no more than this in a substep, rad: beyond it they win
+// energy.
+constexpr double kSwingTurn = 0.5;
+constexpr double kMostFiner = 8.0;  // times as many substeps at most: the pull of a blow does not last
+
 // Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
 bool has_impulse(const SolverContact& c) {
   return c.impulse_a.squaredNorm() > 0.0 && c.impulse_b.squaredNorm() > 0.0;
@@ -274,6 +279,12 @@ int finer_parts(const ContactSettings& settings, const StepPart& part) {
   return std::min(kFiner, (lively_parts(settings) + part.count - 1) / part.count);
 }
 
+// How many times as many substeps it takes to follow what joints pull taut.
+int finer_substeps(const ContactSettings& settings, const ContactState& state) {
+  const double turn = state.swing * settings.time_step / settings.substeps;
+  return turn > kSwingTurn ? static_cast<int>(std::ceil(std::min(turn / kSwingTurn, kMostFiner))) : 1;
+}
+
 void count_near(const ContactSettings& settings, const MotionWork& work, ContactReport& report) {
   std::vector<char> is_near(work.bodies.size(), 0);
   for (const WorkPair& pair : work.pairs)
@@ -344,6 +355,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   ContactSettings own = settings;
   own.time_step /= part.count;
   own.substeps = std::max(1, settings.substeps / part.count);
+  own.substeps *= finer_substeps(own, state);
   begin_taking(own, part, *state.shelf);
   aim_scripted(bodies, own.time_step);
   wake_bodies(bodies, own, state);

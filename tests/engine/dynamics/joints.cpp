@@ -126,6 +126,61 @@ TEST_CASE("a body on a pivot swings with the period of a physical pendulum") {
   CHECK(b.pose.apply(Vec3(0, arm, 0)).isApprox(Vec3(0, 2, 0), 1e-6));
 }
 
+TEST_CASE("a heavy ball swings on a light chain alike at any step and wins nothing") {
+  constexpr int kLinks = 8;
+  constexpr double kPitch = 0.11, kRadius = 0.15;
+  const auto swing = [&](int steps_per_second) {
+    Scene scene;
+    scene.settings.time_step = 1.0 / steps_per_second;
+    scene.settings.has_sleep = false;
+    scene.add(test::make_sphere(0.02, Vec3(-0.06, 3, 0))).motion = body::Motion::fixed;
+    scene.bodies[0].inverse_mass = 0.0;
+    scene.bodies[0].inverse_inertia.setZero();
+    for (int i = 0; i < kLinks; ++i)
+      scene.add(test::make_box(Vec3(0.05, 0.01, 0.01), Vec3(kPitch * (i + 0.5), 3, 0), true, 4000.0));
+    scene.add(test::make_sphere(kRadius, Vec3(kPitch * kLinks + kRadius, 3, 0), 8000.0));
+    for (int i = 0; i <= kLinks; ++i) {
+      dynamics::Joint joint =
+          join_across_x(scene, static_cast<body::BodyId>(i + 2), static_cast<body::BodyId>(i + 1),
+                        Vec3(kPitch * i, 3, 0), 0.01, 0.01);
+      joint.is_pivot = true;
+      scene.state.joints.push_back(joint);
+    }
+    const body::Body& ball = scene.bodies.back();
+    REQUIRE(ball.shape->mass > 500.0 * scene.bodies[1].shape->mass);
+    const double all =
+        ball.shape->mass * 9.81 * (kPitch * kLinks + kRadius);  // J, from the start to the lowest
+    const auto energy = [&] {
+      double sum = scene.kinetic();
+      for (std::size_t i = 1; i < scene.bodies.size(); ++i)
+        sum += scene.bodies[i].shape->mass * 9.81 * (scene.bodies[i].pose.translation.y() - 3.0);
+      return sum;
+    };
+    double most = 0.0, apart = 0.0, lowest = 0.0;
+    for (int i = 0; i < 2 * steps_per_second; ++i) {
+      scene.step();
+      most = std::max(most, energy());
+      lowest = std::min(lowest, ball.pose.translation.y() - 3.0);
+      for (const dynamics::Joint& joint : scene.state.joints) {
+        const Pose &a = body::find_body(scene.bodies, joint.body_a)->pose,
+                   &b = body::find_body(scene.bodies, joint.body_b)->pose;
+        apart =
+            std::max(apart, (a.apply(joint.frame_a.translation) - b.apply(joint.frame_b.translation)).norm());
+      }
+    }
+    CAPTURE(steps_per_second, energy() / all, most / all, apart, lowest);
+    CHECK(most < 1e-5 * all);
+    CHECK(std::abs(energy()) < 1e-4 * all);
+    CHECK(apart < 1e-6);
+    CHECK(lowest == Approx(-(kPitch * kLinks + kRadius)).epsilon(0.01));
+    return ball.pose.translation;
+  };
+  const Vec3 fine = swing(480);
+  CHECK((swing(30) - fine).norm() < 1e-3);
+  CHECK((swing(60) - fine).norm() < 1e-3);
+  CHECK((swing(240) - fine).norm() < 1e-3);
+}
+
 TEST_CASE("a row of joined boxes lies on two feet and sleeps and wakes as one") {
   Scene scene = make_row(5, false);
   for (auto& b : scene.bodies) b.pose.translation.y() = 0.1501;
