@@ -290,6 +290,12 @@ std::vector<const EvaluatedImpact*> World::book_verdicts(std::span<const Evaluat
         s.report.impacts.push_back(describe_impact(impact, body, end_time));
       continue;
     }
+    if (impact.has_used_all) {
+      ImpactRow row = describe_impact(impact, body, end_time);
+      row.verdict = "held: its impact event has used all its generations of breaking";
+      s.report.impacts.push_back(row);
+      continue;
+    }
     if (impact.is_cracked_only()) {
       keep_begin(snapshot);
       const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
@@ -301,13 +307,11 @@ std::vector<const EvaluatedImpact*> World::book_verdicts(std::span<const Evaluat
       continue;
     }
     if (waits_for_striker(impact, impacts)) continue;
-    // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
+    // When the impact that made a piece is over, counting begins anew.
     if (impact.first_time > memory.charged_until) memory.generation = 0;
     ImpactRow row = describe_impact(impact, body, end_time);
-    const bool has_used_all = memory.generation >= s.settings.most_generations;
-    if (has_used_all || pass + 1 >= kMostPasses) {
-      row.verdict = has_used_all ? "held: its impact event has used all its generations of breaking"
-                                 : "held: so much has broken in this step that it is not taken again";
+    if (pass + 1 >= kMostPasses) {
+      row.verdict = "held: so much has broken in this step that it is not taken again";
       s.report.impacts.push_back(row);
       continue;
     }

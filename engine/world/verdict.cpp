@@ -22,6 +22,8 @@ constexpr double kBorneRatio = 0.95;
 /// Where the stress is above the strength and yet no crack could start, or there was no energy for one, that
 /// is so again for loads up to so many times as great.
 constexpr double kBorneAgain = 1.02;
+/// Of what has used all its generations, and holds: only what is so much harder is told once more.
+constexpr double kUsedAgain = 2.0;
 /// Loads smaller than this share of the hardest one do not decide whether two impacts are alike.
 constexpr double kMinorLoad = 0.05;
 constexpr int kSolidGenerations = 6;  // solves of a cracking solid
@@ -31,9 +33,10 @@ struct Candidate {
   const Fragile* fragile = nullptr;
   Load hardest;
   std::vector<Load> loads;
-  double first_time = 0.0;  // s
-  bool is_struck = false;   // by a collision
-  bool is_piece = false;    // born of a break
+  double first_time = 0.0;    // s
+  bool is_struck = false;     // by a collision
+  bool is_piece = false;      // born of a break
+  bool has_used_all = false;  // generations of its event
   fracture::Impact impact;
 };
 
@@ -212,6 +215,9 @@ void fill_candidate(const Judge& judge, const body::Body& body, double radius, d
   candidate.is_piece = memory.charged_event != 0;
   candidate.first_time = time;
   for (const Load& load : event) candidate.first_time = std::min(candidate.first_time, load.first_time);
+  // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
+  const int generation = candidate.first_time > memory.charged_until ? 0 : memory.generation;
+  candidate.has_used_all = generation >= judge.settings.most_generations;
   candidate.impact.contact_average = contact_average(1.0 / judge.settings.steps_per_second);
   candidate.impact.spin_material = body.pose.rotation.conjugate() * body.angular_velocity;
   if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;
@@ -282,7 +288,7 @@ bool has_yielded(const fracture::Verdict& verdict) {
 /// Null: this is harder than what was borne, or nothing was.
 const BorneImpact* find_like_borne(const Candidate& candidate, const BorneImpacts& borne) {
   const auto found = borne.find(candidate.body->id);
-  if (found == borne.end()) return nullptr;
+  if (found == borne.end() || found->second.had_used_all != candidate.has_used_all) return nullptr;
   const double radius = kGatherRadius * candidate.body->shape->bounding_radius;
   return load_growth(candidate.loads, found->second, radius) < found->second.most_growth ? &found->second
                                                                                          : nullptr;
@@ -352,6 +358,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     // Cracks of solids go on for longer before they part anything, and their solves cost less.
     if (std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject))
       how.most_generations = kSolidGenerations;
+    if (candidate.has_used_all) how.most_generations = 1;  // for the verdict
     how.has_energy_guard = settings.has_energy_guard;
     how.solve_residual = settings.solve_residual;
     how.least_width = kLeastWidth * candidate.fragile->size;
@@ -361,6 +368,7 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     evaluated[i].hardest = candidate.hardest;
     evaluated[i].is_struck = candidate.is_struck;
     evaluated[i].first_time = candidate.first_time;
+    evaluated[i].has_used_all = candidate.has_used_all;
     if (const auto* shell = std::get_if<fracture::ShellSubject>(&candidate.fragile->subject))
       evaluated[i].decision = fracture::decide_shell(*shell, candidate.impact, how);
     else if (const auto* solid = std::get_if<fracture::SolidSubject>(&candidate.fragile->subject))
@@ -373,10 +381,12 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
     const double duration = impact.is_struck ? decision.verdict.duration : 0.0;
     const double tested_growth =
         ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
-    if ((decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only()) &&
-        !has_yielded(decision.verdict))
+    const bool holds = decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only();
+    if (impact.has_used_all)
+      borne[impact.id] = {std::move(candidates[i].loads), kUsedAgain, duration, tested_growth, true};
+    else if (holds && !has_yielded(decision.verdict))
       borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict), duration,
-                          tested_growth};
+                          tested_growth, false};
     ImpactMemory& memory = memories[impact.id];
     if (impact.is_struck) await_dent(impact, *candidates[i].body, memory);
     keep_verdict(duration, tested_growth, memory);

@@ -17,9 +17,10 @@ namespace shatterbox::world {
 /// The answer for one body whose impact was evaluated.
 struct EvaluatedImpact {
   body::BodyId id = 0;
-  double first_time = 0.0;  // s, of the first impulse of the event
-  Load hardest;             // body space
-  bool is_struck = false;   // by a collision; otherwise contact alone pressed
+  double first_time = 0.0;    // s, of the first impulse of the event
+  Load hardest;               // body space
+  bool is_struck = false;     // by a collision; otherwise contact alone pressed
+  bool has_used_all = false;  // generations that one event has: it holds, whatever the stress
   std::variant<fracture::Decision, fracture::SolidDecision> decision;
 
   /// Of a solid: it has cracks, and yet all of it hangs together.
@@ -45,6 +46,7 @@ struct BorneImpact {
   // What the body's memory keeps of the verdict.
   double duration = 0.0;  // s; 0: nothing struck
   double tested_growth = 1.1;
+  bool had_used_all = false;  // generations
 };
 using BorneImpacts = std::map<body::BodyId, BorneImpact>;
 
