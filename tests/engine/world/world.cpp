@@ -140,6 +140,23 @@ TEST_CASE("a hard impact breaks a shell, and mass and momentum are those of the 
     if (body.is_dynamic()) CHECK(body.pose.translation.y() > 0.0);
 }
 
+TEST_CASE("pieces that have used all generations of their impact hold and are solved once for the verdict") {
+  world::WorldSettings settings;
+  settings.most_generations = 1;
+  world::World w = make_drop(8.0, 0.5e-3, settings);
+  for (int i = 0; i < 24; ++i) w.step();
+  long told = 0, solves = 0;
+  for (const world::BreakRow& row : w.report().breaks) {
+    CHECK(row.generation == 0);
+    solves += row.crack_generations;
+  }
+  for (const world::ImpactRow& row : w.report().impacts)
+    told += row.verdict.find("used all its generations") != std::string::npos ? 1 : 0;
+  CHECK(told > 0);
+  CAPTURE(told, solves, w.report().solver.solves, w.report().impacts.size());
+  CHECK(w.report().solver.solves <= solves + static_cast<long>(w.report().impacts.size()));
+}
+
 TEST_CASE("what breaks and hands its motion on to its pieces has its momentum explained") {
   world::WorldSettings settings;
   settings.after_break = world::AfterBreak::inherit;
