@@ -139,4 +139,15 @@ void remember_joints(const MotionWork& work, ContactState& state) {
   state.swing = find_swing(work);
 }
 
+double find_torn(const MotionWork& work) {
+  double most = 0.0;
+  for (const WorkJoint& joint : work.joints) {
+    const WorkBody &a = work.bodies[at(joint.a)], &b = work.bodies[at(joint.b)];
+    const Vec3 off =
+        b.end.apply(joint.joint->frame_b.translation) - a.end.apply(joint.joint->frame_a.translation);
+    most = std::max(most, off.norm() / std::min(a.reach, b.reach));
+  }
+  return most;
+}
+
 }  // namespace shatterbox::dynamics

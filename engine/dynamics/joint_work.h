@@ -31,4 +31,7 @@ void log_joints(const MotionWork& work, body::ImpulseLog& log);
 /// Writes what joints gave to the state, and how fast they swing what they pull.
 void remember_joints(const MotionWork& work, ContactState& state);
 
+/// The most that a joint is off at the ends of the ways, of the lesser reach: what was opened tears it.
+double find_torn(const MotionWork& work);
+
 }  // namespace shatterbox::dynamics

@@ -36,6 +36,7 @@ constexpr int kLeastHits = 50;
 // Links of a chain that is pulled taut swing by no more than this in a substep, rad: beyond it they win
 // energy.
 constexpr double kSwingTurn = 0.5;
+constexpr double kTorn = 1e-3;      // of the lesser reach: what is off by more has been torn
 constexpr double kMostFiner = 8.0;  // times as many substeps at most: the pull of a blow does not last
 
 // Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
@@ -238,6 +239,7 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
   log_joints(work, log);
   remember_contacts(work, state);
   remember_joints(work, state);
+  report.torn = find_torn(work);
   report_contacts(work, state, report);
 }
 
@@ -308,21 +310,24 @@ bool were_many_cut(const ContactSettings& settings, const ContactReport& report)
   return kManyCut * report.failsafe_steps > report.near_bodies && settings.time_step > kPartTime;
 }
 
-int count_spin_parts(const ContactSettings& settings, const ContactReport& report) {
+// So that what turns so far in the step, rad, turns little in each.
+int count_turn_parts(const ContactSettings& settings, double turn) {
   const int most = lively_parts(settings);
   int parts = 1;
-  while (parts < most && report.crowd_turn > kStraightTurn * parts) parts *= 2;
+  while (parts < most && turn > kStraightTurn * parts) parts *= 2;
   return std::min(parts, most);
 }
 
 // What is hit on its way did not see it coming: over shorter ways more does.
-int find_next_parts(const ContactSettings& settings, const ContactReport& report, int parts) {
+int find_next_parts(const ContactSettings& settings, const ContactReport& report, int parts, double swing) {
   const int near = report.near_bodies, hits = report.hits;
-  const int spin_parts = kManyHits * hits > near ? count_spin_parts(settings, report) : 1;
+  const int spin_parts = kManyHits * hits > near ? count_turn_parts(settings, report.crowd_turn) : 1;
+  // What is opened in position tears chains.
+  const int swing_parts = report.torn > kTorn ? count_turn_parts(settings, swing * settings.time_step) : 1;
   const int crowd_parts = hits >= kLeastHits && kCrowdHits * hits > near ? kCrowdParts : 1;
   const int most = lively_parts(settings);
   const int finer_parts = were_many_cut(settings, report) ? std::min(most, kFiner * parts) : 1;
-  return std::max({spin_parts, crowd_parts, finer_parts});
+  return std::max({spin_parts, swing_parts, crowd_parts, finer_parts});
 }
 
 }  // namespace
@@ -414,6 +419,7 @@ void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step) 
     }
   }
   step.residual = std::max(step.residual, moved.residual);
+  step.torn = std::max(step.torn, moved.torn);
   step.drift = std::max(step.drift, moved.drift);
   step.awake_bodies = moved.awake_bodies;
   step.near_bodies = moved.near_bodies;
@@ -421,7 +427,7 @@ void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step) 
 }
 
 void end_step(const ContactSettings& settings, const ContactReport& step, int parts, ContactState& state) {
-  state.next_parts = find_next_parts(settings, step, parts);
+  state.next_parts = find_next_parts(settings, step, parts, state.swing);
 }
 
 ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,

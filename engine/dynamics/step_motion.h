@@ -39,6 +39,7 @@ struct ContactReport {
   int awake_bodies = 0;
   int near_bodies = 0;          // of them: in a pair that had to be looked at
   double crowd_turn = 0.0;      // rad in a step: more than one in twenty of these turn so far, spheres apart
+  double torn = 0.0;            // the most that a joint is off at the end, of the lesser reach
   std::vector<body::Way> ways;  // ascending id; if asked for: of bodies that did not go straight
   double drift = 0.0;           // m, of surfaces from their bodies; of the paper's scheme alone
   bool is_unfinished = false;   // a trial found ways that are not free: its end poses are good for nothing
