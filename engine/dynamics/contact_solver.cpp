@@ -49,6 +49,7 @@ void IslandSolver::run() {
 }
 
 void IslandSolver::take_part(int substeps) {
+  joints_.note_energy();
   kick();
   joints_.aim();
   is_before_drift_ = true;
@@ -65,6 +66,7 @@ void IslandSolver::take_part(int substeps) {
   start_warm(0.5);
   sweep_after_drift();
   bounce();
+  joints_.settle();
   book();
 }
 

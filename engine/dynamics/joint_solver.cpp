@@ -20,8 +20,11 @@ constexpr double kStiff = 1e7;
 constexpr double kStiffest = 1e3;
 constexpr double kUnmoved = 1e12;     // times as heavy is what cannot move
 constexpr double kMended = 0.3;       // of what joints are off, in a substep,
-constexpr double kMostMended = 2e-3;  // of the lesser reach, and rad: no more of it
-constexpr double kMostClosing = 1.0;  // 1/s, of these, where contacts are in the way
+constexpr double kMostMended = 2e-3;  // of the lesser reach, and rad: no more of it,
+constexpr double kMostLent = 5e-4;    // and no body goes further for it than this share of its own
+constexpr double kMostClosing = 1.0;  // 1/s, instead of kMostMended, where contacts are in the way
+constexpr double kMostClosed = 0.02;  // of a body's reach, and rad: how far it goes to close what arms turn,
+constexpr double kMostGiven = 0.01;   // with no more than this share of the energy
 
 // After so many substeps.
 Pose pose_of(const WorkBody& body, int substeps) {
@@ -35,6 +38,12 @@ Mat3 cross_matrix(const Vec3& v) {
   Mat3 m;
   m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
   return m;
+}
+
+// J.
+double kinetic(const WorkBody& body, const Vec3& velocity, const Vec3& spin) {
+  return 0.5 * velocity.squaredNorm() / body.inverse_mass +
+         0.5 * spin.dot(inertia_at(body, body.rotation) * spin);
 }
 
 // How the joint's point moves and turns with the body at this arm.
@@ -193,7 +202,8 @@ void JointSolver::find_pressed() {
   is_pressed_.assign(work_.bodies.size(), 0);
   for (const int k : island_.contacts) {
     const SolverContact& c = work_.contacts[at(k)];
-    if (c.impulse[0] > 0.0 || c.warm[0] > 0.0) is_pressed_[at(c.a)] = is_pressed_[at(c.b)] = 1;
+    if (c.slack <= 0.0 || c.impulse[0] > 0.0 || c.warm[0] > 0.0)
+      is_pressed_[at(c.a)] = is_pressed_[at(c.b)] = 1;
   }
 }
 
@@ -209,22 +219,65 @@ double JointSolver::mended_share(const WorkJoint& joint, double most) const {
   return kMended * far > most ? most / far : kMended;
 }
 
-// By one motion of all bodies, so that no joint is bidden what another forbids: being so stiff they would
-// strain each other without end. What contacts are in the way of is mended by a speed, which sweeps hold
-// against them.
-void JointSolver::find_closing() {
+// The motion of all bodies that closes joints by so much, as nearly as all of them can: no joint is bidden
+// what another forbids, for being so stiff they would strain each other without end. A chain that is straight
+// between two hooks can only close by going far aside, and what moves so far in a substep is not what was
+// asked for.
+VecX JointSolver::find_motion(const std::vector<Six>& offs, double most) const {
   VecX pushes = VecX::Zero(dof_count_);
-  for (const int k : island_.joints) {
-    const WorkJoint& joint = work_.joints[at(k)];
-    const double share = is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
-    add_pushes(joint, off_by_turning(joint) + share * joint.off, share * joint.off_turn, pushes);
+  for (std::size_t n = 0; n < island_.joints.size(); ++n)
+    add_pushes(work_.joints[at(island_.joints[n])], offs[n].head<3>(), offs[n].tail<3>(), pushes);
+  VecX motion = factor_->solver.solve(pushes);
+  double far = 0.0;
+  for (const int i : island_.bodies) {
+    if (dof(i) < 0) continue;
+    far = std::max({far, motion.segment<3>(dof(i)).norm() / work_.bodies[at(i)].reach,
+                    motion.segment<3>(dof(i) + 3).norm()});
   }
-  const VecX speeds = factor_->solver.solve(pushes) / step_;
+  if (far > most) motion *= most / far;
+  return motion;
+}
+
+// How a joint closes by a motion of all bodies.
+Six JointSolver::closes_by(const WorkJoint& joint, const VecX& motion) const {
+  Six closing = Six::Zero();
+  if (dof(joint.a) >= 0) closing += motion_at(joint.arm_a) * motion.segment<6>(dof(joint.a));
+  if (dof(joint.b) >= 0) closing -= motion_at(joint.arm_b) * motion.segment<6>(dof(joint.b));
+  return closing;
+}
+
+// J, of the joined bodies: of such a motion (1/s), and of theirs.
+double JointSolver::energy_of(const VecX& motion) const {
+  double sum = 0.0;
+  for (const int i : island_.bodies)
+    if (dof(i) >= 0)
+      sum += kinetic(work_.bodies[at(i)], motion.segment<3>(dof(i)), motion.segment<3>(dof(i) + 3));
+  return sum;
+}
+
+double JointSolver::energy_of_joined() const {
+  double sum = 0.0;
+  for (const int i : island_.bodies) {
+    const WorkBody& b = work_.bodies[at(i)];
+    if (dof(i) >= 0) sum += kinetic(b, b.velocity, b.spin);
+  }
+  return sum;
+}
+
+// What contacts are in the way of is mended by a speed, which sweeps hold against them.
+void JointSolver::find_closing() {
+  std::vector<Six> offs(island_.joints.size());
+  for (std::size_t n = 0; n < island_.joints.size(); ++n) {
+    const WorkJoint& joint = work_.joints[at(island_.joints[n])];
+    const double share = is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
+    offs[n] << off_by_turning(joint) + share * joint.off, share * joint.off_turn;
+  }
+  VecX motion = find_motion(offs, kMostClosed);
+  const double closing_energy = energy_of(motion / step_), own_energy = energy_of_joined();
+  if (closing_energy > kMostGiven * own_energy) motion *= std::sqrt(kMostGiven * own_energy / closing_energy);
   for (const int k : island_.joints) {
     WorkJoint& joint = work_.joints[at(k)];
-    Six closing = Six::Zero();
-    if (dof(joint.a) >= 0) closing += motion_at(joint.arm_a) * speeds.segment<6>(dof(joint.a));
-    if (dof(joint.b) >= 0) closing -= motion_at(joint.arm_b) * speeds.segment<6>(dof(joint.b));
+    const Six closing = closes_by(joint, motion) / step_;
     joint.closing = closing.head<3>();
     joint.closing_turn = closing.tail<3>();
   }
@@ -233,6 +286,7 @@ void JointSolver::find_closing() {
 // Links that are pulled taut turn at other speeds by the joints' impulses than they came with.
 void JointSolver::aim() {
   if (is_empty()) return;
+  given_ = 0.0;
   find_pressed();
   find_closing();
   hold(true);
@@ -259,7 +313,16 @@ void JointSolver::give(const std::vector<Six>& wanted, Vec3 WorkJoint::*impulses
   }
 }
 
+// How a's end of the joint moves against b's, and turns.
+Six JointSolver::relative(const WorkJoint& joint) const {
+  const WorkBody &a = work_.bodies[at(joint.a)], &b = work_.bodies[at(joint.b)];
+  Six speeds;
+  speeds << a.velocity + a.spin.cross(joint.arm_a) - b.velocity - b.spin.cross(joint.arm_b), a.spin - b.spin;
+  return speeds;
+}
+
 void JointSolver::push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple) {
+  const Six before = relative(joint);
   const auto push_one = [&](WorkBody& b, const Vec3& arm, double sign) {
     if (b.inverse_mass == 0.0) return;
     const Vec3 velocity = b.locked.let_move(sign * b.inverse_mass * impulse);
@@ -270,6 +333,61 @@ void JointSolver::push(const WorkJoint& joint, const Vec3& impulse, const Vec3& 
   };
   push_one(body(joint.a), joint.arm_a, 1.0);
   push_one(body(joint.b), joint.arm_b, -1.0);
+  const Six mean = 0.5 * (before + relative(joint));
+  given_ += impulse.dot(mean.head<3>()) + couple.dot(mean.tail<3>());
+}
+
+// J, of all bodies of the island, against the start of the step.
+double JointSolver::energy() const {
+  double sum = 0.0;
+  for (const int i : island_.bodies) {
+    const WorkBody& b = work_.bodies[at(i)];
+    sum += kinetic(b, b.velocity, b.spin) - b.gravity.dot(b.way) / b.inverse_mass;
+  }
+  return sum;
+}
+
+void JointSolver::note_energy() {
+  if (is_empty()) return;
+  knows_energy_ = std::none_of(island_.bodies.begin(), island_.bodies.end(),
+                               [&](int i) { return !body(i).torque.isZero(0.0); });
+  for (const int k : island_.contacts)
+    knows_energy_ = knows_energy_ && !body(work_.contacts[at(k)].a).is_scripted &&
+                    !body(work_.contacts[at(k)].b).is_scripted;
+  for (const int k : island_.joints)
+    knows_energy_ =
+        knows_energy_ && !body(work_.joints[at(k)].a).is_scripted && !body(work_.joints[at(k)].b).is_scripted;
+  if (knows_energy_) energy_ = energy();
+}
+
+// Joints do no work. What they did all the same, where velocities could not follow what is pulled taut, their
+// friction takes.
+void JointSolver::settle() {
+  if (is_empty()) return;
+  double won = given_;
+  if (knows_energy_) won = std::max(won, energy() - energy_);
+  if (won <= 0.0) return;
+  VecX pushes = VecX::Zero(dof_count_);
+  std::vector<Vec3> couples(island_.joints.size(), Vec3::Zero());
+  double slope = 0.0;
+  for (std::size_t n = 0; n < couples.size(); ++n) {
+    const WorkJoint& joint = work_.joints[at(island_.joints[n])];
+    if (!joint.joint->is_pivot) continue;
+    const WorkBody &a = body(joint.a), &b = body(joint.b);
+    const double yields = a.inverse_inertia.trace() + b.inverse_inertia.trace();
+    if (!(yields > 0.0)) continue;
+    couples[n] = (b.spin - a.spin) / yields;
+    slope += couples[n].dot(b.spin - a.spin);
+    if (dof(joint.a) >= 0) pushes.segment<3>(dof(joint.a) + 3) += couples[n];
+    if (dof(joint.b) >= 0) pushes.segment<3>(dof(joint.b) + 3) -= couples[n];
+  }
+  const double curvature = pushes.dot(factor_->solver.solve(pushes));
+  if (!(curvature > 0.0)) return;
+  const double root = std::sqrt(std::max(0.0, slope * slope - 2.0 * curvature * won));
+  const double share = (slope - root) / curvature;
+  for (std::size_t n = 0; n < couples.size(); ++n)
+    push(work_.joints[at(island_.joints[n])], Vec3::Zero(), share * couples[n]);
+  hold(false);
 }
 
 void JointSolver::hold(bool closes) {
@@ -288,14 +406,17 @@ void JointSolver::hold(bool closes) {
 
 void JointSolver::lend() {
   if (is_empty()) return;
-  std::vector<Six> wanted(island_.joints.size());
+  std::vector<Six> offs(island_.joints.size());
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     WorkJoint& joint = work_.joints[at(island_.joints[n])];
     joint.lent = joint.lent_couple = Vec3::Zero();
-    const double share = is_pressed(joint) ? 0.0 : mended_share(joint, kMostMended) / step_;
-    wanted[n] << share * joint.off, share * joint.off_turn;
+    const double share = is_pressed(joint) ? 0.0 : mended_share(joint, kMostMended);
+    offs[n] << share * joint.off, share * joint.off_turn;
   }
-  give(wanted, &WorkJoint::lent, &WorkJoint::lent_couple);
+  const VecX motion = find_motion(offs, kMostLent);
+  for (std::size_t n = 0; n < island_.joints.size(); ++n)
+    offs[n] = closes_by(work_.joints[at(island_.joints[n])], motion) / step_;
+  give(offs, &WorkJoint::lent, &WorkJoint::lent_couple);
 }
 
 void JointSolver::take_back() {

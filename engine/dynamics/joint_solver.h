@@ -29,6 +29,10 @@ class JointSolver {
   /// placed behind it: where contacts are in the way, what is left of them would be energy.
   void lend();
   void take_back();
+  /// At the start of a substep.
+  void note_energy();
+  /// Takes what energy joints gave in this substep.
+  void settle();
   /// Adds what this substep gave to that of the step.
   void book();
 
@@ -39,6 +43,8 @@ class JointSolver {
   int dof(int i) const;
   void give(const std::vector<Eigen::Matrix<double, 6, 1>>& wanted, Vec3 WorkJoint::*impulses,
             Vec3 WorkJoint::*couples);
+  Eigen::Matrix<double, 6, 1> relative(const WorkJoint& joint) const;
+  double energy() const;
   void push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple);
   void add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn, VecX& pushes) const;
   void make_stiffnesses();
@@ -46,6 +52,10 @@ class JointSolver {
   void find_pressed();
   bool is_pressed(const WorkJoint& joint) const;
   double mended_share(const WorkJoint& joint, double most) const;
+  VecX find_motion(const std::vector<Eigen::Matrix<double, 6, 1>>& offs, double most) const;
+  Eigen::Matrix<double, 6, 1> closes_by(const WorkJoint& joint, const VecX& motion) const;
+  double energy_of(const VecX& motion) const;
+  double energy_of_joined() const;
   void find_closing();
   Vec3 off_by_turning(const WorkJoint& joint) const;
 
@@ -54,6 +64,9 @@ class JointSolver {
   MotionWork& work_;
   std::vector<int> first_dof_;  // per body of the world; -1: nothing moves it
   int dof_count_ = 0;
+  double given_ = 0.0;            // J, in this substep
+  double energy_ = 0.0;           // J, at its start
+  bool knows_energy_ = false;     // nothing from without does work
   std::vector<char> is_pressed_;  // per body of the world
   std::unique_ptr<Factor> factor_;
 };

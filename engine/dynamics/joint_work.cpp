@@ -91,6 +91,7 @@ void forget_joined_contacts(MotionWork& work) {
 core::DisjointSets join_bodies(const MotionWork& work) {
   core::DisjointSets joined(work.bodies.size());
   for (const WorkJoint& joint : work.joints) {
+    if (joint.joint->is_pivot) continue;
     if (work.bodies[at(joint.a)].inverse_mass > 0.0 && work.bodies[at(joint.b)].inverse_mass > 0.0)
       joined.unite(joint.a, joint.b);
   }

@@ -21,7 +21,7 @@ bool share_pivot(const MotionWork& work, int a, int b);
 /// from crossing like all others.
 void forget_joined_contacts(MotionWork& work);
 
-/// Bodies that move together, by their joints: what no impulse moves joins nobody.
+/// Bodies that move as one, by mortar: what no impulse moves joins nobody.
 core::DisjointSets join_bodies(const MotionWork& work);
 
 /// Appends what joints gave: four forces at the corners of a rectangle that has the area's moments, which
