@@ -184,6 +184,15 @@ TEST_CASE("surfaces placed exactly in each other part without a push, and none h
          s.add(kPlate.make(kWidth));
        },
        false},
+      {"a plate on a box's top, level but for rounding",
+       [](test::Scene& s) {
+         s.add(kBox.make(0.0));
+         geometry::TriangleMesh mesh = test::square_mesh(0.1, 3);
+         for (std::size_t k = 0; k < mesh.positions.size(); ++k)
+           mesh.positions[k].y() += kWidth + (k % 3 == 0 ? -2e-16 : 1e-16);
+         s.add(test::make_shell(mesh));
+       },
+       false},
       {"a plate under a box",
        [](test::Scene& s) {
          s.add(kBox.make(0.5));

@@ -181,6 +181,10 @@ const Broken kCorpus[] = {
     {"[[event]]\ndo = \"drop\"\nat = 1\n", "t.toml:1:1", "names no body", "body = \"name\""},
     {"[[event]]\nat = 1\ndo = \"drop\"\nbody = \"bal\"\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\n",
      "t.toml:4:8", "there is no body \"bal\"", "did you mean \"ball\"?"},
+    {"[[body]]\nname = \"ball\"\nkind = \"sphere\"\nrepeat = {count = 3, spacing = [1, 0, 0]}\n[[event]]\nat "
+     "= 1\n"
+     "do = \"push\"\nbody = \"ball[2]\"\nimpulse = [1, 0, 0]\n",
+     "t.toml:8:8", "\"ball[2]\" is a copy", "at_point"},
     {"[[event]]\nat = 1\ndo = \"projectle\"\n", "t.toml:3:6", "unknown do", "did you mean \"projectile\"?"},
     {"[[event]]\nat = 1\n", "t.toml:1:1", "does nothing", ""},
     {"[[event]]\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[1,0,0]\nspeed=1\n", "t.toml:1:1", "has no time",
