@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <variant>
 
@@ -42,6 +43,16 @@ Vec3 way_down(const scene::SceneDescription& scene, const Corners& corners) {
     if (way > 0.0) nearest = std::min(nearest, way);
   }
   return nearest < std::numeric_limits<double>::max() ? Vec3(nearest * gravity) : Vec3(Vec3::Zero());
+}
+
+// How far something with this velocity gets to the side while it falls that way.
+Vec3 way_aside(const Vec3& gravity, const Vec3& velocity, const Vec3& way) {
+  const double g = gravity.norm();
+  if (way.isZero(0.0)) return way;
+  const Vec3 down = gravity / g;
+  const double speed = velocity.dot(down);
+  const double time = (std::sqrt(speed * speed + 2.0 * g * way.norm()) - speed) / g;
+  return time * (velocity - speed * down);
 }
 
 // What fell, on the floor, with room for pieces around it.
@@ -160,8 +171,10 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
                 subject.corners);
         }
         if (body.motion != body::Motion::dynamic || is_hung[i] != 0) continue;
-        if (const Vec3 way = way_down(scene, corners); way != Vec3::Zero())
-          add(spread_out(corners, way), subject.corners);
+        const Vec3 way = way_down(scene, corners);
+        if (way.isZero(0.0)) continue;
+        const Vec3 aside = way_aside(scene.world.gravity, body.velocity, way);
+        for (const Vec3& corner : spread_out(corners, way)) subject.corners.push_back(corner + aside);
       }
     }
   }

@@ -110,7 +110,10 @@ TEST_CASE("what a camera without a place must see reaches down to where bodies w
   const std::string ball =
       "[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2, 0]\n";
   CHECK(centre(floor + ball) == Approx(0.5 * (2.1 + 0.5)));
-  CHECK(centre(ball) == Approx(2.0));  // nothing below
+  CHECK(centre(ball) == Approx(2.0));                    // nothing below
+  const double far = 3.0 * std::sqrt(2.0 * 1.4 / 9.81);  // of one that leaves at 3 m/s
+  const double middle = look_at(floor + ball + "velocity = [3, 0, 0]\n").subject.centre.x();
+  CHECK(middle == Approx(0.5 * (far + 0.2 - 0.1)));
   CHECK(centre(floor + ball + "motion = \"static\"\n") == Approx(2.0));
   const std::string hook =
       "[[body]]\nname = \"hook\"\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2.2, 0]\n"
