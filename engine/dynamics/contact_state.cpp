@@ -34,7 +34,7 @@ void add_to_hash(const ContactState& state, core::Hash& hash) {
         .add(body.rest_pose.rotation);
   }
   add_to_hash(state.joints, hash);
-  if (!state.joints.empty()) hash.add(state.swing);
+  if (state.swing > 0.0) hash.add(state.swing);
   for (const PairState& pair : state.pairs) {
     hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
     hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));

@@ -79,6 +79,7 @@ void JointSolver::begin() {
     joint.total = joint.total_couple = joint.total_world = joint.total_couple_world = Vec3::Zero();
     joint.given = joint.given_couple = Vec3::Zero();
     joint.most = 0.0;
+    has_pivots_ = has_pivots_ || joint.joint->is_pivot;
   }
   if (factor_) return;
   factor_ = std::make_unique<Factor>();
@@ -264,20 +265,33 @@ double JointSolver::energy_of_joined() const {
   return sum;
 }
 
-// What contacts are in the way of is mended by a speed, which sweeps hold against them.
+// What contacts are in the way of is mended by a speed, which sweeps hold against them; and mortar, all of it
+// by one share: it does not turn.
 void JointSolver::find_closing() {
+  double of_mortar = kMended;
+  for (const int k : island_.joints) {
+    const WorkJoint& joint = work_.joints[at(k)];
+    if (!joint.joint->is_pivot) of_mortar = std::min(of_mortar, mended_share(joint, kMostMended));
+  }
   std::vector<Six> offs(island_.joints.size());
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     const WorkJoint& joint = work_.joints[at(island_.joints[n])];
-    const double share = is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
-    offs[n] << off_by_turning(joint) + share * joint.off, share * joint.off_turn;
+    const bool is_pivot = joint.joint->is_pivot;
+    const double of_pivot = is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
+    const double share = is_pivot ? of_pivot : has_pivots_ ? of_mortar : 1.0;
+    offs[n] << share * joint.off, share * joint.off_turn;
+    if (is_pivot) offs[n].head<3>() += off_by_turning(joint);
   }
-  VecX motion = find_motion(offs, kMostClosed);
-  const double closing_energy = energy_of(motion / step_), own_energy = energy_of_joined();
-  if (closing_energy > kMostGiven * own_energy) motion *= std::sqrt(kMostGiven * own_energy / closing_energy);
+  VecX speeds =
+      (has_pivots_ ? 1.0 : of_mortar) / step_ * find_motion(offs, has_pivots_ ? kMostClosed : 1e300);
+  if (has_pivots_) {
+    const double closing_energy = energy_of(speeds), own_energy = energy_of_joined();
+    if (closing_energy > kMostGiven * own_energy)
+      speeds *= std::sqrt(kMostGiven * own_energy / closing_energy);
+  }
   for (const int k : island_.joints) {
     WorkJoint& joint = work_.joints[at(k)];
-    const Six closing = closes_by(joint, motion) / step_;
+    const Six closing = closes_by(joint, speeds);
     joint.closing = closing.head<3>();
     joint.closing_turn = closing.tail<3>();
   }
@@ -289,6 +303,7 @@ void JointSolver::aim() {
   given_ = 0.0;
   find_pressed();
   find_closing();
+  if (!has_pivots_) return;
   hold(true);
   find_closing();
 }
@@ -348,7 +363,7 @@ double JointSolver::energy() const {
 }
 
 void JointSolver::note_energy() {
-  if (is_empty()) return;
+  if (!has_pivots_) return;
   knows_energy_ = std::none_of(island_.bodies.begin(), island_.bodies.end(),
                                [&](int i) { return !body(i).torque.isZero(0.0); });
   for (const int k : island_.contacts)
@@ -363,7 +378,7 @@ void JointSolver::note_energy() {
 // Joints do no work. What they did all the same, where velocities could not follow what is pulled taut, their
 // friction takes.
 void JointSolver::settle() {
-  if (is_empty()) return;
+  if (!has_pivots_) return;
   double won = given_;
   if (knows_energy_) won = std::max(won, energy() - energy_);
   if (won <= 0.0) return;
@@ -405,12 +420,13 @@ void JointSolver::hold(bool closes) {
 }
 
 void JointSolver::lend() {
-  if (is_empty()) return;
+  if (!has_pivots_) return;
   std::vector<Six> offs(island_.joints.size());
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     WorkJoint& joint = work_.joints[at(island_.joints[n])];
     joint.lent = joint.lent_couple = Vec3::Zero();
-    const double share = is_pressed(joint) ? 0.0 : mended_share(joint, kMostMended);
+    const bool is_free = joint.joint->is_pivot && !is_pressed(joint);
+    const double share = is_free ? mended_share(joint, kMostMended) : 0.0;
     offs[n] << share * joint.off, share * joint.off_turn;
   }
   const VecX motion = find_motion(offs, kMostLent);
@@ -420,6 +436,7 @@ void JointSolver::lend() {
 }
 
 void JointSolver::take_back() {
+  if (!has_pivots_) return;
   for (const int k : island_.joints) {
     const WorkJoint& joint = work_.joints[at(k)];
     push(joint, -joint.lent, -joint.lent_couple);

@@ -64,6 +64,7 @@ class JointSolver {
   MotionWork& work_;
   std::vector<int> first_dof_;  // per body of the world; -1: nothing moves it
   int dof_count_ = 0;
+  bool has_pivots_ = false;
   double given_ = 0.0;            // J, in this substep
   double energy_ = 0.0;           // J, at its start
   bool knows_energy_ = false;     // nothing from without does work
