@@ -81,6 +81,7 @@ void JointSolver::begin() {
     joint.most = 0.0;
     has_pivots_ = has_pivots_ || joint.joint->is_pivot;
   }
+  if (has_pivots_) find_what_is_known();
   if (factor_) return;
   factor_ = std::make_unique<Factor>();
   first_dof_.assign(work_.bodies.size(), -1);
@@ -92,6 +93,20 @@ void JointSolver::begin() {
     }
   }
   make_stiffnesses();
+}
+
+// Nothing from without does work on it, then it must not have more energy than before.
+void JointSolver::find_what_is_known() {
+  is_pressed_.assign(work_.bodies.size(), 0);
+  const auto is_scripted = [&](const auto& pair) {
+    return body(pair.a).is_scripted || body(pair.b).is_scripted;
+  };
+  knows_energy_ = std::none_of(island_.bodies.begin(), island_.bodies.end(),
+                               [&](int i) { return !body(i).torque.isZero(0.0); }) &&
+                  std::none_of(island_.contacts.begin(), island_.contacts.end(),
+                               [&](int k) { return is_scripted(work_.contacts[at(k)]); }) &&
+                  std::none_of(island_.joints.begin(), island_.joints.end(),
+                               [&](int k) { return is_scripted(work_.joints[at(k)]); });
 }
 
 // One stiffness for each square metre, whatever the joint: that of the one that needs it most.
@@ -200,7 +215,10 @@ Vec3 JointSolver::off_by_turning(const WorkJoint& joint) const {
 
 // Whose contacts bear something, or did in the substep before.
 void JointSolver::find_pressed() {
-  is_pressed_.assign(work_.bodies.size(), 0);
+  for (const int k : island_.contacts) {
+    const SolverContact& c = work_.contacts[at(k)];
+    is_pressed_[at(c.a)] = is_pressed_[at(c.b)] = 0;
+  }
   for (const int k : island_.contacts) {
     const SolverContact& c = work_.contacts[at(k)];
     if (c.slack <= 0.0 || c.impulse[0] > 0.0 || c.warm[0] > 0.0)
@@ -247,12 +265,12 @@ Six JointSolver::closes_by(const WorkJoint& joint, const VecX& motion) const {
   return closing;
 }
 
-// J, of the joined bodies: of such a motion (1/s), and of theirs.
-double JointSolver::energy_of(const VecX& motion) const {
+// J, of the joined bodies: at such speeds, and at theirs.
+double JointSolver::energy_of(const VecX& speeds) const {
   double sum = 0.0;
   for (const int i : island_.bodies)
     if (dof(i) >= 0)
-      sum += kinetic(work_.bodies[at(i)], motion.segment<3>(dof(i)), motion.segment<3>(dof(i) + 3));
+      sum += kinetic(work_.bodies[at(i)], speeds.segment<3>(dof(i)), speeds.segment<3>(dof(i) + 3));
   return sum;
 }
 
@@ -277,7 +295,7 @@ void JointSolver::find_closing() {
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     const WorkJoint& joint = work_.joints[at(island_.joints[n])];
     const bool is_pivot = joint.joint->is_pivot;
-    const double of_pivot = is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
+    const double of_pivot = is_pivot && is_pressed(joint) ? mended_share(joint, kMostClosing * step_) : 0.0;
     const double share = is_pivot ? of_pivot : has_pivots_ ? of_mortar : 1.0;
     offs[n] << share * joint.off, share * joint.off_turn;
     if (is_pivot) offs[n].head<3>() += off_by_turning(joint);
@@ -300,10 +318,10 @@ void JointSolver::find_closing() {
 // Links that are pulled taut turn at other speeds by the joints' impulses than they came with.
 void JointSolver::aim() {
   if (is_empty()) return;
-  given_ = 0.0;
-  find_pressed();
+  if (has_pivots_) find_pressed();
   find_closing();
   if (!has_pivots_) return;
+  given_ = 0.0;
   hold(true);
   find_closing();
 }
@@ -328,16 +346,16 @@ void JointSolver::give(const std::vector<Six>& wanted, Vec3 WorkJoint::*impulses
   }
 }
 
-// How a's end of the joint moves against b's, and turns.
+// How b's end of the joint moves against a's, and turns.
 Six JointSolver::relative(const WorkJoint& joint) const {
   const WorkBody &a = work_.bodies[at(joint.a)], &b = work_.bodies[at(joint.b)];
   Six speeds;
-  speeds << a.velocity + a.spin.cross(joint.arm_a) - b.velocity - b.spin.cross(joint.arm_b), a.spin - b.spin;
+  speeds << b.velocity + b.spin.cross(joint.arm_b) - a.velocity - a.spin.cross(joint.arm_a), b.spin - a.spin;
   return speeds;
 }
 
 void JointSolver::push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple) {
-  const Six before = relative(joint);
+  const Six before = has_pivots_ ? relative(joint) : Six(Six::Zero());
   const auto push_one = [&](WorkBody& b, const Vec3& arm, double sign) {
     if (b.inverse_mass == 0.0) return;
     const Vec3 velocity = b.locked.let_move(sign * b.inverse_mass * impulse);
@@ -348,8 +366,9 @@ void JointSolver::push(const WorkJoint& joint, const Vec3& impulse, const Vec3& 
   };
   push_one(body(joint.a), joint.arm_a, 1.0);
   push_one(body(joint.b), joint.arm_b, -1.0);
+  if (!has_pivots_) return;
   const Six mean = 0.5 * (before + relative(joint));
-  given_ += impulse.dot(mean.head<3>()) + couple.dot(mean.tail<3>());
+  given_ -= impulse.dot(mean.head<3>()) + couple.dot(mean.tail<3>());
 }
 
 // J, of all bodies of the island, against the start of the step.
@@ -363,15 +382,6 @@ double JointSolver::energy() const {
 }
 
 void JointSolver::note_energy() {
-  if (!has_pivots_) return;
-  knows_energy_ = std::none_of(island_.bodies.begin(), island_.bodies.end(),
-                               [&](int i) { return !body(i).torque.isZero(0.0); });
-  for (const int k : island_.contacts)
-    knows_energy_ = knows_energy_ && !body(work_.contacts[at(k)].a).is_scripted &&
-                    !body(work_.contacts[at(k)].b).is_scripted;
-  for (const int k : island_.joints)
-    knows_energy_ =
-        knows_energy_ && !body(work_.joints[at(k)].a).is_scripted && !body(work_.joints[at(k)].b).is_scripted;
   if (knows_energy_) energy_ = energy();
 }
 
@@ -410,9 +420,7 @@ void JointSolver::hold(bool closes) {
   std::vector<Six> wanted(island_.joints.size());
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     const WorkJoint& joint = work_.joints[at(island_.joints[n])];
-    const WorkBody &a = body(joint.a), &b = body(joint.b);
-    wanted[n] << b.velocity + b.spin.cross(joint.arm_b) - a.velocity - a.spin.cross(joint.arm_a),
-        b.spin - a.spin;
+    wanted[n] = relative(joint);
     if (closes) wanted[n].head<3>() += joint.closing;
     if (closes) wanted[n].tail<3>() += joint.closing_turn;
   }

@@ -47,6 +47,7 @@ class JointSolver {
   double energy() const;
   void push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple);
   void add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn, VecX& pushes) const;
+  void find_what_is_known();
   void make_stiffnesses();
   void assemble();
   void find_pressed();
@@ -54,7 +55,7 @@ class JointSolver {
   double mended_share(const WorkJoint& joint, double most) const;
   VecX find_motion(const std::vector<Eigen::Matrix<double, 6, 1>>& offs, double most) const;
   Eigen::Matrix<double, 6, 1> closes_by(const WorkJoint& joint, const VecX& motion) const;
-  double energy_of(const VecX& motion) const;
+  double energy_of(const VecX& speeds) const;
   double energy_of_joined() const;
   void find_closing();
   Vec3 off_by_turning(const WorkJoint& joint) const;

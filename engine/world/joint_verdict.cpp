@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/elementary.h"
@@ -16,6 +17,23 @@ using core::at;
 int number_of(const std::vector<body::Body>& bodies, body::BodyId id) {
   const body::Body* body = body::find_body(bodies, id);
   return body != nullptr && body->is_dynamic() ? static_cast<int>(body - bodies.data()) : -1;
+}
+
+// Bodies that move together, by their numbers.
+core::DisjointSets join_bodies(const std::vector<dynamics::Joint>& joints,
+                               const std::vector<body::Body>& bodies) {
+  core::DisjointSets joined(bodies.size());
+  for (const dynamics::Joint& joint : joints) {
+    const int a = number_of(bodies, joint.body_a), b = number_of(bodies, joint.body_b);
+    if (a >= 0 && b >= 0) joined.unite(a, b);
+  }
+  return joined;
+}
+
+// Of the one of its two bodies that moves; -1: none does.
+int number_of_mover(const std::vector<body::Body>& bodies, const dynamics::Joint& joint) {
+  const int a = number_of(bodies, joint.body_a);
+  return a >= 0 ? a : number_of(bodies, joint.body_b);
 }
 
 // The hardest collision that bodies which hold together had in a part of a step.
@@ -50,12 +68,7 @@ double duration_of(const body::LoggedImpulse& hit, const std::vector<body::Body>
 class Hits {
  public:
   Hits(const std::vector<dynamics::Joint>& joints, const std::vector<body::Body>& bodies)
-      : bodies_(bodies), joined_(bodies.size()), hits_(bodies.size()) {
-    for (const dynamics::Joint& joint : joints) {
-      const int a = number_of(bodies, joint.body_a), b = number_of(bodies, joint.body_b);
-      if (a >= 0 && b >= 0) joined_.unite(a, b);
-    }
-  }
+      : bodies_(bodies), joined_(join_bodies(joints, bodies)), hits_(bodies.size()) {}
 
   void add(const body::LoggedImpulse& entry, double duration, double time) {
     for (const body::BodyId id : {entry.body_a, entry.body_b}) {
@@ -71,7 +84,7 @@ class Hits {
   }
 
   const Hit& of(const dynamics::Joint& joint) {
-    const int a = number_of(bodies_, joint.body_a), i = a >= 0 ? a : number_of(bodies_, joint.body_b);
+    const int i = number_of_mover(bodies_, joint);
     return i >= 0 ? hits_[at(joined_.find(i))] : none_;
   }
 
@@ -172,6 +185,27 @@ std::vector<JointVerdict> judge_joints(const std::vector<dynamics::Joint>& joint
     verdicts.back().is_struck = is_struck;
   }
   return verdicts;
+}
+
+std::vector<int> find_opening(std::span<const JointVerdict> verdicts, double least,
+                              const std::vector<dynamics::Joint>& joints,
+                              const std::vector<body::Body>& bodies) {
+  core::DisjointSets chains = join_bodies(joints, bodies);
+  std::vector<int> opening;
+  std::map<int, const JointVerdict*> weakest;  // of a chain
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const JointVerdict& verdict = verdicts[k];
+    if (verdict.ratio < least) continue;
+    if (!joints[k].is_pivot) {
+      opening.push_back(verdict.number);
+      continue;
+    }
+    const JointVerdict*& known = weakest[chains.find(number_of_mover(bodies, joints[k]))];
+    if (known == nullptr || verdict.ratio > known->ratio) known = &verdict;
+  }
+  for (const auto& [chain, verdict] : weakest) opening.push_back(verdict->number);
+  std::sort(opening.begin(), opening.end());
+  return opening;
 }
 
 }  // namespace shatterbox::world

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 
 #include "engine/body/polyhedron.h"
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_list.h"
-#include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
 #include "engine/world/acts.h"
 #include "engine/world/state.h"
@@ -69,37 +67,6 @@ void wake(std::vector<body::Body>& bodies, const dynamics::Joint& joint) {
     if (body == nullptr || !body->is_dynamic()) continue;
     body->wake();
   }
-}
-
-// Who gives way, ascending: of each chain one link, for the others are eased by that.
-std::vector<int> find_opening(std::span<const JointVerdict> verdicts, double least,
-                              const std::vector<dynamics::Joint>& joints,
-                              const std::vector<body::Body>& bodies) {
-  const auto number_of = [&bodies](body::BodyId id) {
-    const body::Body* body = body::find_body(bodies, id);
-    return body != nullptr && body->is_dynamic() ? static_cast<int>(body - bodies.data()) : -1;
-  };
-  core::DisjointSets chains(bodies.size());
-  for (const dynamics::Joint& joint : joints) {
-    const int a = number_of(joint.body_a), b = number_of(joint.body_b);
-    if (a >= 0 && b >= 0) chains.unite(a, b);
-  }
-  std::vector<int> opening;
-  std::map<int, const JointVerdict*> weakest;  // of a chain
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    const JointVerdict& verdict = verdicts[k];
-    if (verdict.ratio < least) continue;
-    if (!joints[k].is_pivot) {
-      opening.push_back(verdict.number);
-      continue;
-    }
-    const int a = number_of(joints[k].body_a);
-    const JointVerdict*& known = weakest[chains.find(a >= 0 ? a : number_of(joints[k].body_b))];
-    if (known == nullptr || verdict.ratio > known->ratio) known = &verdict;
-  }
-  for (const auto& [chain, verdict] : weakest) opening.push_back(verdict->number);
-  std::sort(opening.begin(), opening.end());
-  return opening;
 }
 
 std::string words_of(const JointVerdict& verdict, bool opened) {

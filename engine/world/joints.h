@@ -74,6 +74,12 @@ std::vector<JointVerdict> judge_joints(const std::vector<dynamics::Joint>& joint
                                        const dynamics::ContactSettings& contact, const PartTime& part,
                                        JointMemories& memories);
 
+/// Numbers of those overloaded at least so much that give way, ascending: of each chain of points one, for
+/// the others are eased by that. `verdicts` are of all `joints`, in their order.
+std::vector<int> find_opening(std::span<const JointVerdict> verdicts, double least,
+                              const std::vector<dynamics::Joint>& joints,
+                              const std::vector<body::Body>& bodies);
+
 /// The area over which two bodies face each other no further apart than `gap` (m), in the world; none of a
 /// sphere.
 geometry::FacingArea find_mortar_area(const body::Body& a, const body::Body& b, double gap);

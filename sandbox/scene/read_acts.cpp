@@ -95,14 +95,13 @@ int read_named_body(TableReader& reader, const std::string& key, const SceneDesc
   const int found = find_body(scene, *name);
   if (found >= 0) return found;
   const std::string whole = name->substr(0, name->find('['));
-  const bool is_copy = whole.size() < name->size() && find_body(scene, whole) >= 0;
-  reader.add_problem_at(
-      key,
-      is_copy ? fmt::format("\"{}\" is a copy, and events know bodies with all their copies", *name)
-              : fmt::format("there is no body \"{}\"", *name),
-      is_copy ? fmt::format("write \"{}\", aim at one place with at_point, or give it a [[body]] of its own",
-                            whole)
-              : hint_for_name(*name, body_names(scene), "bodies"));
+  if (whole != *name && find_body(scene, whole) >= 0)
+    reader.add_problem_at(
+        key, fmt::format("\"{}\" is a copy, and events know bodies with all their copies", *name),
+        fmt::format("write \"{}\", aim at one place with at_point, or give it a [[body]] of its own", whole));
+  else
+    reader.add_problem_at(key, fmt::format("there is no body \"{}\"", *name),
+                          hint_for_name(*name, body_names(scene), "bodies"));
   return found;
 }
 
