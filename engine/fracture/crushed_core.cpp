@@ -1,6 +1,8 @@
 #include "engine/fracture/crushed_core.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 
 #include "engine/core/elementary.h"
 #include "engine/core/hash.h"
@@ -18,38 +20,41 @@ constexpr double kDartsPerCell = 8.0;    // for the smallest cells
 constexpr double kMargin = 2.0;     // seeds beyond the core that bound its cells, in cell sizes at its rim
 constexpr double kSoftness = 0.25;  // of an element's overload about one, over which it counts in part
 
+constexpr double kNoSize = 1e300;
+
 struct Seed {
-  Vec3 position;
-  double size;  // m, of its cell
+  Vec3 position = Vec3::Zero();
+  double size = kNoSize;  // m, of its cell
+  bool is_open = false;   // its cell is broken out whole
+  int piece = 0;          // that it is in
 };
 
-double size_at(const CoreSetup& setup, double distance) {
-  return setup.cell_size * std::max(1.0, distance / setup.patch_radius);
+double size_at(const CrushedCore& core, double distance) {
+  return core.cell_size * std::max(1.0, distance / core.patch_radius);
 }
 
 /// How far from the centre seeds are needed, m.
-double reach_of(const CoreSetup& setup) {
-  return setup.radius + kMargin * size_at(setup, setup.radius);
+double reach_of(const CrushedCore& core) {
+  return core.radius + kMargin * size_at(core, core.radius);
 }
 
-/// Elements with material that hang together with the centre inside a ball about it, ascending.
-std::vector<int> elements_in_reach(const ShellCutter& cutter, const CoreSetup& setup) {
-  const geometry::ShellElements& elements = cutter.elements();
+/// Elements that hang together with the centre inside a ball about it, ascending.
+std::vector<int> elements_in_reach(const geometry::ShellElements& elements, const CrushedCore& core) {
   const auto& triangles = elements.mesh.triangles;
-  const double reach = reach_of(setup);
+  const double reach = reach_of(core);
   const auto is_near = [&](int element) {
     const geometry::Triangle& t = triangles[at(element)];
     const auto& x = elements.mesh.positions;
     const Vec3 middle = (x[at(t[0])] + x[at(t[1])] + x[at(t[2])]) / 3.0;
     double radius = 0.0;
     for (const int v : t) radius = std::max(radius, (x[at(v)] - middle).norm());
-    return (middle - setup.centre).norm() < reach + radius;
+    return (middle - core.centre).norm() < reach + radius;
   };
   int first = -1;
   double nearest = 1e300;
   for (Size t = 0; t < triangles.size(); ++t) {
     const Vec3 middle = position_in_element(elements, static_cast<int>(t), Vec2(1.0 / 3.0, 1.0 / 3.0));
-    const double distance = (middle - setup.centre).squaredNorm();
+    const double distance = (middle - core.centre).squaredNorm();
     if (distance < nearest) {
       nearest = distance;
       first = static_cast<int>(t);
@@ -72,42 +77,104 @@ std::vector<int> elements_in_reach(const ShellCutter& cutter, const CoreSetup& s
   return found;
 }
 
-std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>& elements,
+std::vector<int> elements_in_reach(const geometry::ShellElements& elements,
+                                   const std::vector<CrushedCore>& cores) {
+  std::vector<int> found;
+  for (const CrushedCore& core : cores) {
+    const std::vector<int> more = elements_in_reach(elements, core);
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+/// The seed that belongs at a place: its cell is as small as the nearest hits ask for. None where nobody
+/// asks.
+std::optional<Seed> seed_at(const std::vector<CrushedCore>& cores, const Vec3& x) {
+  Seed seed;
+  seed.position = x;
+  bool is_in_reach = false;
+  for (const CrushedCore& core : cores) {
+    const double distance = (x - core.centre).norm();
+    seed.size = std::min(seed.size, size_at(core, distance));
+    is_in_reach = is_in_reach || distance <= reach_of(core);
+    seed.is_open = seed.is_open || distance < core.radius;
+  }
+  return is_in_reach ? std::optional(seed) : std::nullopt;
+}
+
+std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>& in_reach,
                               const CoreSetup& setup) {
+  const geometry::ShellElements& elements = cutter.elements();
   geometry::ShellElements part;
-  part.mesh.positions = cutter.elements().mesh.positions;
-  for (const int element : elements)
-    part.mesh.triangles.push_back(cutter.elements().mesh.triangles[at(element)]);
-  std::vector<SurfacePoint> darts =
-      scatter_on_surface(part, kDartsPerCell / (setup.cell_size * setup.cell_size), setup.seed);
+  part.mesh.positions = elements.mesh.positions;
+  for (const int element : in_reach) part.mesh.triangles.push_back(elements.mesh.triangles[at(element)]);
+  double finest = kNoSize;
+  for (const CrushedCore& core : setup.cores) finest = std::min(finest, core.cell_size);
+  std::vector<SurfacePoint> darts = scatter_on_surface(part, kDartsPerCell / (finest * finest), setup.seed);
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });
-  const double reach = reach_of(setup);
   std::vector<Seed> seeds;
   for (const SurfacePoint& dart : darts) {
     core::stop_if_asked();
-    const Vec3 x = position_in_element(part, dart.element, dart.barycentric);
-    const double distance = (x - setup.centre).norm();
-    if (distance > reach) continue;
-    const double size = size_at(setup, distance);
-    const double least = kLeastDistance * size;
+    std::optional<Seed> seed =
+        seed_at(setup.cores, position_in_element(part, dart.element, dart.barycentric));
+    const int cell = cutter.find_cell(in_reach[at(dart.element)], dart.barycentric);
+    if (!seed || cell < 0) continue;
+    seed->piece = setup.pieces[at(cutter.cell(cell).origin)];
+    const double least = kLeastDistance * seed->size;
     const bool is_free = std::none_of(seeds.begin(), seeds.end(), [&](const Seed& other) {
-      return (other.position - x).squaredNorm() < least * least;
+      return other.piece == seed->piece && (other.position - seed->position).squaredNorm() < least * least;
     });
-    if (is_free) seeds.push_back({x, size});
+    if (is_free) seeds.push_back(*seed);
   }
   return seeds;
 }
 
+bool is_core(const CrushedCore& core) {
+  return core.radius > 0.0 && core.cell_size > 0.0 && core.patch_radius > 0.0;
+}
+
+bool share_one(const std::vector<int>& a, const std::vector<int>& b) {
+  return std::any_of(a.begin(), a.end(), [&](int x) { return std::binary_search(b.begin(), b.end(), x); });
+}
+
 }  // namespace
 
-CellCracks crush_core(ShellCutter& cutter, const ElementPlanes& planes, const CoreSetup& setup) {
-  if (!(setup.radius > 0.0) || !(setup.cell_size > 0.0) || !(setup.patch_radius > 0.0)) return {};
+std::vector<std::vector<int>> group_cores(const geometry::ShellElements& elements,
+                                          const std::vector<CrushedCore>& cores) {
+  std::vector<std::vector<int>> groups, in_reach;
+  for (Size i = 0; i < cores.size(); ++i) {
+    // With every group that it touches it becomes one, in the place of the first of them.
+    std::vector<int> group{static_cast<int>(i)}, reached = elements_in_reach(elements, cores[i]);
+    Size place = groups.size();
+    for (Size g = groups.size(); g-- > 0;) {
+      if (!share_one(in_reach[g], reached)) continue;
+      group.insert(group.end(), groups[g].begin(), groups[g].end());
+      std::vector<int> both;
+      std::set_union(reached.begin(), reached.end(), in_reach[g].begin(), in_reach[g].end(),
+                     std::back_inserter(both));
+      reached = std::move(both);
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(g));
+      in_reach.erase(in_reach.begin() + static_cast<std::ptrdiff_t>(g));
+      place = g;
+    }
+    std::sort(group.begin(), group.end());
+    groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(place), std::move(group));
+    in_reach.insert(in_reach.begin() + static_cast<std::ptrdiff_t>(place), std::move(reached));
+  }
+  return groups;
+}
+
+CellCracks crush_cores(ShellCutter& cutter, const ElementPlanes& planes, const CoreSetup& setup) {
+  if (setup.cores.empty() || !std::all_of(setup.cores.begin(), setup.cores.end(), is_core)) return {};
   CellSetup cells;
-  cells.elements = elements_in_reach(cutter, setup);
+  cells.elements = elements_in_reach(cutter.elements(), setup.cores);
   for (const Seed& seed : throw_darts(cutter, cells.elements, setup))
-    cells.seeds.push_back({seed.position, (seed.position - setup.centre).norm() < setup.radius});
+    cells.seeds.push_back({seed.position, seed.is_open, seed.piece});
+  cells.pieces = setup.pieces;
   cells.most_length = setup.most_length;
   cells.crack = setup.crack;
   cells.generation = setup.generation;

@@ -45,10 +45,14 @@ class CellMaker {
     for (const int element : setup_.elements) {
       core::stop_if_asked();
       if (!(planes_.of(element).scale > 0.0) || cutter_.cells_of(element).empty()) continue;
-      const std::vector<Energy> energies = energies_of(element);
-      const auto is_inside = [this](const Energy& e) { return seeds_[at(e.seed)].is_open; };
-      if (std::none_of(energies.begin(), energies.end(), is_inside)) continue;
+      std::map<int, std::vector<Energy>> by_piece;
       for (const int cell : cutter_.cells_of(element)) {
+        const int piece = piece_of(cell);
+        const auto known = by_piece.find(piece);
+        const std::vector<Energy>& energies =
+            known != by_piece.end() ? known->second : by_piece[piece] = energies_of(element, piece);
+        const auto is_inside = [this](const Energy& e) { return seeds_[at(e.seed)].is_open; };
+        if (std::none_of(energies.begin(), energies.end(), is_inside)) continue;
         auto parts = divide(cell, energies, cracks, is_used);
         if (parts.size() > 1) cuts.emplace_back(cell, std::move(parts));
       }
@@ -64,26 +68,31 @@ class CellMaker {
   }
 
  private:
-  /// What a vertex's nearest seed is lowered by so that no facet comes too near. Kept: all elements about the
-  /// vertex must see the same numbers.
+  /// What a vertex's nearest seed is lowered by so that no facet comes too near. Kept: all elements of a
+  /// piece about the vertex must see the same numbers.
   struct Lead {
     int seed = -1;
     double value = 0.0;
   };
 
+  int piece_of(int cell) const {
+    return setup_.pieces.empty() ? 0 : setup_.pieces[at(cutter_.cell(cell).origin)];
+  }
+
   double squared_distance(int vertex, int seed) const {
     return (cutter_.elements().mesh.positions[at(vertex)] - seeds_[at(seed)].position).squaredNorm();
   }
 
-  /// All seeds within reach of any of the points, and some more, each once.
+  /// All seeds of a piece within reach of any of the points, and some more, each once.
   template <class Points>
-  std::vector<int> seeds_near(const Points& points) const {
+  std::vector<int> seeds_near(const Points& points, int piece) const {
     std::set<PointCubes::Cube> middles;
     for (const Vec3& x : points) middles.insert(cubes_.cube_of(x));
     std::vector<int> found;
     for (const PointCubes::Cube& middle : middles)
       cubes_.visit_about(middle, [&](const std::vector<int>& numbers) {
-        found.insert(found.end(), numbers.begin(), numbers.end());
+        for (const int n : numbers)
+          if (seeds_[at(n)].piece == piece) found.push_back(n);
         return true;
       });
     std::sort(found.begin(), found.end());
@@ -91,12 +100,12 @@ class CellMaker {
     return found;
   }
 
-  const Lead& lead_at(int vertex) {
-    const auto known = leads_.find(vertex);
+  const Lead& lead_at(int vertex, int piece) {
+    const auto known = leads_.find({vertex, piece});
     if (known != leads_.end()) return known->second;
-    Lead& lead = leads_[vertex];
+    Lead& lead = leads_[{vertex, piece}];
     const std::vector<int> near =
-        seeds_near(std::array<Vec3, 1>{cutter_.elements().mesh.positions[at(vertex)]});
+        seeds_near(std::array<Vec3, 1>{cutter_.elements().mesh.positions[at(vertex)]}, piece);
     for (const int seed : near)
       if (lead.seed < 0 || squared_distance(vertex, seed) < squared_distance(vertex, lead.seed))
         lead.seed = seed;
@@ -114,7 +123,7 @@ class CellMaker {
 
   /// Those within reach of some point of an element: of points on it nowhere further apart than half the
   /// reach.
-  std::vector<int> seeds_about(const geometry::Triangle& triangle) const {
+  std::vector<int> seeds_about(const geometry::Triangle& triangle, int piece) const {
     const auto& x = cutter_.elements().mesh.positions;
     double longest = 0.0;
     for (Size i = 0; i < 3; ++i)
@@ -127,16 +136,16 @@ class CellMaker {
         points.push_back((1.0 - u - v) * x[at(triangle[0])] + u * x[at(triangle[1])] +
                          v * x[at(triangle[2])]);
       }
-    return seeds_near(points);
+    return seeds_near(points, piece);
   }
 
   /// Seeds that may own a part of an element, nearest to its middle first: those kill the others early.
-  std::vector<Energy> energies_of(int element) {
+  std::vector<Energy> energies_of(int element, int piece) {
     const geometry::Triangle& triangle = cutter_.elements().mesh.triangles[at(element)];
     std::array<const Lead*, 3> leads{};  // what a map holds stays where it is
-    for (Size i = 0; i < 3; ++i) leads[i] = &lead_at(triangle[i]);
+    for (Size i = 0; i < 3; ++i) leads[i] = &lead_at(triangle[i], piece);
     std::vector<Energy> energies;
-    for (const int seed : seeds_about(triangle)) {
+    for (const int seed : seeds_about(triangle, piece)) {
       Energy energy{seed, {}};
       for (Size i = 0; i < 3; ++i)
         energy.corners[i] =
@@ -260,7 +269,7 @@ class CellMaker {
   const CellSetup& setup_;
   const std::vector<CellSeed>& seeds_;
   PointCubes cubes_;
-  std::map<int, Lead> leads_;  // by vertex
+  std::map<std::pair<int, int>, Lead> leads_;  // by vertex and piece
 };
 
 }  // namespace
