@@ -25,6 +25,7 @@ using core::at;
 // than one turns far and, of so many, more than one pair was hit.
 constexpr int kLeastParts = 4;
 constexpr double kPartTime = 1.0 / 960.0;  // s
+constexpr double kMostParts = 512.0;
 constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
 constexpr int kManyCut = 200;   // a part in which, of so many of them, more than one was cut short
@@ -346,6 +347,15 @@ int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings
 
 bool may_be_tried(const ContactSettings& settings, const StepPart& part) {
   return finer_parts(settings, part) < 2;
+}
+
+StepPart divide_to(const ContactSettings& settings, const StepPart& part, double longest) {
+  const int wanted = static_cast<int>(std::ceil(std::min(settings.time_step / longest, kMostParts)));
+  const int finer = (std::max(wanted, part.count) + part.count - 1) / part.count;
+  StepPart divided = part;
+  divided.number *= finer;
+  divided.count *= finer;
+  return divided;
 }
 
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,

@@ -75,6 +75,10 @@ int count_parts(const std::vector<body::Body>& bodies, const ContactSettings& se
 ContactReport move_part(std::vector<body::Body>& bodies, const ContactSettings& settings,
                         const StepPart& part, ContactState& state, body::ImpulseLog& log);
 
+/// The part with which the step should go on in place of this one so that none is longer than `longest` (s):
+/// the first of several, if it is; there is a bound to how many the step has in all.
+StepPart divide_to(const ContactSettings& settings, const StepPart& part, double longest);
+
 /// The part with which the step should go on in place of this one, now that its motion is known: the first of
 /// several that are shorter, if many stood still in it because they found no room; else none.
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,

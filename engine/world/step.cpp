@@ -17,6 +17,21 @@
 namespace shatterbox::world {
 namespace {
 
+/// Share of its size that a solid goes while what breaks it is followed.
+constexpr double kWayOfHit = 0.2;
+
+/// How long the quickest solid of what broke takes for that, s. Its pieces, face on face, would come upon all
+/// that is in their way at once, and bear together what comes one after the other: most would break again.
+double time_of_hit(const std::vector<const EvaluatedImpact*>& broken, const std::vector<body::Body>& before) {
+  double time = 1e300;
+  for (const EvaluatedImpact* impact : broken) {
+    const body::Shape& shape = *body::find_body(before, impact->id)->shape;
+    if (shape.kind == body::ShapeKind::solid && impact->hardest.closing_speed > 0.0)
+      time = std::min(time, kWayOfHit * 2.0 * shape.bounding_radius / impact->hardest.closing_speed);
+  }
+  return time;
+}
+
 /// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
 constexpr int kMostPasses = 12;
 
@@ -200,14 +215,19 @@ World::PartEnd World::judge_part(const MovedPart& done, MovingState& snapshot, d
   }
   for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
   const std::size_t known_breaks = s.report.breaks.size();
-  const bool goes_back = s.report.stages.time(
-      "fracture", [&] { return break_bodies(book_verdicts(impacts, snapshot, done.pass), snapshot); });
+  std::vector<const EvaluatedImpact*> broken;
+  const bool goes_back = s.report.stages.time("fracture", [&] {
+    broken = book_verdicts(impacts, snapshot, done.pass);
+    return break_bodies(broken, snapshot);
+  });
   tell_watcher("fracture", part, done.pass);
   if (goes_back) {
     if (s.contact_settings.has_ways)
       divide_ways(done.before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies,
                   static_cast<double>(part.number) / part.count, contact.ways, s.ended_ways);
     if (part.number == 0) part.count = std::max(part.count, count_parts());
+    if (s.settings.contact == ContactScheme::standard)
+      part = dynamics::divide_to(s.contact_settings, part, time_of_hit(broken, done.before));
     return PartEnd::broken;
   }
   if (!done.moved.is_unfinished) return PartEnd::stands;

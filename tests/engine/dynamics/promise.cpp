@@ -146,6 +146,20 @@ TEST_CASE("a step in which many were cut goes on in shorter parts, from the part
   CHECK(!dynamics::divide_where_cut(settings, {9, 16}, moved));
 }
 
+TEST_CASE("a step whose parts are too long goes on in shorter ones, from where it is") {
+  dynamics::ContactSettings settings;
+  settings.time_step = 1.0 / 60.0;
+  const auto divided = [&](int number, int count, double longest) {
+    const dynamics::StepPart part = dynamics::divide_to(settings, {number, count}, longest);
+    return std::pair(part.number, part.count);
+  };
+  CHECK(divided(0, 1, 1e300) == std::pair(0, 1));
+  CHECK(divided(1, 2, 0.01) == std::pair(1, 2));
+  CHECK(divided(1, 2, settings.time_step / 7.0) == std::pair(4, 8));
+  CHECK(divided(0, 4, settings.time_step / 17.0) == std::pair(0, 20));
+  CHECK(divided(1, 4, 1e-12) == std::pair(128, 512));  // and no further
+}
+
 TEST_CASE("the share of a step that was cut is that of its time, however it was divided") {
   dynamics::ContactReport half, eighth, step;
   half.frozen_share = 0.1;

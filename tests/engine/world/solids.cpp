@@ -156,6 +156,36 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
   CHECK(count_overlaps(first) == 0);
 }
 
+TEST_CASE("what breaks is followed in parts in which it goes a fifth of its size") {
+  // Parts of the step in which a plaster slab of .72 m and one of a sixtieth of its size break.
+  const auto parts_at = [](double share, double speed) {
+    world::WorldSettings settings;
+    settings.gravity = Vec3::Zero();
+    world::World w{settings};
+    REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+    world::BodyDescription ground;
+    ground.form = world::PlaneDescription{};
+    REQUIRE(w.add_body(ground).ok());
+    world::BodyDescription slab = make_slab(share * Vec3(0.3, 0.03, 0.2), Vec3(0.7, 0.0, 0.0));
+    auto& solid = std::get<world::SolidDescription>(slab.form);
+    solid.is_breakable = true;
+    solid.element_size = share * 0.05;
+    slab.pose.translation = Vec3(0.0, share * 0.4, 0.0);
+    slab.velocity = Vec3(0.0, -speed, 0.0);
+    REQUIRE(w.add_body(slab).ok());
+    int parts = 0;
+    w.watch([&parts](const world::Moment& moment) { parts = moment.parts; });
+    while (w.report().breaks.empty() && w.time() < 0.1) w.step();
+    REQUIRE_FALSE(w.report().breaks.empty());
+    return parts;
+  };
+  CHECK(parts_at(1.0, 6.0) == 4);
+  const double ways = 15.0 / 240.0 / (0.2 * 0.72 / 60.0);  // of a fifth of its size in the step
+  const int parts = parts_at(1.0 / 60.0, 15.0);
+  CHECK(parts >= ways);
+  CHECK(parts <= 512);
+}
+
 TEST_CASE("a solid with grains breaks along them, into pieces as whole as any") {
   const world::World broken = drop_slab(1.5, 0.12);
   REQUIRE_FALSE(broken.report().breaks.empty());
