@@ -19,6 +19,26 @@ struct Shapes {
 };
 const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "bottle", "egg"}};
 const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg", "figure"}};
+/// What goes by another name here.
+struct OtherName {
+  const char *name, *what, *hint;
+};
+constexpr const char* kBox = "a box that may break is a slab";
+constexpr const char* kSlab =
+    "write kind = \"solid\", shape = \"slab\", size = [0.2, 0.1, 0.1]; a kind = \"box\" never breaks";
+constexpr OtherName kOtherNames[] = {
+    {"box", kBox, kSlab},
+    {"cube", kBox, kSlab},
+    {"block", kBox, kSlab},
+    {"brick", kBox, kSlab},
+    {"bricks", "bricks are bodies of their own, each of which can break",
+     "write kind = \"solid\", shape = \"slab\" with the size of one brick, and repeat = { count = [12, 10, "
+     "1], "
+     "spacing = ..., bond = 0.5 }, as the scene brick_wall does"},
+    {"plate", "a plate is a low bowl",
+     "write kind = \"shell\", shape = \"bowl\" with radius, foot_radius and height, as the scene plate_stack "
+     "does"},
+};
 const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
                                           "foot_radius", "foot_height",  "height",        "width",
                                           "edge_length", "length",       "beam",          "depth",
@@ -175,12 +195,10 @@ std::optional<std::string> read_shape_name(TableReader& reader, const Shapes& sh
   };
   const Shapes& others = &shapes == &kShellShapes ? kSolidShapes : kShellShapes;
   const TomlValue* value = reader.table().find("shape");
-  if (value != nullptr && value->is_text() && value->text == "bricks") {
+  for (const OtherName& other : kOtherNames) {
+    if (value == nullptr || !value->is_text() || value->text != other.name) continue;
     reader.value("shape");
-    reader.add_problem(
-        value->place, "bricks are bodies of their own, each of which can break",
-        "write kind = \"solid\", shape = \"slab\" with the size of one brick, and repeat = { count "
-        "= [12, 10, 1], spacing = ..., bond = 0.5 }, as the scene brick_wall does");
+    reader.add_problem(value->place, other.what, other.hint);
     return std::nullopt;
   }
   if (value == nullptr || !value->is_text() || has(shapes, value->text) || !has(others, value->text))

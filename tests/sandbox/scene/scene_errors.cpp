@@ -227,6 +227,8 @@ const Broken kCorpus[] = {
     {"[[event]]\nat=0\ndo = \"remove\"\nbody=\"b\"\nimpulse=[1,0,0]\n[[body]]\nname=\"b\"\nkind=\"sphere\"\n",
      "t.toml:5:1", "does not belong here", "push"},
     {"[[body]]\nkind = \"solid\"\nshape = \"bricks\"\n", "t.toml:3:9", "bodies of their own", "bond = 0.5"},
+    {"[[body]]\nkind = \"solid\"\nshape = \"box\"\n", "t.toml:3:9", "is a slab", "shape = \"slab\""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"plate\"\n", "t.toml:3:9", "a low bowl", "shape = \"bowl\""},
     {"[[material]]\nname = \"m\"\ngrain_direction = [0.1, 0, 0]\n", "t.toml:1:1", "from 1 to 100 long", ""},
     {"[[body]]\nkind = \"sphere\"\nrepeat = {count = 3, spacing = 1, bond = 0.5}\n", "t.toml:3:42",
      "only courses of a grid", "count = [12, 10, 1]"},
