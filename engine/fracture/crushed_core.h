@@ -32,7 +32,7 @@ std::vector<std::vector<int>> group_cores(const geometry::ShellElements& element
 
 /// Cells are cut out of what is within reach of the centres along the surface. What belongs to several cores
 /// is cut once, and what cracks have parted is divided by itself: so radials are crossed by rings from crack
-/// to crack. (Cells over cells, and over cracks, left powder.)
+/// to crack. (Cells over cells, and over cracks, left splinters.)
 CellCracks crush_cores(ShellCutter& cutter, const ElementPlanes& planes, const CoreSetup& setup);
 
 /// How far the material is crushed about a point: the radius of the disc with as much area as the elements
