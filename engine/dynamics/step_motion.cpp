@@ -352,10 +352,7 @@ bool may_be_tried(const ContactSettings& settings, const StepPart& part) {
 StepPart divide_to(const ContactSettings& settings, const StepPart& part, double longest) {
   const int wanted = static_cast<int>(std::ceil(std::min(settings.time_step / longest, kMostParts)));
   const int finer = (std::max(wanted, part.count) + part.count - 1) / part.count;
-  StepPart divided = part;
-  divided.number *= finer;
-  divided.count *= finer;
-  return divided;
+  return {part.number * finer, part.count * finer};
 }
 
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,

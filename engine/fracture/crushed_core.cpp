@@ -77,18 +77,6 @@ std::vector<int> elements_in_reach(const geometry::ShellElements& elements, cons
   return found;
 }
 
-std::vector<int> elements_in_reach(const geometry::ShellElements& elements,
-                                   const std::vector<CrushedCore>& cores) {
-  std::vector<int> found;
-  for (const CrushedCore& core : cores) {
-    const std::vector<int> more = elements_in_reach(elements, core);
-    found.insert(found.end(), more.begin(), more.end());
-  }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
-
 /// The seed that belongs at a place: its cell is as small as the nearest hits ask for. None where nobody
 /// asks.
 std::optional<Seed> seed_at(const std::vector<CrushedCore>& cores, const Vec3& x) {
@@ -104,25 +92,26 @@ std::optional<Seed> seed_at(const std::vector<CrushedCore>& cores, const Vec3& x
   return is_in_reach ? std::optional(seed) : std::nullopt;
 }
 
-std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>& in_reach,
-                              const CoreSetup& setup) {
+std::vector<Seed> throw_darts(const ShellCutter& cutter, const CoreSetup& setup) {
+  const auto& [cores, in_reach] = setup.group;
   const geometry::ShellElements& elements = cutter.elements();
   geometry::ShellElements part;
   part.mesh.positions = elements.mesh.positions;
   for (const int element : in_reach) part.mesh.triangles.push_back(elements.mesh.triangles[at(element)]);
   double finest = kNoSize;
-  for (const CrushedCore& core : setup.cores) finest = std::min(finest, core.cell_size);
-  std::vector<SurfacePoint> darts = scatter_on_surface(part, kDartsPerCell / (finest * finest), setup.seed);
+  for (const CrushedCore& core : cores) finest = std::min(finest, core.cell_size);
+  std::vector<SurfacePoint> darts =
+      scatter_on_surface(part, kDartsPerCell / (finest * finest), cores.front().seed);
   std::sort(darts.begin(), darts.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
     return a.key != b.key ? a.key < b.key : a.element < b.element;
   });
   std::vector<Seed> seeds;
   for (const SurfacePoint& dart : darts) {
     core::stop_if_asked();
-    std::optional<Seed> seed =
-        seed_at(setup.cores, position_in_element(part, dart.element, dart.barycentric));
+    std::optional<Seed> seed = seed_at(cores, position_in_element(part, dart.element, dart.barycentric));
+    if (!seed) continue;
     const int cell = cutter.find_cell(in_reach[at(dart.element)], dart.barycentric);
-    if (!seed || cell < 0) continue;
+    if (cell < 0) continue;
     seed->piece = setup.pieces[at(cutter.cell(cell).origin)];
     const double least = kLeastDistance * seed->size;
     const bool is_free = std::none_of(seeds.begin(), seeds.end(), [&](const Seed& other) {
@@ -133,46 +122,47 @@ std::vector<Seed> throw_darts(const ShellCutter& cutter, const std::vector<int>&
   return seeds;
 }
 
-bool is_core(const CrushedCore& core) {
-  return core.radius > 0.0 && core.cell_size > 0.0 && core.patch_radius > 0.0;
-}
-
 bool share_one(const std::vector<int>& a, const std::vector<int>& b) {
   return std::any_of(a.begin(), a.end(), [&](int x) { return std::binary_search(b.begin(), b.end(), x); });
 }
 
 }  // namespace
 
-std::vector<std::vector<int>> group_cores(const geometry::ShellElements& elements,
-                                          const std::vector<CrushedCore>& cores) {
-  std::vector<std::vector<int>> groups, in_reach;
+std::vector<CoreGroup> group_cores(const geometry::ShellElements& elements,
+                                   const std::vector<CrushedCore>& cores) {
+  struct Numbered {
+    std::vector<int> cores, elements;
+  };
+  std::vector<Numbered> groups;
   for (Size i = 0; i < cores.size(); ++i) {
     // With every group that it touches it becomes one, in the place of the first of them.
-    std::vector<int> group{static_cast<int>(i)}, reached = elements_in_reach(elements, cores[i]);
+    Numbered joined{{static_cast<int>(i)}, elements_in_reach(elements, cores[i])};
     Size place = groups.size();
     for (Size g = groups.size(); g-- > 0;) {
-      if (!share_one(in_reach[g], reached)) continue;
-      group.insert(group.end(), groups[g].begin(), groups[g].end());
+      if (!share_one(groups[g].elements, joined.elements)) continue;
+      joined.cores.insert(joined.cores.end(), groups[g].cores.begin(), groups[g].cores.end());
       std::vector<int> both;
-      std::set_union(reached.begin(), reached.end(), in_reach[g].begin(), in_reach[g].end(),
-                     std::back_inserter(both));
-      reached = std::move(both);
+      std::set_union(joined.elements.begin(), joined.elements.end(), groups[g].elements.begin(),
+                     groups[g].elements.end(), std::back_inserter(both));
+      joined.elements = std::move(both);
       groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(g));
-      in_reach.erase(in_reach.begin() + static_cast<std::ptrdiff_t>(g));
       place = g;
     }
-    std::sort(group.begin(), group.end());
-    groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(place), std::move(group));
-    in_reach.insert(in_reach.begin() + static_cast<std::ptrdiff_t>(place), std::move(reached));
+    std::sort(joined.cores.begin(), joined.cores.end());
+    groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(place), std::move(joined));
   }
-  return groups;
+  std::vector<CoreGroup> found;
+  for (Numbered& group : groups) {
+    found.push_back({{}, std::move(group.elements)});
+    for (const int i : group.cores) found.back().cores.push_back(cores[at(i)]);
+  }
+  return found;
 }
 
 CellCracks crush_cores(ShellCutter& cutter, const ElementPlanes& planes, const CoreSetup& setup) {
-  if (setup.cores.empty() || !std::all_of(setup.cores.begin(), setup.cores.end(), is_core)) return {};
   CellSetup cells;
-  cells.elements = elements_in_reach(cutter.elements(), setup.cores);
-  for (const Seed& seed : throw_darts(cutter, cells.elements, setup))
+  cells.elements = setup.group.elements;
+  for (const Seed& seed : throw_darts(cutter, setup))
     cells.seeds.push_back({seed.position, seed.is_open, seed.piece});
   cells.pieces = setup.pieces;
   cells.most_length = setup.most_length;

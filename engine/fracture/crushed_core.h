@@ -15,20 +15,26 @@ struct CrushedCore {
   double patch_radius = 0.0;  // m
   double cell_size = 0.0;     // m, inside the patch; it grows with the distance outside
   double radius = 0.0;        // m: cells whose seed is nearer to the centre than this are broken out whole
+  std::uint64_t seed = 1;
+};
+
+/// Cores that share material within their reach, and all elements that are in it.
+struct CoreGroup {
+  std::vector<CrushedCore> cores;
+  std::vector<int> elements;  // ascending
 };
 
 struct CoreSetup {
-  std::vector<CrushedCore> cores;
+  CoreGroup group;
   std::vector<int> pieces;    // that the cells of the cutter's mesh are in: each is divided by itself
   double most_length = -1.0;  // m of crack that the energy allows; below zero: no guard
   int crack = 0;              // number of the cores as one crack
   int generation = 0;
-  std::uint64_t seed = 1;
 };
 
-/// Numbers of cores that share material within their reach, ascending, and the groups by their first.
-std::vector<std::vector<int>> group_cores(const geometry::ShellElements& elements,
-                                          const std::vector<CrushedCore>& cores);
+/// Groups in the order of their first cores, each in the order of its own.
+std::vector<CoreGroup> group_cores(const geometry::ShellElements& elements,
+                                   const std::vector<CrushedCore>& cores);
 
 /// Cells are cut out of what is within reach of the centres along the surface. What belongs to several cores
 /// is cut once, and what cracks have parted is divided by itself: so radials are crossed by rings from crack

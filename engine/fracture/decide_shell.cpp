@@ -236,29 +236,28 @@ class Decider {
     std::vector<double> overloads = decision_.element_stress;
     for (double& overload : overloads) overload /= kCoreOverload * material::borne_tension(subject_.material);
     std::vector<CrushedCore> cores;
-    std::vector<Size> pressed_by;
     for (Size i = 0; i < force_.presses().size(); ++i) {
       const Press& press = force_.presses()[i];
       if (!is_collision(*press.load)) continue;
-      CrushedCore core{press.contact.point, press.contact.radius, 0.0, 0.0};
+      CrushedCore core;
+      core.centre = press.contact.point;
+      core.patch_radius = press.contact.radius;
       core.radius = crushed_radius(elements(), overloads, core.centre, kCoreReach * core.patch_radius);
       if (!(core.radius > 0.0)) continue;
       // A core that is very wide against the thickness has coarser cells: of more nothing could be made.
       core.cell_size = std::max(settings_.core_spacing * subject_.thickness, core.radius / kMostCoreCells);
+      core.seed = core::mix(subject_.seed + i + 0x636f7265);
       cores.push_back(core);
-      pressed_by.push_back(i);
     }
     if (cores.empty()) return;
     CoreSetup setup;
     int piece_count = 0;
     setup.pieces = label_pieces(mesh_->cells.size(), contacts_, piece_count);
     ShellCutter cutter(*mesh_);
-    for (const std::vector<int>& group : group_cores(elements(), cores)) {
-      setup.cores.clear();
-      for (const int i : group) setup.cores.push_back(cores[at(i)]);
+    for (CoreGroup& group : group_cores(elements(), cores)) {
+      setup.group = std::move(group);
       setup.crack = next_crack_;
       setup.generation = decision_.generations;
-      setup.seed = core::mix(subject_.seed + pressed_by[at(group.front())] + 0x636f7265);
       if (settings_.has_energy_guard)
         setup.most_length = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy) /
                             (subject_.material.fracture_energy * subject_.thickness);

@@ -32,9 +32,8 @@ constexpr OtherName kOtherNames[] = {
     {"block", kBox, kSlab},
     {"brick", kBox, kSlab},
     {"bricks", "bricks are bodies of their own, each of which can break",
-     "write kind = \"solid\", shape = \"slab\" with the size of one brick, and repeat = { count = [12, 10, "
-     "1], "
-     "spacing = ..., bond = 0.5 }, as the scene brick_wall does"},
+     "write kind = \"solid\", shape = \"slab\" with the size of one brick, and repeat = { "
+     "count = [12, 10, 1], spacing = ..., bond = 0.5 }, as the scene brick_wall does"},
     {"plate", "a plate is a low bowl",
      "write kind = \"shell\", shape = \"bowl\" with radius, foot_radius and height, as the scene plate_stack "
      "does"},
@@ -195,10 +194,12 @@ std::optional<std::string> read_shape_name(TableReader& reader, const Shapes& sh
   };
   const Shapes& others = &shapes == &kShellShapes ? kSolidShapes : kShellShapes;
   const TomlValue* value = reader.table().find("shape");
-  for (const OtherName& other : kOtherNames) {
-    if (value == nullptr || !value->is_text() || value->text != other.name) continue;
+  const OtherName* other = std::find_if(
+      std::begin(kOtherNames), std::end(kOtherNames),
+      [&](const OtherName& o) { return value != nullptr && value->is_text() && value->text == o.name; });
+  if (other != std::end(kOtherNames)) {
     reader.value("shape");
-    reader.add_problem(value->place, other.what, other.hint);
+    reader.add_problem(value->place, other->what, other->hint);
     return std::nullopt;
   }
   if (value == nullptr || !value->is_text() || has(shapes, value->text) || !has(others, value->text))

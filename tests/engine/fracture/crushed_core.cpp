@@ -1,6 +1,7 @@
 // What is crushed about hits: the cells of one, of several that lie in each other, and of several apart.
 #include "engine/fracture/crushed_core.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "engine/core/elementary.h"
@@ -90,9 +91,19 @@ TEST_CASE("cells of a core go from crack to crack: none is a splinter") {
 
 TEST_CASE("cores that share material are crushed together, others each by itself") {
   const auto elements = test::make_pane(1.0, 0.034);
-  const auto at = [](double x) { return fracture::CrushedCore{Vec3(x, 0.0, 0.0), 0.005, 0.008, 0.02}; };
-  const auto groups = [&](const std::vector<fracture::CrushedCore>& cores) {
-    return fracture::group_cores(*elements, cores);
+  // Numbered by their seeds.
+  const auto at = [](double x) { return fracture::CrushedCore{Vec3(x, 0.0, 0.0), 0.005, 0.008, 0.02, 1}; };
+  const auto groups = [&](std::vector<fracture::CrushedCore> cores) {
+    for (std::size_t i = 0; i < cores.size(); ++i) cores[i].seed = i;
+    std::vector<std::vector<int>> numbers;
+    for (const fracture::CoreGroup& group : fracture::group_cores(*elements, cores)) {
+      numbers.emplace_back();
+      for (const fracture::CrushedCore& core : group.cores)
+        numbers.back().push_back(static_cast<int>(core.seed));
+      CHECK(std::is_sorted(group.elements.begin(), group.elements.end()));
+      CHECK(!group.elements.empty());
+    }
+    return numbers;
   };
   using Groups = std::vector<std::vector<int>>;
   CHECK(groups({}).empty());
