@@ -1,6 +1,7 @@
 #include "engine/fracture/split_shell.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -51,6 +52,28 @@ std::vector<Face> collect_faces(const ShellMesh& mesh) {
     return std::array{a.element, a.id, a.cell, a.side} < std::array{b.element, b.id, b.cell, b.side};
   });
   return faces;
+}
+
+/// Those of `faces` that are no part of a crack which the whole had.
+std::vector<Face> find_new_faces(const std::vector<Face>& faces, const ShellMesh* whole) {
+  if (!whole) return faces;
+  const std::vector<Face> older = collect_faces(*whole);
+  const auto is_of_lower_crack = [](const Face& a, const Face& b) {
+    return std::pair{a.element, a.id} < std::pair{b.element, b.id};
+  };
+  const auto is_older = [&](const Face& face) {
+    const Vec3 middle = 0.5 * (face.begin + face.end);
+    const auto [first, last] = std::equal_range(older.begin(), older.end(), face, is_of_lower_crack);
+    return std::any_of(first, last, [&](const Face& known) {
+      const Vec3 along = known.end - known.begin;
+      const double t = along.dot(middle - known.begin);
+      return t > 0.0 && t < along.squaredNorm();
+    });
+  };
+  std::vector<Face> found;
+  std::copy_if(faces.begin(), faces.end(), std::back_inserter(found),
+               [&](const Face& face) { return !is_older(face); });
+  return found;
 }
 
 double overlap_of(const Face& a, const Face& b) {
@@ -126,7 +149,7 @@ ShellMesh close_faces(const ShellMesh& mesh, std::vector<Closing> closings) {
 /// One round of joining pieces that are too narrow; false if there was nothing to do.
 class Merger {
  public:
-  Merger(ShellMesh& mesh, double least_width) : mesh_(mesh), least_width_(least_width) {}
+  Merger(ShellMesh& mesh, const SplitSettings& settings) : mesh_(mesh), settings_(settings) {}
 
   bool merge_once(const std::vector<CellContact>& contacts, ShellSplit& split) {
     int count = 0;
@@ -135,14 +158,15 @@ class Merger {
     std::vector<double> area(at(count), 0.0), border(at(count), 0.0);
     for (Size c = 0; c < mesh_.cells.size(); ++c) area[at(label[c])] += mesh_.cells[c].area;
     for (const Face& face : faces) border[at(label[at(face.cell)])] += (face.end - face.begin).norm();
-    const auto is_narrow = [&](int p) { return 2.0 * area[at(p)] < least_width_ * border[at(p)]; };
+    const auto is_narrow = [&](int p) { return 2.0 * area[at(p)] < settings_.least_width * border[at(p)]; };
     if (std::none_of(label.begin(), label.end(), is_narrow)) return false;
 
-    const std::vector<FacePair> pairs = pair_faces(faces);
+    const std::vector<Face> closable = find_new_faces(faces, settings_.whole);
+    const std::vector<FacePair> pairs = pair_faces(closable);
     std::map<std::pair<int, int>, double> common;  // narrow piece, neighbour: length of their common crack
     for (const FacePair& pair : pairs) {
-      const int a = label[at(faces[pair.first].cell)];
-      const int b = label[at(faces[pair.second].cell)];
+      const int a = label[at(closable[pair.first].cell)];
+      const int b = label[at(closable[pair.second].cell)];
       if (a == b) continue;
       if (is_narrow(a)) common[{a, b}] += pair.overlap;
       if (is_narrow(b)) common[{b, a}] += pair.overlap;
@@ -156,10 +180,10 @@ class Merger {
       }
     std::vector<Closing> closings;
     for (const FacePair& pair : pairs) {
-      const int a = label[at(faces[pair.first].cell)];
-      const int b = label[at(faces[pair.second].cell)];
+      const int a = label[at(closable[pair.first].cell)];
+      const int b = label[at(closable[pair.second].cell)];
       if (a != b && (partner[at(a)] == b || partner[at(b)] == a))
-        close(faces[pair.first], faces[pair.second], closings);
+        close(closable[pair.first], closable[pair.second], closings);
     }
     if (closings.empty()) return false;
     for (int p = 0; p < count; ++p) {
@@ -200,7 +224,7 @@ class Merger {
   }
 
   ShellMesh& mesh_;
-  double least_width_;
+  const SplitSettings& settings_;
   int next_id_ = -1;
 };
 
@@ -228,7 +252,7 @@ ShellSplit split_shell(const ShellMesh& mesh, std::vector<CellContact> contacts,
   ShellMesh whole = mesh;
   for (int pass = 0; settings.least_width > 0.0 && pass < kMergePasses; ++pass) {
     core::stop_if_asked();
-    if (!Merger(whole, settings.least_width).merge_once(contacts, split)) break;
+    if (!Merger(whole, settings).merge_once(contacts, split)) break;
     contacts = find_cell_contacts(whole);
   }
   int count = 0;

@@ -11,6 +11,9 @@ namespace shatterbox::fracture {
 struct SplitSettings {
   double least_width =
       0.0;  // m: pieces narrower than this on average (2 area / perimeter) join their neighbour
+  /// What was there before its newest cracks: those it had stay open, for its surface stands back from them
+  /// already. Null: all cracks are new.
+  const geometry::ShellMesh* whole = nullptr;
 };
 
 struct ShellSplit {
@@ -24,8 +27,8 @@ std::vector<int> label_pieces(std::size_t cell_count, const std::vector<geometry
                               int& piece_count);
 
 /// The pieces of a mesh. Their areas sum to the mesh's. A piece below the least width is joined, before the
-/// split, to the neighbour with the longest common crack: that crack becomes closed material again. Pieces
-/// without any neighbour stay as they are.
+/// split, to the neighbour with the longest common new crack: that crack becomes closed material again.
+/// Pieces without any such neighbour stay as they are.
 ShellSplit split_shell(const geometry::ShellMesh& mesh, const SplitSettings& settings = {});
 /// The same, of a mesh whose contacts (find_cell_contacts) are known.
 ShellSplit split_shell(const geometry::ShellMesh& mesh, std::vector<geometry::CellContact> contacts,

@@ -9,6 +9,20 @@ double cross2(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+/// Whether a corner of the polygon lies within the triangle of the corner `i` and its neighbours, which cuts
+/// off more than an ear then.
+bool holds_corner(const std::vector<Vec2>& polygon, std::size_t i) {
+  const std::size_t before = (i + polygon.size() - 1) % polygon.size(), after = (i + 1) % polygon.size();
+  const Vec2 &p = polygon[before], &q = polygon[i], &r = polygon[after];
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2& x = polygon[k];
+    if (k != before && k != i && k != after && cross2(q - p, x - p) > 0.0 && cross2(r - q, x - q) > 0.0 &&
+        cross2(p - r, x - r) > 0.0)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Triangle> clip_ears(std::vector<Vec2> polygon) {
@@ -30,7 +44,7 @@ std::vector<Triangle> clip_ears(std::vector<Vec2> polygon) {
       const double area = cross2(q - p, r - p);
       if (!(area > least) || (ring.size() > 3 && !(left - area > least))) continue;
       const double quality = area / ((q - p).squaredNorm() + (r - q).squaredNorm() + (p - r).squaredNorm());
-      if (quality > best_quality) {
+      if (quality > best_quality && !holds_corner(polygon, i)) {
         best = i;
         best_quality = quality;
         best_area = area;

@@ -67,7 +67,7 @@ bool is_tip(const Border& border) {
   return false;
 }
 
-/// The shift that stands back from the new faces and slides along the rim and the first `held` older faces.
+/// The shift that stands back from the new faces and slides along the rim and the `held` older faces.
 Vec3 sliding_retreat(const Border& border, const std::vector<const BorderNormal*>& held,
                      const Freedom& freedom, double kerf) {
   Mat3 matrix = kMitreSoftness * Mat3::Identity();
@@ -84,13 +84,13 @@ Vec3 sliding_retreat(const Border& border, const std::vector<const BorderNormal*
 }
 
 /// The retreat of one vertex from all its crack faces, along the rim where it lies on one; zero at a tip.
-/// Never nearer to an older face.
+/// Never nearer to an older face, and never out over the rim.
 Vec3 retreat(const Border& border, const Freedom& freedom, double kerf) {
   if (freedom.is_corner() || is_tip(border)) return Vec3::Zero();
   std::vector<const BorderNormal*> held;
   Vec3 shift = sliding_retreat(border, held, freedom, kerf);
   const auto comes_nearer = [&](const BorderNormal& n) {
-    return n.kind == BorderKind::older_crack && n.inward.dot(shift) < 0.0;
+    return n.kind != BorderKind::crack && n.inward.dot(shift) < 0.0;
   };
   while (true) {
     const Size before = held.size();

@@ -18,6 +18,7 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kBeside = 1e-6;  // of a kerf: as far as rounding may lead out of the whole
+constexpr double kStood = 0.5;    // of a kerf: what stands nearer to its crack has to stand back anew
 constexpr double kTouch = 1e-6;   // share of an edge that counts as contact, as in find_cell_contacts
 
 /// A point on the border of a cell's polygon: a corner, or a place where a neighbour has a corner.
@@ -50,7 +51,7 @@ class SurfaceBuilder {
     place_vertices();
     for (Size c = 0; c < mesh_.cells.size(); ++c) triangulate_cell(static_cast<int>(c));
     surface_.least_kerf =
-        kerf > 0.0 ? stand_back(surface_.mesh, triangle_normals(), collect_normals(), kerf, within(kerf))
+        kerf > 0.0 ? stand_back(surface_.mesh, triangle_normals(), collect_normals(kerf), kerf, within(kerf))
                    : kerf;
     return std::move(surface_);
   }
@@ -70,11 +71,7 @@ class SurfaceBuilder {
   }
 
   void find_cells_of_whole() {
-    for (const ShellCell& cell : mesh_.cells) {
-      Vec2 middle = Vec2::Zero();
-      for (int i = 0; i < cell.corner_count; ++i) middle += corner(cell, i).barycentric;
-      whole_cells_.push_back(whole_->cell_at(cell.element, middle / cell.corner_count));
-    }
+    for (const ShellCell& cell : mesh_.cells) whole_cells_.push_back(whole_->cell_of(mesh_, cell));
   }
 
   void collect_stretches() {
@@ -285,7 +282,7 @@ class SurfaceBuilder {
       }
   }
 
-  /// Of a crack face: whether the whole stood back from it already.
+  /// Of a crack face: whether it was there in the whole already.
   BorderKind kind_of_face(int c, int side) const {
     if (!whole_ || whole_cells_[at(c)] < 0) return BorderKind::crack;
     const ShellCell& cell = mesh_.cells[at(c)];
@@ -301,7 +298,14 @@ class SurfaceBuilder {
     return position_in_element(elements_, mesh_.cells[at(c)].element, nodes_[at(n)].barycentric);
   }
 
-  void add_normals(int c, int side, BorderKind kind, std::vector<BorderNormal>& normals) const {
+  /// Whether the whole stands back from its crack there: the lips of a slit meet at its ends, and some slits
+  /// have nothing but ends.
+  bool has_stood_back(int c, int n, const Vec3& inward, double kerf) const {
+    const Vec3 crack = position_in_element(elements_, mesh_.cells[at(c)].element, nodes_[at(n)].barycentric);
+    return inward.dot(place_of_node(c, n) - crack) >= kStood * kerf;
+  }
+
+  void add_normals(int c, int side, BorderKind kind, double kerf, std::vector<BorderNormal>& normals) const {
     const ShellCell& cell = mesh_.cells[at(c)];
     const std::vector<int> ends = side_nodes(c, side);
     const Vec3 a = place_of_node(c, ends.front());
@@ -311,8 +315,11 @@ class SurfaceBuilder {
     if (!(length > 0.0)) return;
     const Vec3 inward = normal.cross(b - a) / length;
     const int id = corner(cell, side).side_id;
-    for (const int n : {ends.front(), ends.back()})
-      normals.push_back({vertex_of_node_[at(n)], inward, kind, cell.element, id});
+    for (const int n : {ends.front(), ends.back()}) {
+      const bool is_new = kind == BorderKind::older_crack && !has_stood_back(c, n, inward, kerf);
+      normals.push_back(
+          {vertex_of_node_[at(n)], inward, is_new ? BorderKind::crack : kind, cell.element, id});
+    }
   }
 
   std::vector<Vec3> triangle_normals() const {
@@ -323,14 +330,14 @@ class SurfaceBuilder {
     return normals;
   }
 
-  std::vector<BorderNormal> collect_normals() const {
+  std::vector<BorderNormal> collect_normals(double kerf) const {
     std::vector<BorderNormal> normals;
     for (Size c = 0; c < mesh_.cells.size(); ++c)
       for (int s = 0; s < mesh_.cells[c].corner_count; ++s)
         if (corner(mesh_.cells[c], s).side == SideKind::crack)
-          add_normals(static_cast<int>(c), s, kind_of_face(static_cast<int>(c), s), normals);
+          add_normals(static_cast<int>(c), s, kind_of_face(static_cast<int>(c), s), kerf, normals);
     for (Size i = 0; i < stretches_.size(); ++i)
-      if (!touches_[i]) add_normals(stretches_[i].cell, stretches_[i].side, BorderKind::rim, normals);
+      if (!touches_[i]) add_normals(stretches_[i].cell, stretches_[i].side, BorderKind::rim, kerf, normals);
     std::stable_sort(normals.begin(), normals.end(),
                      [](const BorderNormal& a, const BorderNormal& b) { return a.vertex < b.vertex; });
     return normals;

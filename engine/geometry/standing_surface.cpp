@@ -1,5 +1,7 @@
 #include "engine/geometry/standing_surface.h"
 
+#include <algorithm>
+
 #include "engine/core/index.h"
 #include "engine/geometry/closest_points.h"
 #include "engine/geometry/shell_surface.h"
@@ -10,7 +12,8 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kOnFace = 1e-9;  // of an element: as far as a point of a face may lie beside it
+constexpr double kOnFace = 1e-9;     // of an element: as far as a point of a face may lie beside it
+constexpr double kParallel = 1e-12;  // sine of an angle at which lines have no place where they cross
 
 double cross_of(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -60,6 +63,12 @@ int StandingSurface::cell_at(int element, const Vec2& barycentric) const {
   return found;
 }
 
+int StandingSurface::cell_of(const ShellMesh& piece, const ShellCell& cell) const {
+  Vec2 middle = Vec2::Zero();
+  for (int i = 0; i < cell.corner_count; ++i) middle += piece.corners[at(cell.first_corner + i)].barycentric;
+  return cell_at(cell.element, middle / cell.corner_count);
+}
+
 Vec3 StandingSurface::place(int cell, const Vec3& point) const {
   Vec3 place = point;
   double nearest = 1e300;
@@ -71,6 +80,59 @@ Vec3 StandingSurface::place(int cell, const Vec3& point) const {
     for (int i = 0; i < 3; ++i) place += found.barycentric[i] * placed_[at(fold.vertices[at(i)])];
   }
   return place;
+}
+
+std::vector<Vec2> StandingSurface::find_bends(int cell, const Vec2& from, const Vec2& to,
+                                              double tolerance) const {
+  const int element = mesh_.cells[at(cell)].element;
+  const Vec3 begin = position_in_element(*mesh_.elements, element, from),
+             end = position_in_element(*mesh_.elements, element, to);
+  // Affine in each triangle, it bends only where it goes from one to the next.
+  const Mat3 frame = facet_frame(*mesh_.elements, element);
+  const auto flat = [&](const Vec3& v) { return Vec2(frame.col(0).dot(v), frame.col(1).dot(v)); };
+  const Vec2 along = flat(end - begin);
+  std::vector<double> shares = {0.0, 1.0};
+  for (const Fold& fold : cell_triangles_[at(cell)])
+    for (Size i = 0; i < 3; ++i) {
+      const Vec2 corner = flat(fold.corners[i] - begin),
+                 side = flat(fold.corners[(i + 1) % 3] - fold.corners[i]);
+      const double across = cross_of(along, side);
+      if (!(std::abs(across) > kParallel * along.norm() * side.norm())) continue;
+      const double share = cross_of(corner, side) / across, on_side = cross_of(corner, along) / across;
+      if (share > 0.0 && share < 1.0 && on_side >= 0.0 && on_side <= 1.0) shares.push_back(share);
+    }
+  std::sort(shares.begin(), shares.end());
+  std::vector<Vec3> places;
+  for (const double share : shares) places.push_back(place(cell, begin + share * (end - begin)));
+  std::vector<char> is_kept(shares.size(), 0);
+  const auto keep_between = [&](const auto& keep, Size first, Size last) -> void {
+    Size furthest = first;
+    double most = tolerance;
+    for (Size k = first + 1; k < last; ++k) {
+      const double share = (shares[k] - shares[first]) / (shares[last] - shares[first]);
+      const double off = (places[k] - places[first] - share * (places[last] - places[first])).norm();
+      if (!(off > most)) continue;
+      most = off;
+      furthest = k;
+    }
+    if (furthest == first) return;
+    is_kept[furthest] = 1;
+    keep(keep, first, furthest);
+    keep(keep, furthest, last);
+  };
+  keep_between(keep_between, 0, shares.size() - 1);
+  std::vector<Vec2> bends;
+  Vec3 last = places.front();
+  const Vec3 onward = places.back() - places.front();
+  for (Size k = 1; k < shares.size(); ++k) {
+    const bool is_end = k + 1 == shares.size();
+    if (!is_kept[k] && !is_end) continue;
+    // Beside slivers the surface may stand folded over: what runs to and fro there has no better course.
+    if (!((places[k] - last).dot(onward) > 0.0)) return {};
+    last = places[k];
+    if (!is_end) bends.push_back(from + shares[k] * (to - from));
+  }
+  return bends;
 }
 
 bool StandingSurface::holds(int element, const Vec3& place, double tolerance) const {
@@ -104,6 +166,28 @@ bool StandingSurface::is_on_crack(int cell, int side_id, const Vec2& barycentric
       return true;
   }
   return false;
+}
+
+ShellMesh divide_at_bends(const ShellMesh& piece, const StandingSurface& whole, double tolerance) {
+  ShellMesh out = piece;
+  out.corners.clear();
+  for (Size c = 0; c < piece.cells.size(); ++c) {
+    const ShellCell& cell = piece.cells[c];
+    const int standing = whole.cell_of(piece, cell);
+    out.cells[c].first_corner = static_cast<int>(out.corners.size());
+    for (int s = 0; s < cell.corner_count; ++s) {
+      const ShellCorner& from = piece.corners[at(cell.first_corner + s)];
+      const ShellCorner& to = piece.corners[at(cell.first_corner + (s + 1) % cell.corner_count)];
+      out.corners.push_back(from);
+      const Vec2 middle = 0.5 * (from.barycentric + to.barycentric);
+      if (from.side != SideKind::crack || standing < 0 || whole.is_on_crack(standing, from.side_id, middle))
+        continue;
+      for (const Vec2& bend : whole.find_bends(standing, from.barycentric, to.barycentric, tolerance))
+        out.corners.push_back({bend, from.side, from.side_id});
+    }
+    out.cells[c].corner_count = static_cast<int>(out.corners.size()) - out.cells[c].first_corner;
+  }
+  return out;
 }
 
 }  // namespace shatterbox::geometry

@@ -19,11 +19,18 @@ class StandingSurface {
   /// Number of the cell that holds a point of an element's material; -1 if the element has none.
   int cell_at(int element, const Vec2& barycentric) const;
 
+  /// Number of the cell that holds the middle of a cell of a piece; -1 if there is none.
+  int cell_of(const ShellMesh& piece, const ShellCell& cell) const;
+
   /// Where a point of a cell's polygon (material space, m) stands: affine in each triangle.
   Vec3 place(int cell, const Vec3& point) const;
 
   /// True if a point of a cell's border lies on a crack face of that number, open already.
   bool is_on_crack(int cell, int side_id, const Vec2& barycentric) const;
+
+  /// Where the straight line from one point of a cell's polygon to another stands bent, in its order: taken
+  /// from one of these to the next, it stands within `tolerance` m of straight.
+  std::vector<Vec2> find_bends(int cell, const Vec2& from, const Vec2& to, double tolerance) const;
 
   /// True if a place in an element or beside it is on the surface as it stands, but for `tolerance` m.
   bool holds(int element, const Vec3& place, double tolerance) const;
@@ -40,5 +47,9 @@ class StandingSurface {
   std::vector<std::vector<int>> vertex_elements_;
   std::vector<std::vector<Fold>> cell_triangles_;
 };
+
+/// A piece of the whole, with its new crack faces divided where they stand bent by more than `tolerance` m:
+/// so a crack has one course for what lies on both its sides, wherever their corners are.
+ShellMesh divide_at_bends(const ShellMesh& piece, const StandingSurface& whole, double tolerance);
 
 }  // namespace shatterbox::geometry

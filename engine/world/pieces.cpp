@@ -10,6 +10,8 @@
 namespace shatterbox::world {
 namespace {
 
+constexpr double kStraight = 0.05;  // of a kerf: what crack faces may be off their course
+
 /// Tips that stopped in this piece's own material.
 std::vector<fracture::CrackTip> tips_of_piece(const std::vector<fracture::CrackTip>& tips,
                                               const geometry::ShellMesh& mesh) {
@@ -27,6 +29,7 @@ Piece make_piece(geometry::ShellMesh mesh, const Fragile& parent, const fracture
   Piece piece;
   auto fragile = std::make_shared<Fragile>(parent);
   auto& subject = std::get<fracture::ShellSubject>(fragile->subject);
+  if (whole) mesh = geometry::divide_at_bends(mesh, *whole, kStraight * kKerf * parent.size);
   subject.mesh = std::make_shared<const geometry::ShellMesh>(std::move(mesh));
   subject.systems = make_systems(subject, subject.systems->shared_stiffness());
   subject.tips = tips_of_piece(decision.tips, *subject.mesh);
@@ -77,8 +80,9 @@ std::optional<geometry::StandingSurface> standing_of(const Fragile& fragile, con
 }
 
 Pieces split_up(const Fragile& parent, const body::Shape& shape, const fracture::Decision& decision) {
-  fracture::ShellSplit split =
-      fracture::split_shell(*decision.mesh, decision.contacts, {kLeastWidth * parent.size});
+  const auto& subject = std::get<fracture::ShellSubject>(parent.subject);
+  fracture::ShellSplit split = fracture::split_shell(*decision.mesh, decision.contacts,
+                                                     {kLeastWidth * parent.size, subject.mesh.get()});
   Pieces out;
   out.merged_count = split.merged_count;
   double area = 0.0;

@@ -2,6 +2,8 @@
 // whole.
 #include "engine/fracture/split_shell.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -230,7 +232,7 @@ double distance_to(const geometry::TriangleMesh& mesh, const Vec3& point) {
 }  // namespace
 
 TEST_CASE("a piece of a piece stays within the surface of the piece and keeps its own kerf") {
-  constexpr double kKerf = 1e-5;
+  constexpr double kKerf = 1e-5, kStraight = 0.05 * kKerf;
   for (const bool is_closed : {false, true}) {
     const auto elements = is_closed ? test::make_sphere(0.04, 0.02) : test::make_pane(0.1, 0.03);
     core::Random random(29, is_closed);
@@ -245,7 +247,8 @@ TEST_CASE("a piece of a piece stays within the surface of the piece and keeps it
       for (int i = 0; i < 20; ++i) test::cut_at_random(again, random);
       std::vector<geometry::TriangleMesh> born;
       for (const geometry::ShellMesh& child : fracture::split_shell(again.mesh()).pieces) {
-        const auto surface = geometry::extract_surface(child, kKerf, &standing);
+        const geometry::ShellMesh divided = geometry::divide_at_bends(child, standing, kStraight);
+        const auto surface = geometry::extract_surface(divided, kKerf, &standing);
         for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t) {
           std::array<Vec3, 3> x;
           for (std::size_t i = 0; i < 3; ++i)
@@ -267,4 +270,247 @@ TEST_CASE("a piece of a piece stays within the surface of the piece and keeps it
     CHECK(flipped == 0);
     CHECK(crossing == 0);
   }
+}
+
+namespace {
+
+/// m, between two surfaces that do not cross, or more than `reach`.
+double gap_between(const geometry::TriangleMesh& a, const geometry::TriangleMesh& b, double reach) {
+  const auto corner = [](const geometry::TriangleMesh& mesh, std::size_t t, std::size_t i) -> const Vec3& {
+    return mesh.positions[static_cast<std::size_t>(mesh.triangles[t][i % 3])];
+  };
+  double least = 1e300;
+  for (std::size_t t = 0; t < a.triangles.size(); ++t)
+    for (std::size_t u = 0; u < b.triangles.size(); ++u) {
+      Eigen::AlignedBox3d box_t, box_u;
+      for (std::size_t i = 0; i < 3; ++i) {
+        box_t.extend(corner(a, t, i));
+        box_u.extend(corner(b, u, i));
+      }
+      if (box_t.squaredExteriorDistance(box_u) > reach * reach) continue;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+          const auto between = geometry::closest_between_segments(corner(a, t, i), corner(a, t, i + 1),
+                                                                  corner(b, u, j), corner(b, u, j + 1));
+          least = std::min(least, between.distance);
+        }
+    }
+  return least;
+}
+
+/// An element of which all sides are rim, with corners (0, 0), (1, 0) and (0, 1) m.
+std::shared_ptr<const geometry::ShellElements> make_single_element() {
+  geometry::TriangleMesh mesh;
+  mesh.positions = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+  mesh.triangles = {{0, 1, 2}};
+  return test::make_elements(std::move(mesh));
+}
+
+/// A place on a side of a cell, a share of it from its begin.
+fracture::BorderPlace on_side(const fracture::ShellCutter& cutter, int cell, int side, double share) {
+  const auto& polygon = cutter.cell(cell).polygon;
+  const Vec2 from = polygon[static_cast<std::size_t>(side)].barycentric,
+             to = polygon[(static_cast<std::size_t>(side) + 1) % polygon.size()].barycentric;
+  return {side, false, from + share * (to - from)};
+}
+
+fracture::BorderPlace on_corner(const fracture::ShellCutter& cutter, int cell, int corner) {
+  return {corner, true, cutter.cell(cell).polygon[static_cast<std::size_t>(corner)].barycentric};
+}
+
+}  // namespace
+
+TEST_CASE("where a crack comes slantwise to the rim, its lips slide along the rim and not out over it") {
+  constexpr double kKerf = 1e-3;
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(make_single_element()));
+  REQUIRE(cutter.cut(0, on_side(cutter, 0, 0, 0.3), on_side(cutter, 0, 1, 0.3), SideKind::crack, 7));
+  const auto pieces = fracture::split_shell(cutter.mesh()).pieces;
+  REQUIRE(pieces.size() == 2);
+  std::vector<geometry::TriangleMesh> born;
+  for (const geometry::ShellMesh& piece : pieces) {
+    born.push_back(geometry::extract_surface(piece, kKerf).mesh);
+    for (const Vec3& p : born.back().positions) {
+      CHECK(p.y() >= -1e-15);
+      CHECK(p.x() >= -1e-15);
+      CHECK(p.x() + p.y() <= 1.0 + 1e-15);
+    }
+  }
+  const double gap = gap_between(born[0], born[1], 1.0);
+  CHECK(gap > 1.8 * kKerf);
+  CHECK(gap < 2.0 * kKerf);
+}
+
+TEST_CASE("a slit whose lips lie on each other stands back once something parts them") {
+  constexpr double kKerf = 1e-3;
+  const auto elements = test::make_pane(1.0, 0.2);
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(elements));
+  int middle = 0;
+  for (int t = 0; t < cutter.cell_count(); ++t)
+    if (position_in_element(*elements, t, Vec2(0.3, 0.3)).norm() <
+        position_in_element(*elements, middle, Vec2(0.3, 0.3)).norm())
+      middle = t;
+  REQUIRE(cutter.cut(middle, on_side(cutter, middle, 0, 0.5), on_side(cutter, middle, 1, 0.25),
+                     SideKind::crack, cutter.new_side_id()));
+  const geometry::ShellMesh whole = cutter.mesh();
+  const geometry::StandingSurface standing(whole, geometry::extract_surface(whole, kKerf).mesh.positions);
+
+  // From the middle of the slit through what lies between it and a corner of the element.
+  fracture::ShellCutter again(whole);
+  int beside = 0, slit = 0;
+  for (int c = 0; c < again.cell_count(); ++c) {
+    const auto& polygon = again.cell(c).polygon;
+    for (std::size_t s = 0; s < polygon.size(); ++s)
+      if (polygon.size() == 3 && polygon[s].side == SideKind::crack) {
+        beside = c;
+        slit = static_cast<int>(s);
+      }
+  }
+  const fracture::BorderPlace start = on_side(again, beside, slit, 0.5);
+  const Vec3 junction = position_in_element(*elements, middle, start.barycentric);
+  const Vec3 tip = position_in_element(
+      *elements, middle, again.cell(beside).polygon[static_cast<std::size_t>(slit)].barycentric);
+  REQUIRE(again.cut(beside, start, on_corner(again, beside, (slit + 2) % 3), SideKind::crack,
+                    again.new_side_id()));
+  const auto surface = geometry::extract_surface(again.mesh(), kKerf, &standing);
+  const Vec3 along = (junction - tip).normalized();
+  int lips = 0;
+  for (const Vec3& p : surface.mesh.positions) {
+    if ((p - junction).norm() > 3.0 * kKerf) continue;
+    ++lips;
+    CHECK(along.cross(p - junction).norm() > 0.9 * kKerf);  // from the lip on the slit's other side
+  }
+  CHECK(lips == 2);
+}
+
+TEST_CASE("a narrow piece joins its neighbour over a new crack, not over one that stands open") {
+  // An old crack along y = 0.5 to the diagonal of a square; new ones make a narrow piece above it, which has
+  // two neighbours above, each with half of its border, and all of the old crack below.
+  geometry::TriangleMesh square;
+  square.positions = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+  square.triangles = {{0, 2, 3}, {0, 1, 2}};
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(test::make_elements(std::move(square))));
+  constexpr int kOld = 100, kNew = 101, kAcross = 102;
+  REQUIRE(cutter.cut(0, on_side(cutter, 0, 0, 0.5), on_side(cutter, 0, 2, 0.5), SideKind::crack, kOld));
+  const geometry::ShellMesh whole = cutter.mesh();
+  const auto cell_at = [&](const Vec3& point) {
+    for (int c = 0; c < cutter.cell_count(); ++c) {
+      const auto& polygon = cutter.cell(c).polygon;
+      bool is_in = true;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto place = [&](std::size_t k) {
+          return position_in_element(cutter.elements(), cutter.cell(c).element,
+                                     polygon[k % polygon.size()].barycentric);
+        };
+        is_in = is_in && (place(i + 1) - place(i)).cross(point - place(i)).z() > 0.0;
+      }
+      if (is_in) return c;
+    }
+    return -1;
+  };
+  const auto find_corner = [&](int cell, const Vec3& point) {
+    const auto& polygon = cutter.cell(cell).polygon;
+    int nearest = 0;
+    const auto distance = [&](int k) {
+      return (position_in_element(cutter.elements(), cutter.cell(cell).element,
+                                  polygon[static_cast<std::size_t>(k)].barycentric) -
+              point)
+          .norm();
+    };
+    for (int k = 1; k < static_cast<int>(polygon.size()); ++k)
+      if (distance(k) < distance(nearest)) nearest = k;
+    return nearest;
+  };
+  const Vec3 tip(0.5, 0.5, 0.0), rim(0.0, 0.5, 0.0);
+  const int upper = cell_at({0.1, 0.9, 0.0});
+  REQUIRE(upper >= 0);
+  // The rim's side begins above and ends at the old crack.
+  const int last = find_corner(upper, rim);
+  const int count = static_cast<int>(cutter.cell(upper).polygon.size());
+  REQUIRE(cutter.cut(upper, on_side(cutter, upper, (last + count - 1) % count, 0.99),
+                     on_corner(cutter, upper, find_corner(upper, tip)), SideKind::crack, kNew));
+  const int above = cell_at({0.1, 0.9, 0.0});
+  const int face = find_corner(above, {0.0, 0.505, 0.0});
+  REQUIRE(cutter.cell(above).polygon[static_cast<std::size_t>(face)].side == SideKind::crack);
+  REQUIRE(cutter.cut(above, on_side(cutter, above, face, 0.5),
+                     on_corner(cutter, above, find_corner(above, {0.0, 1.0, 0.0})), SideKind::crack,
+                     kAcross));
+  const geometry::ShellMesh mesh = cutter.mesh();
+  const auto count_faces = [](const std::vector<geometry::ShellMesh>& pieces) {
+    int faces = 0;
+    for (const geometry::ShellMesh& piece : pieces)
+      for (const auto& corner : piece.corners)
+        faces += corner.side == SideKind::crack && corner.side_id == kOld;
+    return faces;
+  };
+  const auto split = fracture::split_shell(mesh, {0.01, &whole});
+  CHECK(split.merged_count == 1);
+  CHECK(count_faces(split.pieces) == 2);
+  const auto unaware = fracture::split_shell(mesh, {0.01});
+  CHECK(unaware.merged_count == 1);
+  CHECK(count_faces(unaware.pieces) == 0);
+}
+
+TEST_CASE("pieces of a piece that are wide enough are born apart") {
+  constexpr double kKerf = 1e-5;
+  int children = 0, touching = 0;
+  for (const std::uint64_t seed : {13, 16, 29, 40})
+    for (const bool is_closed : {false, true}) {
+      core::Random random(seed, is_closed);
+      fracture::ShellCutter cutter(
+          geometry::make_shell_mesh(is_closed ? test::make_sphere(0.04, 0.02) : test::make_pane(0.1, 0.03)));
+      for (int i = 0; i < 300; ++i) test::cut_at_random(cutter, random);
+      for (const geometry::ShellMesh& piece : fracture::split_shell(cutter.mesh()).pieces) {
+        const geometry::StandingSurface standing(piece,
+                                                 geometry::extract_surface(piece, kKerf).mesh.positions);
+        fracture::ShellCutter again(piece);
+        for (int i = 0; i < 20; ++i) test::cut_at_random(again, random);
+        std::vector<geometry::TriangleMesh> born;
+        for (const auto& child : fracture::split_shell(again.mesh(), {10.0 * kKerf, &piece}).pieces) {
+          const auto divided = geometry::divide_at_bends(child, standing, 0.05 * kKerf);
+          const auto surface = geometry::extract_surface(divided, kKerf, &standing);
+          for (const geometry::TriangleMesh& sibling : born)
+            touching += gap_between(surface.mesh, sibling, kKerf) < 1e-6 * kKerf;
+          born.push_back(surface.mesh);
+          ++children;
+        }
+      }
+    }
+  CHECK(children > 500);
+  CHECK(touching == 0);
+}
+
+TEST_CASE("a new crack in a piece is divided where the piece stands bent") {
+  constexpr double kKerf = 1e-5, kStraight = 0.05 * kKerf;
+  core::Random random(29, 0);
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(test::make_pane(0.1, 0.03)));
+  for (int i = 0; i < 300; ++i) test::cut_at_random(cutter, random);
+  int bends = 0;
+  double worst = 0.0;
+  for (const geometry::ShellMesh& piece : fracture::split_shell(cutter.mesh()).pieces) {
+    const geometry::StandingSurface standing(piece, geometry::extract_surface(piece, kKerf).mesh.positions);
+    fracture::ShellCutter again(piece);
+    for (int i = 0; i < 20; ++i) test::cut_at_random(again, random);
+    const geometry::ShellMesh divided = geometry::divide_at_bends(again.mesh(), standing, kStraight);
+    bends += static_cast<int>(divided.corners.size() - again.mesh().corners.size());
+    for (const geometry::ShellCell& cell : divided.cells) {
+      const int stands = standing.cell_of(divided, cell);
+      for (int s = 0; s < cell.corner_count; ++s) {
+        const auto corner = [&](int i) -> const geometry::ShellCorner& {
+          return divided.corners[static_cast<std::size_t>(cell.first_corner + i % cell.corner_count)];
+        };
+        const Vec2 from = corner(s).barycentric, to = corner(s + 1).barycentric;
+        if (corner(s).side != SideKind::crack ||
+            standing.is_on_crack(stands, corner(s).side_id, 0.5 * (from + to)))
+          continue;
+        const auto place = [&](double share) {
+          return standing.place(
+              stands, position_in_element(*divided.elements, cell.element, from + share * (to - from)));
+        };
+        for (const double share : {0.25, 0.5, 0.75})
+          worst = std::max(worst, (place(share) - place(0.0) - share * (place(1.0) - place(0.0))).norm());
+      }
+    }
+  }
+  CHECK(bends > 50);
+  CHECK(worst < 1.01 * kStraight);
 }
