@@ -23,6 +23,30 @@ bool holds_corner(const std::vector<Vec2>& polygon, std::size_t i) {
   return false;
 }
 
+double ear_area(const std::vector<Vec2>& polygon, std::size_t i) {
+  const Vec2& p = polygon[(i + polygon.size() - 1) % polygon.size()];
+  return cross2(polygon[i] - p, polygon[(i + 1) % polygon.size()] - p);
+}
+
+/// The corner with the best-shaped ear of those that leave more than a line of the `left` area behind (both
+/// twice the area, as is `least`); the number of corners if there is none.
+std::size_t find_ear(const std::vector<Vec2>& polygon, double left, double least, bool may_hold_corners) {
+  std::size_t best = polygon.size();
+  double best_quality = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2& p = polygon[(i + polygon.size() - 1) % polygon.size()];
+    const Vec2& q = polygon[i];
+    const Vec2& r = polygon[(i + 1) % polygon.size()];
+    const double area = ear_area(polygon, i);
+    if (!(area > least) || (polygon.size() > 3 && !(left - area > least))) continue;
+    const double quality = area / ((q - p).squaredNorm() + (r - q).squaredNorm() + (p - r).squaredNorm());
+    if (!(quality > best_quality) || (!may_hold_corners && holds_corner(polygon, i))) continue;
+    best = i;
+    best_quality = quality;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<Triangle> clip_ears(std::vector<Vec2> polygon) {
@@ -34,28 +58,14 @@ std::vector<Triangle> clip_ears(std::vector<Vec2> polygon) {
     left += cross2(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
   const double least = 1e-12 * left;
   while (ring.size() >= 3) {
-    std::size_t best = ring.size();
-    double best_quality = 0.0;
-    double best_area = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Vec2& p = polygon[(i + ring.size() - 1) % ring.size()];
-      const Vec2& q = polygon[i];
-      const Vec2& r = polygon[(i + 1) % ring.size()];
-      const double area = cross2(q - p, r - p);
-      if (!(area > least) || (ring.size() > 3 && !(left - area > least))) continue;
-      const double quality = area / ((q - p).squaredNorm() + (r - q).squaredNorm() + (p - r).squaredNorm());
-      if (quality > best_quality && !holds_corner(polygon, i)) {
-        best = i;
-        best_quality = quality;
-        best_area = area;
-      }
-    }
-    if (best == ring.size()) break;  // what is left has no area
+    std::size_t ear = find_ear(polygon, left, least, false);
+    if (ear == ring.size()) ear = find_ear(polygon, left, least, true);  // it crosses itself by a little
+    if (ear == ring.size()) break;                                       // what is left has no area
     triangles.push_back(
-        {ring[(best + ring.size() - 1) % ring.size()], ring[best], ring[(best + 1) % ring.size()]});
-    left -= best_area;
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(best));
-    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(best));
+        {ring[(ear + ring.size() - 1) % ring.size()], ring[ear], ring[(ear + 1) % ring.size()]});
+    left -= ear_area(polygon, ear);
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear));
   }
   return triangles;
 }

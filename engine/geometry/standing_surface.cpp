@@ -27,6 +27,25 @@ double inside_side(const ShellMesh& mesh, const ShellCell& cell, int side, const
   return length > 0.0 ? cross_of(along, point - from) / length : 0.0;
 }
 
+/// Marks, of the places of a course between two of them, those without which it would be off by more than
+/// `tolerance`; each is a share of the way.
+void keep_bends(const std::vector<double>& shares, const std::vector<Vec3>& places, double tolerance,
+                Size first, Size last, std::vector<char>& is_kept) {
+  Size furthest = first;
+  double most = tolerance;
+  for (Size k = first + 1; k < last; ++k) {
+    const double share = (shares[k] - shares[first]) / (shares[last] - shares[first]);
+    const double off = (places[k] - places[first] - share * (places[last] - places[first])).norm();
+    if (!(off > most)) continue;
+    most = off;
+    furthest = k;
+  }
+  if (furthest == first) return;
+  is_kept[furthest] = 1;
+  keep_bends(shares, places, tolerance, first, furthest, is_kept);
+  keep_bends(shares, places, tolerance, furthest, last, is_kept);
+}
+
 }  // namespace
 
 StandingSurface::StandingSurface(const ShellMesh& mesh, std::vector<Vec3> placed)
@@ -82,13 +101,8 @@ Vec3 StandingSurface::place(int cell, const Vec3& point) const {
   return place;
 }
 
-std::vector<Vec2> StandingSurface::find_bends(int cell, const Vec2& from, const Vec2& to,
-                                              double tolerance) const {
-  const int element = mesh_.cells[at(cell)].element;
-  const Vec3 begin = position_in_element(*mesh_.elements, element, from),
-             end = position_in_element(*mesh_.elements, element, to);
-  // Affine in each triangle, it bends only where it goes from one to the next.
-  const Mat3 frame = facet_frame(*mesh_.elements, element);
+std::vector<double> StandingSurface::find_folds_across(int cell, const Vec3& begin, const Vec3& end) const {
+  const Mat3 frame = facet_frame(*mesh_.elements, mesh_.cells[at(cell)].element);
   const auto flat = [&](const Vec3& v) { return Vec2(frame.col(0).dot(v), frame.col(1).dot(v)); };
   const Vec2 along = flat(end - begin);
   std::vector<double> shares = {0.0, 1.0};
@@ -102,36 +116,32 @@ std::vector<Vec2> StandingSurface::find_bends(int cell, const Vec2& from, const 
       if (share > 0.0 && share < 1.0 && on_side >= 0.0 && on_side <= 1.0) shares.push_back(share);
     }
   std::sort(shares.begin(), shares.end());
+  shares.erase(std::unique(shares.begin(), shares.end()), shares.end());
+  return shares;
+}
+
+std::vector<Vec2> StandingSurface::find_bends(int cell, const Vec2& from, const Vec2& to,
+                                              double tolerance) const {
+  const int element = mesh_.cells[at(cell)].element;
+  const Vec3 begin = position_in_element(*mesh_.elements, element, from),
+             end = position_in_element(*mesh_.elements, element, to);
+  // Affine in each triangle, it bends only where it goes from one to the next.
+  const std::vector<double> shares = find_folds_across(cell, begin, end);
   std::vector<Vec3> places;
   for (const double share : shares) places.push_back(place(cell, begin + share * (end - begin)));
   std::vector<char> is_kept(shares.size(), 0);
-  const auto keep_between = [&](const auto& keep, Size first, Size last) -> void {
-    Size furthest = first;
-    double most = tolerance;
-    for (Size k = first + 1; k < last; ++k) {
-      const double share = (shares[k] - shares[first]) / (shares[last] - shares[first]);
-      const double off = (places[k] - places[first] - share * (places[last] - places[first])).norm();
-      if (!(off > most)) continue;
-      most = off;
-      furthest = k;
-    }
-    if (furthest == first) return;
-    is_kept[furthest] = 1;
-    keep(keep, first, furthest);
-    keep(keep, furthest, last);
-  };
-  keep_between(keep_between, 0, shares.size() - 1);
+  is_kept.back() = 1;
+  keep_bends(shares, places, tolerance, 0, shares.size() - 1, is_kept);
   std::vector<Vec2> bends;
-  Vec3 last = places.front();
-  const Vec3 onward = places.back() - places.front();
+  Size last = 0;
   for (Size k = 1; k < shares.size(); ++k) {
-    const bool is_end = k + 1 == shares.size();
-    if (!is_kept[k] && !is_end) continue;
+    if (!is_kept[k]) continue;
     // Beside slivers the surface may stand folded over: what runs to and fro there has no better course.
-    if (!((places[k] - last).dot(onward) > 0.0)) return {};
-    last = places[k];
-    if (!is_end) bends.push_back(from + shares[k] * (to - from));
+    if (!((places[k] - places[last]).dot(places.back() - places.front()) > 0.0)) return {};
+    last = k;
+    bends.push_back(from + shares[k] * (to - from));
   }
+  bends.pop_back();  // the end
   return bends;
 }
 

@@ -36,6 +36,9 @@ class StandingSurface {
   bool holds(int element, const Vec3& place, double tolerance) const;
 
  private:
+  /// Shares of a straight line through a cell at which it goes from one triangle to the next; 0 and 1 too.
+  std::vector<double> find_folds_across(int cell, const Vec3& begin, const Vec3& end) const;
+
   struct Fold {  // a triangle before and after
     Triangle vertices;
     std::array<Vec3, 3> corners;
