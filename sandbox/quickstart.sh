@@ -9,7 +9,7 @@ install_packages build "${BUILD_PACKAGES[@]}"
 
 echo "== building"
 unity=()  # a first build compiles the files of a folder together, which takes half the time
-[ -e build/release/CMakeCache.txt ] || unity=(-DCMAKE_UNITY_BUILD=ON)
+[ -e build/release/CMakeCache.txt ] || unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16)
 cmake --preset release -DSHATTERBOX_TESTS=OFF "${unity[@]}" >/dev/null
 cmake --build --preset release --target shatterbox
 

@@ -18,7 +18,7 @@ test_preset() {
   shift
   echo "== $preset"
   local unity=()
-  [ -e "build/$preset/CMakeCache.txt" ] || unity=(-DCMAKE_UNITY_BUILD=ON)
+  [ -e "build/$preset/CMakeCache.txt" ] || unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16)
   cmake --preset "$preset" -DSHATTERBOX_TESTS=ON "${unity[@]}" "${launcher[@]}" -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=mold >/dev/null
   cmake --build "build/$preset" -j "$jobs" --target "${@/#/tests_}"
   echo "== $preset built in $((SECONDS - begin)) s"

@@ -85,7 +85,7 @@ Vec3 sliding_retreat(const Border& border, const std::vector<const BorderNormal*
 
 /// The retreat of one vertex from all its crack faces, along the rim where it lies on one; zero at a tip.
 /// Never nearer to an older face, and never out over the rim.
-Vec3 retreat(const Border& border, const Freedom& freedom, double kerf) {
+Vec3 find_retreat(const Border& border, const Freedom& freedom, double kerf) {
   if (freedom.is_corner() || is_tip(border)) return Vec3::Zero();
   std::vector<const BorderNormal*> held;
   Vec3 shift = sliding_retreat(border, held, freedom, kerf);
@@ -209,7 +209,7 @@ double least_kerf_of(const std::vector<BorderNormal>& normals, const std::vector
   double least = kerf;
   for_cracked(normals, [&](const Border& border) {
     const int vertex = border.front().vertex;
-    if (retreat(border, freedoms[at(vertex)], kerf).isZero(0.0)) return;  // a tip
+    if (find_retreat(border, freedoms[at(vertex)], kerf).isZero(0.0)) return;  // a tip
     for (const BorderNormal& n : border)
       if (n.kind == BorderKind::crack) least = std::min(least, shift[at(vertex)].dot(n.inward));
   });
@@ -226,7 +226,7 @@ double stand_back(TriangleMesh& mesh, const std::vector<Vec3>& triangle_normals,
   for (const BorderNormal& n : normals) is_border[at(n.vertex)] = 1;
   for_cracked(normals, [&](const Border& border) {
     const int vertex = border.front().vertex;
-    shift[at(vertex)] = retreat(border, freedoms[at(vertex)], kerf);
+    shift[at(vertex)] = find_retreat(border, freedoms[at(vertex)], kerf);
   });
   limit(mesh, is_border, freedoms, is_within, shift);
   for (Size v = 0; v < shift.size(); ++v) mesh.positions[v] += shift[v];

@@ -81,7 +81,7 @@ void for_crossing(const BoxedMesh& a, const BoxedMesh& b, const Exempt& are_exem
 /// Where a way from a vertex first meets a face that is not at the vertex, its border included, in lengths of
 /// the way; `most` if nowhere before that.
 double way_to_face(const BoxedMesh& mesh, int vertex, const Vec3& way, double most) {
-  constexpr double kParallel = 1e-9, kSlack = 1e-6;
+  constexpr double kParallel = 1e-9, kOnSide = 1e-6;
   const Vec3& start = mesh.positions[at(vertex)];
   Box box;
   box.include(start);
@@ -109,7 +109,7 @@ double way_to_face(const BoxedMesh& mesh, int vertex, const Vec3& way, double mo
       if (!(length > kParallel && length < nearest)) continue;
       const Vec3 hit = start + length * way - a;
       const double b = normal.dot(hit.cross(ac)) / squared, c = normal.dot(ab.cross(hit)) / squared;
-      if (b >= -kSlack && c >= -kSlack && b + c <= 1.0 + kSlack) nearest = length;
+      if (b >= -kOnSide && c >= -kOnSide && b + c <= 1.0 + kOnSide) nearest = length;
     }
   }
   return nearest;

@@ -12,8 +12,8 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kOnFace = 1e-9;     // of an element: as far as a point of a face may lie beside it
-constexpr double kParallel = 1e-12;  // sine of an angle at which lines have no place where they cross
+constexpr double kOnFace = 1e-9;       // of an element: as far as a point of a face may lie beside it
+constexpr double kNoCrossing = 1e-12;  // sine of an angle at which lines have no place where they cross
 
 double cross_of(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -111,7 +111,7 @@ std::vector<double> StandingSurface::find_folds_across(int cell, const Vec3& beg
       const Vec2 corner = flat(fold.corners[i] - begin),
                  side = flat(fold.corners[(i + 1) % 3] - fold.corners[i]);
       const double across = cross_of(along, side);
-      if (!(std::abs(across) > kParallel * along.norm() * side.norm())) continue;
+      if (!(std::abs(across) > kNoCrossing * along.norm() * side.norm())) continue;
       const double share = cross_of(corner, side) / across, on_side = cross_of(corner, along) / across;
       if (share > 0.0 && share < 1.0 && on_side >= 0.0 && on_side <= 1.0) shares.push_back(share);
     }

@@ -10,10 +10,10 @@
 namespace shatterbox {
 namespace {
 
-constexpr double kRadius = 0.05, kHalf = 0.1;  // m
+constexpr double kRadius = 0.05, kHalfLength = 0.1;  // m
 
 body::Body make_capsule(const Vec3& position) {
-  return test::make_capsule(kRadius, kHalf, position);
+  return test::make_capsule(kRadius, kHalfLength, position);
 }
 
 /// With its axis along x or z.
@@ -35,7 +35,7 @@ test::Scene slope(double angle, double friction, const Vec3& axis) {
   test::Scene scene;
   scene.settings.gravity = 9.81 * Vec3(std::sin(angle), -std::cos(angle), 0);
   scene.add(test::make_plane()).friction = friction;
-  const double gap = 2.0 * (kRadius + kHalf) * scene.settings.kept_gap;
+  const double gap = 2.0 * (kRadius + kHalfLength) * scene.settings.kept_gap;
   auto& capsule = scene.add(make_capsule(Vec3(0, kRadius + gap, 0)));
   capsule.friction = friction;
   capsule.pose.rotation = lying(axis);
@@ -71,7 +71,7 @@ TEST_CASE("a capsule rolls down a slope across it and slides down along it as th
     const double spin_inertia = b.shape->inertia(1, 1) / (b.shape->mass * kRadius * kRadius);
     CHECK(b.pose.translation.x() == Approx(0.5 * slope_force / (1.0 + spin_inertia)).epsilon(0.01));
     CHECK(b.angular_velocity.z() == Approx(-b.velocity.x() / kRadius).epsilon(0.01));
-    CHECK(std::abs(end_of(b, 1).y() - end_of(b, -1).y()) < 1e-4 * kHalf);
+    CHECK(std::abs(end_of(b, 1).y() - end_of(b, -1).y()) < 1e-4 * kHalfLength);
   }
   {
     auto scene = slope(angle, 0.95 * std::tan(angle), Vec3::UnitX());
@@ -82,7 +82,7 @@ TEST_CASE("a capsule rolls down a slope across it and slides down along it as th
   {
     auto scene = slope(angle, 1.05 * std::tan(angle), Vec3::UnitX());
     for (int i = 0; i < kSteps; ++i) scene.step();
-    CHECK(std::abs(scene.bodies[1].pose.translation.x()) < 1e-3 * kHalf);
+    CHECK(std::abs(scene.bodies[1].pose.translation.x()) < 1e-3 * kHalfLength);
   }
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("capsules that meet keep momentum and angular momentum and gain no ene
     INFO("round " << round);
     CHECK(most <= energy * (1.0 + 1e-9));
     CHECK((scene.momentum() - momentum).norm() < 1e-12 * 2.0 * scene.bodies[0].shape->mass);
-    const double measure = spin.norm() + scene.bodies[0].shape->mass * kHalf;
+    const double measure = spin.norm() + scene.bodies[0].shape->mass * kHalfLength;
     CHECK((scene.spin() - spin).norm() < (rounds == 0 ? 1e-9 : 1e-2) * measure);
   }
 }

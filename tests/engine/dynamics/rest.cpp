@@ -7,7 +7,7 @@
 namespace shatterbox {
 namespace {
 
-constexpr double kHalf = 0.1;  // m
+constexpr double kHalfSide = 0.1;  // m
 
 // A row of boxes side by side on the ground, and time for all to fall asleep.
 test::Scene sleeping_row(const std::vector<double>& densities, double friction = 0.5) {
@@ -16,8 +16,8 @@ test::Scene sleeping_row(const std::vector<double>& densities, double friction =
   scene.add(test::make_plane());
   double x = 0.0;
   for (const double density : densities) {
-    scene.add(test::make_box(Vec3::Constant(kHalf), Vec3(x, kHalf + 5e-5, 0), true, density));
-    x += 2.0 * kHalf + 1e-4;
+    scene.add(test::make_box(Vec3::Constant(kHalfSide), Vec3(x, kHalfSide + 5e-5, 0), true, density));
+    x += 2.0 * kHalfSide + 1e-4;
   }
   for (int i = 0; i < 300; ++i) scene.step();
   for (std::size_t k = 1; k < scene.bodies.size(); ++k) {
@@ -56,7 +56,7 @@ TEST_CASE("a feeble one does not keep a heavy one awake") {
 
 TEST_CASE("a blow wakes the row to its end, and its momentum goes through") {
   auto scene = sleeping_row({1000, 1000, 1000, 1000}, 0.0);
-  auto ball = test::make_sphere(kHalf, Vec3(-3.0 * kHalf, kHalf + 1e-4, 0), 5000.0);
+  auto ball = test::make_sphere(kHalfSide, Vec3(-3.0 * kHalfSide, kHalfSide + 1e-4, 0), 5000.0);
   ball.velocity = Vec3(5, 0, 0);
   const double momentum = ball.shape->mass * 5.0;
   scene.add(std::move(ball));
@@ -95,13 +95,13 @@ TEST_CASE("who sleeps on something falls when it has slipped away") {
   test::Scene scene;
   scene.settings.overrides = {{0, 0, 0.0, 0.0}};
   scene.add(test::make_plane());
-  scene.add(test::make_box(Vec3(kHalf, 0.01, kHalf), Vec3(0, 0.01, 0), true, 1.0));
-  scene.add(test::make_box(Vec3::Constant(kHalf), Vec3(0, 0.02 + kHalf, 0), true, 1000.0));
+  scene.add(test::make_box(Vec3(kHalfSide, 0.01, kHalfSide), Vec3(0, 0.01, 0), true, 1.0));
+  scene.add(test::make_box(Vec3::Constant(kHalfSide), Vec3(0, 0.02 + kHalfSide, 0), true, 1000.0));
   for (int i = 0; i < 300; ++i) scene.step();
   REQUIRE(!scene.bodies[2].is_awake);
   int hanging = 0;
-  for (int i = 0; i < 480 && scene.bodies[2].pose.translation.y() > kHalf + 2e-3; ++i) {
-    if (scene.bodies[1].pose.translation.x() < 2.5 * kHalf) {
+  for (int i = 0; i < 480 && scene.bodies[2].pose.translation.y() > kHalfSide + 2e-3; ++i) {
+    if (scene.bodies[1].pose.translation.x() < 2.5 * kHalfSide) {
       scene.bodies[1].is_awake = true;
       scene.bodies[1].velocity = Vec3(0.3, 0, 0);
     } else {
@@ -110,7 +110,7 @@ TEST_CASE("who sleeps on something falls when it has slipped away") {
     scene.step();
   }
   CHECK(hanging <= 60);
-  CHECK(scene.bodies[2].pose.translation.y() < kHalf + 2e-3);
+  CHECK(scene.bodies[2].pose.translation.y() < kHalfSide + 2e-3);
 }
 
 }  // namespace shatterbox

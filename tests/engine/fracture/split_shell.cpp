@@ -190,18 +190,28 @@ TEST_CASE("a surface without cuts is the mesh itself") {
   CHECK(surface.least_kerf == 0.01);
 }
 
+namespace {
+
+/// One whole element in the middle of a pane is cut from edge to edge: two tips, one slit. Its number.
+int cut_slit(fracture::ShellCutter& cutter) {
+  const geometry::ShellElements& elements = cutter.elements();
+  int middle = 0;
+  for (int t = 0; t < cutter.cell_count(); ++t)
+    if (position_in_element(elements, t, Vec2(0.3, 0.3)).norm() <
+        position_in_element(elements, middle, Vec2(0.3, 0.3)).norm())
+      middle = t;
+  const fracture::BorderPlace a{0, false, geometry::barycentric_on_edge(elements, middle, 0, 0.5)};
+  const fracture::BorderPlace b{1, false, geometry::barycentric_on_edge(elements, middle, 1, 0.25)};
+  REQUIRE(cutter.cut(middle, a, b, SideKind::crack, cutter.new_side_id()));
+  return middle;
+}
+
+}  // namespace
+
 TEST_CASE("a crack that ends inside is a slit whose lips meet at the tip") {
   const auto elements = test::make_pane(1.0, 0.2);
   fracture::ShellCutter cutter(geometry::make_shell_mesh(elements));
-  // One whole element in the middle is cut from edge to edge: two tips, one slit.
-  int middle = 0;
-  for (int t = 0; t < cutter.cell_count(); ++t)
-    if (position_in_element(*elements, t, Vec2(0.3, 0.3)).norm() <
-        position_in_element(*elements, middle, Vec2(0.3, 0.3)).norm())
-      middle = t;
-  const fracture::BorderPlace a{0, false, geometry::barycentric_on_edge(*elements, middle, 0, 0.5)};
-  const fracture::BorderPlace b{1, false, geometry::barycentric_on_edge(*elements, middle, 1, 0.25)};
-  REQUIRE(cutter.cut(middle, a, b, SideKind::crack, cutter.new_side_id()));
+  cut_slit(cutter);
   const auto split = fracture::split_shell(cutter.mesh());
   REQUIRE(split.pieces.size() == 1);
   const auto surface = geometry::extract_surface(split.pieces[0], 1e-3);
@@ -318,6 +328,34 @@ fracture::BorderPlace on_corner(const fracture::ShellCutter& cutter, int cell, i
   return {corner, true, cutter.cell(cell).polygon[static_cast<std::size_t>(corner)].barycentric};
 }
 
+Vec3 place_of_corner(const fracture::ShellCutter& cutter, int cell, std::size_t corner) {
+  const auto& polygon = cutter.cell(cell).polygon;
+  return position_in_element(cutter.elements(), cutter.cell(cell).element,
+                             polygon[corner % polygon.size()].barycentric);
+}
+
+/// Of a flat mesh: the cell that holds a point, -1 if none does.
+int cell_at(const fracture::ShellCutter& cutter, const Vec3& point) {
+  for (int c = 0; c < cutter.cell_count(); ++c) {
+    bool is_in = true;
+    for (std::size_t i = 0; i < cutter.cell(c).polygon.size(); ++i) {
+      const Vec3 from = place_of_corner(cutter, c, i);
+      is_in = is_in && (place_of_corner(cutter, c, i + 1) - from).cross(point - from).z() > 0.0;
+    }
+    if (is_in) return c;
+  }
+  return -1;
+}
+
+/// The corner of a cell that is nearest to a point.
+int corner_at(const fracture::ShellCutter& cutter, int cell, const Vec3& point) {
+  std::size_t nearest = 0;
+  const auto distance = [&](std::size_t k) { return (place_of_corner(cutter, cell, k) - point).norm(); };
+  for (std::size_t k = 1; k < cutter.cell(cell).polygon.size(); ++k)
+    if (distance(k) < distance(nearest)) nearest = k;
+  return static_cast<int>(nearest);
+}
+
 }  // namespace
 
 TEST_CASE("where a crack comes slantwise to the rim, its lips slide along the rim and not out over it") {
@@ -344,13 +382,7 @@ TEST_CASE("a slit whose lips lie on each other stands back once something parts 
   constexpr double kKerf = 1e-3;
   const auto elements = test::make_pane(1.0, 0.2);
   fracture::ShellCutter cutter(geometry::make_shell_mesh(elements));
-  int middle = 0;
-  for (int t = 0; t < cutter.cell_count(); ++t)
-    if (position_in_element(*elements, t, Vec2(0.3, 0.3)).norm() <
-        position_in_element(*elements, middle, Vec2(0.3, 0.3)).norm())
-      middle = t;
-  REQUIRE(cutter.cut(middle, on_side(cutter, middle, 0, 0.5), on_side(cutter, middle, 1, 0.25),
-                     SideKind::crack, cutter.new_side_id()));
+  const int middle = cut_slit(cutter);
   const geometry::ShellMesh whole = cutter.mesh();
   const geometry::StandingSurface standing(whole, geometry::extract_surface(whole, kKerf).mesh.positions);
 
@@ -392,47 +424,19 @@ TEST_CASE("a narrow piece joins its neighbour over a new crack, not over one tha
   constexpr int kOld = 100, kNew = 101, kAcross = 102;
   REQUIRE(cutter.cut(0, on_side(cutter, 0, 0, 0.5), on_side(cutter, 0, 2, 0.5), SideKind::crack, kOld));
   const geometry::ShellMesh whole = cutter.mesh();
-  const auto cell_at = [&](const Vec3& point) {
-    for (int c = 0; c < cutter.cell_count(); ++c) {
-      const auto& polygon = cutter.cell(c).polygon;
-      bool is_in = true;
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const auto place = [&](std::size_t k) {
-          return position_in_element(cutter.elements(), cutter.cell(c).element,
-                                     polygon[k % polygon.size()].barycentric);
-        };
-        is_in = is_in && (place(i + 1) - place(i)).cross(point - place(i)).z() > 0.0;
-      }
-      if (is_in) return c;
-    }
-    return -1;
-  };
-  const auto find_corner = [&](int cell, const Vec3& point) {
-    const auto& polygon = cutter.cell(cell).polygon;
-    int nearest = 0;
-    const auto distance = [&](int k) {
-      return (position_in_element(cutter.elements(), cutter.cell(cell).element,
-                                  polygon[static_cast<std::size_t>(k)].barycentric) -
-              point)
-          .norm();
-    };
-    for (int k = 1; k < static_cast<int>(polygon.size()); ++k)
-      if (distance(k) < distance(nearest)) nearest = k;
-    return nearest;
-  };
   const Vec3 tip(0.5, 0.5, 0.0), rim(0.0, 0.5, 0.0);
-  const int upper = cell_at({0.1, 0.9, 0.0});
+  const int upper = cell_at(cutter, {0.1, 0.9, 0.0});
   REQUIRE(upper >= 0);
   // The rim's side begins above and ends at the old crack.
-  const int last = find_corner(upper, rim);
+  const int last = corner_at(cutter, upper, rim);
   const int count = static_cast<int>(cutter.cell(upper).polygon.size());
   REQUIRE(cutter.cut(upper, on_side(cutter, upper, (last + count - 1) % count, 0.99),
-                     on_corner(cutter, upper, find_corner(upper, tip)), SideKind::crack, kNew));
-  const int above = cell_at({0.1, 0.9, 0.0});
-  const int face = find_corner(above, {0.0, 0.505, 0.0});
+                     on_corner(cutter, upper, corner_at(cutter, upper, tip)), SideKind::crack, kNew));
+  const int above = cell_at(cutter, {0.1, 0.9, 0.0});
+  const int face = corner_at(cutter, above, {0.0, 0.505, 0.0});
   REQUIRE(cutter.cell(above).polygon[static_cast<std::size_t>(face)].side == SideKind::crack);
   REQUIRE(cutter.cut(above, on_side(cutter, above, face, 0.5),
-                     on_corner(cutter, above, find_corner(above, {0.0, 1.0, 0.0})), SideKind::crack,
+                     on_corner(cutter, above, corner_at(cutter, above, {0.0, 1.0, 0.0})), SideKind::crack,
                      kAcross));
   const geometry::ShellMesh mesh = cutter.mesh();
   const auto count_faces = [](const std::vector<geometry::ShellMesh>& pieces) {
