@@ -1,7 +1,6 @@
 #include "engine/fracture/split_shell.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -54,26 +53,19 @@ std::vector<Face> collect_faces(const ShellMesh& mesh) {
   return faces;
 }
 
-/// Those of `faces` that are no part of a crack which the whole had.
-std::vector<Face> find_new_faces(const std::vector<Face>& faces, const ShellMesh* whole) {
-  if (!whole) return faces;
-  const std::vector<Face> older = collect_faces(*whole);
-  const auto is_of_lower_crack = [](const Face& a, const Face& b) {
-    return std::pair{a.element, a.id} < std::pair{b.element, b.id};
-  };
+/// Of those faces the ones that are no part of a crack which the whole had.
+std::vector<Face> find_new_faces(const ShellMesh& mesh, std::vector<Face> faces,
+                                 const geometry::StandingSurface* whole) {
   const auto is_older = [&](const Face& face) {
-    const Vec3 middle = 0.5 * (face.begin + face.end);
-    const auto [first, last] = std::equal_range(older.begin(), older.end(), face, is_of_lower_crack);
-    return std::any_of(first, last, [&](const Face& known) {
-      const Vec3 along = known.end - known.begin;
-      const double t = along.dot(middle - known.begin);
-      return t > 0.0 && t < along.squaredNorm();
-    });
+    const ShellCell& cell = mesh.cells[at(face.cell)];
+    const int standing = whole->cell_of(mesh, cell);
+    const Vec2 middle =
+        0.5 * (mesh.corners[at(cell.first_corner + face.side)].barycentric +
+               mesh.corners[at(cell.first_corner + (face.side + 1) % cell.corner_count)].barycentric);
+    return standing >= 0 && whole->is_on_crack(standing, face.id, middle);
   };
-  std::vector<Face> found;
-  std::copy_if(faces.begin(), faces.end(), std::back_inserter(found),
-               [&](const Face& face) { return !is_older(face); });
-  return found;
+  if (whole) std::erase_if(faces, is_older);
+  return faces;
 }
 
 double overlap_of(const Face& a, const Face& b) {
@@ -161,7 +153,7 @@ class Merger {
     const auto is_narrow = [&](int p) { return 2.0 * area[at(p)] < settings_.least_width * border[at(p)]; };
     if (std::none_of(label.begin(), label.end(), is_narrow)) return false;
 
-    const std::vector<Face> closable = find_new_faces(faces, settings_.whole);
+    const std::vector<Face> closable = find_new_faces(mesh_, faces, settings_.whole);
     const std::vector<FacePair> pairs = pair_faces(closable);
     std::map<std::pair<int, int>, double> common;  // narrow piece, neighbour: length of their common crack
     for (const FacePair& pair : pairs) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/geometry/shell_mesh.h"
+#include "engine/geometry/standing_surface.h"
 
 namespace shatterbox::fracture {
 
@@ -13,7 +14,7 @@ struct SplitSettings {
       0.0;  // m: pieces narrower than this on average (2 area / perimeter) join their neighbour
   /// What was there before its newest cracks: those it had stay open, for its surface stands back from them
   /// already. Null: all cracks are new.
-  const geometry::ShellMesh* whole = nullptr;
+  const geometry::StandingSurface* whole = nullptr;
 };
 
 struct ShellSplit {

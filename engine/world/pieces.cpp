@@ -80,19 +80,18 @@ std::optional<geometry::StandingSurface> standing_of(const Fragile& fragile, con
 }
 
 Pieces split_up(const Fragile& parent, const body::Shape& shape, const fracture::Decision& decision) {
-  const auto& subject = std::get<fracture::ShellSubject>(parent.subject);
-  fracture::ShellSplit split = fracture::split_shell(*decision.mesh, decision.contacts,
-                                                     {kLeastWidth * parent.size, subject.mesh.get()});
+  const std::optional<geometry::StandingSurface> standing = standing_of(parent, shape);
+  const geometry::StandingSurface* whole = standing ? &*standing : nullptr;
+  fracture::ShellSplit split =
+      fracture::split_shell(*decision.mesh, decision.contacts, {kLeastWidth * parent.size, whole});
   Pieces out;
   out.merged_count = split.merged_count;
   double area = 0.0;
   for (const geometry::ShellCell& cell : decision.mesh->cells) area += cell.area;
   out.merged_share = area > 0.0 ? split.merged_area / area : 0.0;
   out.pieces.resize(split.pieces.size());
-  const std::optional<geometry::StandingSurface> standing = standing_of(parent, shape);
   core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
-    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, shape.thickness,
-                               standing ? &*standing : nullptr);
+    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, shape.thickness, whole);
   });
   return out;
 }

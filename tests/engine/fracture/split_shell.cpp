@@ -446,7 +446,8 @@ TEST_CASE("a narrow piece joins its neighbour over a new crack, not over one tha
         faces += corner.side == SideKind::crack && corner.side_id == kOld;
     return faces;
   };
-  const auto split = fracture::split_shell(mesh, {0.01, &whole});
+  const geometry::StandingSurface standing(whole, geometry::extract_surface(whole, 1e-3).mesh.positions);
+  const auto split = fracture::split_shell(mesh, {0.01, &standing});
   CHECK(split.merged_count == 1);
   CHECK(count_faces(split.pieces) == 2);
   const auto unaware = fracture::split_shell(mesh, {0.01});
@@ -469,7 +470,7 @@ TEST_CASE("pieces of a piece that are wide enough are born apart") {
         fracture::ShellCutter again(piece);
         for (int i = 0; i < 20; ++i) test::cut_at_random(again, random);
         std::vector<geometry::TriangleMesh> born;
-        for (const auto& child : fracture::split_shell(again.mesh(), {10.0 * kKerf, &piece}).pieces) {
+        for (const auto& child : fracture::split_shell(again.mesh(), {10.0 * kKerf, &standing}).pieces) {
           const auto divided = geometry::divide_at_bends(child, standing, 0.05 * kKerf);
           const auto surface = geometry::extract_surface(divided, kKerf, &standing);
           for (const geometry::TriangleMesh& sibling : born)
