@@ -39,7 +39,7 @@ void IslandSolver::run() {
     }
     for (const int k : island_.bodies)
       if (body(k).shape->kind != body::ShapeKind::sphere)
-        body(k).substep_rotations.push_back(body(k).rotation);
+        body(k).substep_poses.push_back({body(k).rotation, body(k).start.translation + body(k).way});
   }
   set_step(substep_);
   // What bore and was not hit is logged with its effective mass at the end.
@@ -112,7 +112,7 @@ void IslandSolver::begin() {
     b.turn.setIdentity();
     b.turn_angle = 0.0;
     b.stirred = 0.0;
-    b.substep_rotations.clear();
+    b.substep_poses.clear();
     place_inertia(b);
   });
   joints_.begin();

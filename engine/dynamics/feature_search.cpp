@@ -102,6 +102,7 @@ std::pair<std::size_t, std::size_t> FeatureSearch::features_of(std::size_t block
 void PathMemory::forget_ends() {
   for (Feature& feature : features) feature.free_until = -1.0;
   for (Block& block : blocks) block.free_until = -1.0;
+  parts.clear();
 }
 
 double turn_bound(const Quat& from, const Quat& to, double reach) {

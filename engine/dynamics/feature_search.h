@@ -49,10 +49,17 @@ struct PathMemory {
     Vec3 parting = Vec3::Zero();  // as of a block
   };
   std::shared_ptr<const StartGaps> start_gaps;  // known before any test, or none
+  // One of the straight parts of ways on which a body turns far.
+  struct Part {
+    collision::FeatureList features;  // all that came within `searched` on it
+    std::vector<double> free_until;   // m, per feature, as above
+  };
   std::vector<Feature> features;
   std::vector<Block> blocks;
+  std::vector<Part> parts;  // empty: nothing is known
   double moved = 0.0;
-  double searched = 0.0;  // m: margin of the search, if it was made for the tests of this step
+  double listed_at = 0.0;  // m: `moved` when the parts' features were listed
+  double searched = 0.0;   // m: margin of what was searched for the tests of this step
 
   /// The ends are elsewhere.
   void forget_ends();

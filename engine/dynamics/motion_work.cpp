@@ -85,10 +85,17 @@ Pose pose_on_way(const WorkBody& body, double time) {
   if (body.knots.empty()) return blend(body.start, body.end, time);
   const double place = time * static_cast<double>(body.knots.size() - 1);
   const auto knot = std::min(static_cast<std::size_t>(place), body.knots.size() - 2);
-  Pose pose = blend({body.knots[knot], Vec3::Zero()}, {body.knots[knot + 1], Vec3::Zero()},
-                    place - static_cast<double>(knot));
-  pose.translation = body.start.translation + time * (body.end.translation - body.start.translation);
-  return pose;
+  return blend(body.knots[knot], body.knots[knot + 1], place - static_cast<double>(knot));
+}
+
+double find_bow(const WorkBody& body) {
+  double bow = 0.0;
+  for (std::size_t k = 1; k + 1 < body.knots.size(); ++k) {
+    const double time = static_cast<double>(k) / static_cast<double>(body.knots.size() - 1);
+    const Vec3 straight = body.start.translation + time * (body.end.translation - body.start.translation);
+    bow = std::max(bow, (body.knots[k].translation - straight).norm());
+  }
+  return bow;
 }
 
 int count_straight_parts(double turn_angle) {
@@ -119,9 +126,11 @@ void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
   if (body.knots.empty()) return;
   const double last = static_cast<double>(body.knots.size() - 1);
   for (std::size_t k = 1; k + 1 < body.knots.size(); ++k) {
-    body.knots[k] = (rotation_by(static_cast<double>(k) / last * turn) * body.knots[k]).normalized();
+    const double time = static_cast<double>(k) / last;
+    body.knots[k].rotation = (rotation_by(time * turn) * body.knots[k].rotation).normalized();
+    body.knots[k].translation += time * shift;
   }
-  body.knots.back() = body.end.rotation;
+  body.knots.back() = body.end;
 }
 
 void shorten(WorkBody& body, double share) {
@@ -133,17 +142,19 @@ void shorten(WorkBody& body, double share) {
     body.turn_angle = 0.0;
     body.straight_parts = 1;
     body.knots.clear();
+    body.bow = 0.0;
     return;
   }
-  std::vector<Quat> knots;
+  std::vector<Pose> knots;
   for (std::size_t k = 0; k < body.knots.size(); ++k) {
     const double time = share * static_cast<double>(k) / static_cast<double>(body.knots.size() - 1);
-    knots.push_back(pose_on_way(body, time).rotation);
+    knots.push_back(pose_on_way(body, time));
   }
   const Pose end = pose_on_way(body, share);
   body.end.translation = end.translation;
   turn_end(body, end.rotation);
   body.knots = std::move(knots);
+  body.bow = find_bow(body);
   body.turn_angle *= share;
 }
 
@@ -163,11 +174,12 @@ bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b
   const Vec3 apart = a.start.translation - b.start.translation, way = way_a - way_b;
   const double length_squared = way.squaredNorm();
   const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
-  if ((apart + t * way).norm() > (a.reach + b.reach + margin) * (1.0 + 1e-9)) return true;
+  const double kept = margin + a.bow + b.bow;
+  if ((apart + t * way).norm() > (a.reach + b.reach + kept) * (1.0 + 1e-9)) return true;
   if (turns_far(a) && turns_far(b)) return false;
   const WorkBody &ball = turns_far(a) ? a : b, &other = turns_far(a) ? b : a;
   const Vec3 relative = turns_far(a) ? way : Vec3(-way);
-  return !collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, margin);
+  return !collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, kept);
 }
 
 double turn_bound(const WorkBody& body, const Pose& end) {
@@ -193,7 +205,7 @@ std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose&
 
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b) {
   const Vec3 way = (end_a.translation - a.start.translation) - (end_b.translation - b.start.translation);
-  return way.norm() + turn_bound(a, end_a) + turn_bound(b, end_b);
+  return way.norm() + a.bow + b.bow + turn_bound(a, end_a) + turn_bound(b, end_b);
 }
 
 }  // namespace shatterbox::dynamics

@@ -43,10 +43,12 @@ struct alignas(64) WorkBody {
   Pose start, end;
   Vec3 torque = Vec3::Zero();  // N m; zero unless dynamic and awake
   Vec3 velocity_start = Vec3::Zero(), spin_start = Vec3::Zero();
-  double turn_angle = 0.0;              // rad, a bound of how far it turns in the step
-  std::vector<Quat> substep_rotations;  // after each substep of the solver
-  int straight_parts = 1;               // of its way, a power of two: between them vertices go straight
-  std::vector<Quat> knots;           // rotations at equal times, start and end included; empty: a short turn
+  double turn_angle = 0.0;          // rad, a bound of how far it turns in the step
+  std::vector<Pose> substep_poses;  // after each substep of the solver
+  int straight_parts = 1;           // of its way, a power of two: between them vertices go straight
+  // Poses at equal times, start and end included; empty: a short turn. The centre goes straight in between.
+  std::vector<Pose> knots;
+  double bow = 0.0;                  // m: by so much it leaves the straight line from start to end
   Vec3 way = Vec3::Zero();           // m, of the centre since the start
   Quat rotation = Quat::Identity();  // now
   Mat3 turn = Mat3::Identity();      // rotation since the start
@@ -256,6 +258,9 @@ Pose blend(const Pose& from, const Pose& to, double time);
 
 /// Where the body is after the share `time` of the step.
 Pose pose_on_way(const WorkBody& body, double time);
+
+/// How far the centre strays at most, on its way over the knots, from the straight line, m.
+double find_bow(const WorkBody& body);
 
 /// Straight parts in which a turn of so much (rad) must be followed: a power of two, so that the parts of two
 /// bodies fit into each other.

@@ -53,7 +53,7 @@ bool WayEnd::is_of(const WorkBody& body) const {
       !is_same_pose(end, body.end))
     return false;
   for (std::size_t k = 0; k < knots.size(); ++k)
-    if (knots[k].coeffs() != body.knots[k].coeffs()) return false;
+    if (!is_same_pose(knots[k], body.knots[k])) return false;
   return true;
 }
 

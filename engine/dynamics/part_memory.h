@@ -21,11 +21,11 @@ struct WorkBody;
 struct WorkPair;
 class MotionWork;
 
-/// Where a body is at the end of the way that was tested, and how it turned.
+/// Where a body is at the end of the way that was tested, and how it went there.
 struct WayEnd {
   Pose end;
   int straight_parts = 1;
-  std::vector<Quat> knots;
+  std::vector<Pose> knots;
 
   bool is_of(const WorkBody& body) const;
 };

@@ -44,23 +44,13 @@ bool stays(const WorkBody& w) {
   return is_same_pose(w.start, w.end) && w.knots.empty();
 }
 
-// The centres do not come closer than this on a straight part.
-double centre_distance(const Vec3& apart, const Vec3& way) {
-  const double length_squared = way.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
-  return (apart + t * way).norm();
-}
-
 }  // namespace
-
-bool PathTest::turns_far(const WorkPair& pair) const {
-  return work_.bodies[at(pair.a)].straight_parts > 1 || work_.bodies[at(pair.b)].straight_parts > 1;
-}
 
 PathTest::Look PathTest::look_at(const WorkPair& pair, double& clear) const {
   clear = -1e300;
   if (pair.is_plane || pair.is_analytic) return Look::listed;
-  if (turns_far(pair)) return Look::turning;
+  const auto turns = [&](int i) { return work_.bodies[at(i)].straight_parts > 1; };
+  if (turns(pair.a) || turns(pair.b)) return Look::turning;
   clear = clearance(paths_[at(pair.a)].box, paths_[at(pair.b)].box, kAmple * pair.kept_gap);
   if (clear > pair.kept_gap) return Look::apart;
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
@@ -98,8 +88,11 @@ void PathTest::prepare(const std::vector<char>& is_due) {
     const WorkPair& pair = work_.pairs[p];
     must_place[at(pair.a)] = must_place[at(pair.b)] = 1;
     if (looks_[p] == Look::listed) continue;
-    must_sweep[at(pair.a)] = must_sweep[at(pair.b)] = 1;
-    (looks_[p] == Look::turning ? turning : to_search).push_back(p);
+    const bool is_turning = looks_[p] == Look::turning;
+    (is_turning ? turning : to_search).push_back(p);
+    if (is_turning && turning_.is_listed(pair)) continue;
+    for (const int i : {pair.a, pair.b})
+      if (!is_turning || !turns_far(work_.bodies[at(i)])) must_sweep[at(i)] = 1;
   }
   core::parallel_for(work_.bodies.size(), 8, [&](std::size_t i) {
     WorkBody& w = work_.bodies[i];
@@ -108,7 +101,7 @@ void PathTest::prepare(const std::vector<char>& is_due) {
     place_at(w, w.end, paths_[i].end);
     if (must_sweep[i]) sweep(w, w.end);
   });
-  divide(turning);
+  turning_.divide(turning);
   core::parallel_for(to_search.size(), 1, [&](std::size_t k) {
     WorkPair& pair = work_.pairs[to_search[k]];
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
@@ -119,65 +112,6 @@ void PathTest::prepare(const std::vector<char>& is_due) {
     pair.known = PathMemory();
     pair.known.searched = margin;
   });
-}
-
-int PathTest::level_of(const WorkPair& pair) const {
-  const int parts =
-      std::max(work_.bodies[at(pair.a)].straight_parts, work_.bodies[at(pair.b)].straight_parts);
-  int level = 0;
-  while ((1 << level) < parts) ++level;
-  return level;
-}
-
-// Pairs in which one turns far and that are not surely apart are followed in parts, both bodies in as many.
-void PathTest::divide(const std::vector<std::size_t>& turning) {
-  in_parts_.resize(work_.pairs.size());
-  core::parallel_for(turning.size(), 8, [&](std::size_t k) {
-    const WorkPair& pair = work_.pairs[turning[k]];
-    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-    in_parts_[turning[k]] = keep_apart_as_balls(a, a.end, b, b.end, 2.0 * pair.kept_gap) ? 0 : 1;
-  });
-  std::vector<std::array<bool, kLevels>> needs(work_.bodies.size());
-  for (const std::size_t p : turning) {
-    if (!in_parts_[p]) continue;
-    const int level = level_of(work_.pairs[p]);
-    needs[at(work_.pairs[p].a)][at(level)] = needs[at(work_.pairs[p].b)][at(level)] = true;
-  }
-  core::parallel_for(work_.bodies.size(), 1, [&](std::size_t i) {
-    for (int level = 0; level < kLevels; ++level)
-      if (needs[i][at(level)]) fill_parts(work_.bodies[i], level, paths_[i]);
-  });
-}
-
-// A body has one way, whoever it meets: where it is divided further than it turns, vertices stay on the
-// straight lines between the ends of its own parts.
-void PathTest::fill_parts(const WorkBody& w, int level, Path& path) const {
-  const int count = 1 << level, halvings = count / w.straight_parts;
-  std::vector<Part>& parts = path.in_parts[at(level)];
-  parts.assign(at(count), {});
-  std::vector<Vec3> own_begin = w.placed.start, own_end, turned;
-  for (int k = 0; k < count; ++k) {
-    Part& part = parts[at(k)];
-    if (k % halvings == 0) {
-      if (k > 0) own_begin = std::move(own_end);
-      own_end.clear();
-      place_at(w, pose_on_way(w, static_cast<double>(k / halvings + 1) / w.straight_parts), own_end);
-    }
-    const int done = k % halvings + 1;
-    part.to = own_end;
-    if (done < halvings) {
-      const double share = static_cast<double>(done) / halvings;
-      for (std::size_t v = 0; v < part.to.size(); ++v)
-        part.to[v] = own_begin[v] + share * (own_end[v] - own_begin[v]);
-    }
-    const Vec3 whole = w.end.translation - w.start.translation;
-    part.centre = w.start.translation + (static_cast<double>(k) / count) * whole;
-    part.way = whole / count;
-    turned = part.to;
-    for (Vec3& p : turned) p -= part.way;
-    part.placed.collider = w.collider;
-    collision::refit_swept_boxes(part.placed, k == 0 ? w.placed.start : parts[at(k - 1)].to, turned);
-  }
 }
 
 std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare) {
@@ -191,13 +125,10 @@ std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare)
     hits = test_plane(pair, spare);
   } else if (pair.is_analytic) {
     hits = test_solids(pair);
+  } else if (looks_[pair_number] == Look::turning) {
+    hits = turning_.find_hits(pair_number, spare);
   } else {
-    if (looks_[pair_number] != Look::turning)
-      hits = test_straight(pair, spare);
-    else if (in_parts_[pair_number])
-      hits = test_in_parts(pair, spare);
-    else
-      spare = pair.kept_gap;
+    hits = test_straight(pair, spare);
   }
   keep_first(hits, pair.size);
   return hits;
@@ -276,45 +207,6 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) cons
   return follow_features(a, b,
                          {paths_[at(pair.a)].end, paths_[at(pair.b)].end, reach, spare, listed, ample - safe},
                          pair, spare);
-}
-
-// A body that turns far is followed through several straight parts.
-std::vector<PathHit> PathTest::test_in_parts(const WorkPair& pair, double& spare) const {
-  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-  const std::size_t level = at(level_of(pair));
-  const auto &parts_a = paths_[at(pair.a)].in_parts[level], &parts_b = paths_[at(pair.b)].in_parts[level];
-  const double safe = kSafe * pair.kept_gap, margin = 2.0 * pair.kept_gap;
-  const double share = 1.0 / static_cast<double>(parts_a.size());
-  std::vector<PathHit> hits;
-  collision::FeatureList list;
-  spare = margin - safe;
-  for (std::size_t k = 0; k < parts_a.size() && hits.empty(); ++k) {
-    const Part &part_a = parts_a[k], &part_b = parts_b[k];
-    if (centre_distance(part_a.centre - part_b.centre, part_a.way - part_b.way) > a.reach + b.reach + margin)
-      continue;
-    collision::list_swept_features(part_a.placed, part_b.placed, part_b.way - part_a.way, margin, list);
-    const auto& from_a = k == 0 ? a.placed.start : parts_a[k - 1].to;
-    const auto& from_b = k == 0 ? b.placed.start : parts_b[k - 1].to;
-    const double begin = share * static_cast<double>(k);
-    for (const auto& features : list) {
-      const auto from = collision::gather(features, *a.collider, from_a, *b.collider, from_b);
-      const auto to = collision::gather(features, *a.collider, part_a.to, *b.collider, part_b.to);
-      const Vec3 hint = direction_hint(a, b, from);
-      auto path = collision::follow_paths(from, to, safe, hint);
-      if (path.has_hit) {  // unless they began closer than that
-        const auto start =
-            collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-        const double start_gap = collision::measure(start, hint).gap;
-        const double least = least_separation(start_gap, pair);
-        if (least < safe) path = collision::follow_paths(from, to, least, hint);
-        if (path.has_hit)
-          hits.push_back({begin + share * path.time, begin + share,
-                          collision::contact_at_impact(features, start, path.gap), start_gap});
-      }
-      spare = std::min(spare, path.spare);
-    }
-  }
-  return hits;
 }
 
 }  // namespace shatterbox::dynamics

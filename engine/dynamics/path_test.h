@@ -3,7 +3,6 @@
 // sec. III.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -12,12 +11,14 @@
 #include "engine/dynamics/feature_paths.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/turned_box.h"
+#include "engine/dynamics/turning_paths.h"
 
 namespace shatterbox::dynamics {
 
 class PathTest {
  public:
-  explicit PathTest(const ContactSettings& settings, MotionWork& work) : settings_(settings), work_(work) {}
+  PathTest(const ContactSettings& settings, MotionWork& work)
+      : settings_(settings), work_(work), turning_(settings, work) {}
 
   /// Places the bodies of the pairs that are due at their ends, and looks for features that may meet.
   void prepare(const std::vector<char>& is_due);
@@ -27,44 +28,28 @@ class PathTest {
   std::vector<PathHit> find_hits(std::size_t pair_number, double& spare);
 
  private:
-  // One body in one straight part of its way.
-  struct Part {
-    std::vector<Vec3> to;              // |V| x 3, at its end
-    Vec3 way = Vec3::Zero();           // of the centre, m
-    Vec3 centre = Vec3::Zero();        // where it begins
-    collision::PlacedCollider placed;  // its swept boxes
-  };
-  // How finely a way is divided: its straight parts are halved as often as the other body asks for.
-  static constexpr int kLevels = 7;
   struct Path {
     TurnedBox box;          // about the whole way, if that is straight
     std::vector<Vec3> end;  // |V| x 3
-    std::array<std::vector<Part>, kLevels>
-        in_parts;  // in 1, 2, 4, ..; filled as pairs in which one turns far need
   };
 
-  bool turns_far(const WorkPair& pair) const;
   // What is to be done for a pair.
   enum class Look : char {
     apart,     // nothing: boxes tell that its bodies do not meet
     listed,    // go through the features that were listed
     searched,  // list them first
-    turning    // one of the two turns far: by parts
+    turning    // one of the two turns far: by straight parts
   };
   Look look_at(const WorkPair& pair, double& clear) const;
   void box_ways(const std::vector<char>& is_due);
-  void divide(const std::vector<std::size_t>& turning);
-  int level_of(const WorkPair& pair) const;
-  void fill_parts(const WorkBody& body, int level, Path& path) const;
   std::vector<PathHit> test_plane(const WorkPair& pair, double& spare) const;
   std::vector<PathHit> test_solids(const WorkPair& pair) const;
   std::vector<PathHit> test_straight(WorkPair& pair, double& spare) const;
-  std::vector<PathHit> test_in_parts(const WorkPair& pair, double& spare) const;
 
   const ContactSettings& settings_;
   MotionWork& work_;
+  TurningPaths turning_;
   std::vector<Path> paths_;         // per body
-  std::vector<char> in_parts_;      // per pair in which one turns far
   std::vector<Look> looks_;         // per pair
   std::vector<double> clearances_;  // per pair, m: how far its bodies surely stay apart
 };

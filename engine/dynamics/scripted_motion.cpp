@@ -95,7 +95,7 @@ void hold_up(WorkBody& w, int substeps) {
   }
   w.end = w.start;
   w.turn_angle = 0.0;
-  w.knots.assign(1, w.start.rotation);
+  w.knots.assign(1, w.start);
   for (std::size_t k = 0; k < w.rides.size(); ++k) {
     if (static_cast<int>(k) >= substeps) {
       w.rides[k] = halt;
@@ -104,10 +104,11 @@ void hold_up(WorkBody& w, int substeps) {
     w.turn_angle += w.rides[k].spin.norm() / static_cast<double>(w.rides.size());
     w.end.translation = w.start.translation + w.rides[k].way;
     w.end.rotation = (w.rides[k].turn * w.start.rotation).normalized();
-    w.knots.push_back(w.end.rotation);
+    w.knots.push_back(w.end);
   }
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (!turns_far(w)) w.knots.clear();
+  w.bow = find_bow(w);
   w.gone = static_cast<double>(substeps) / static_cast<double>(w.rides.size());
   w.velocity.setZero();
   w.spin.setZero();

@@ -141,27 +141,31 @@ void report_contacts(const MotionWork& work, ContactState& state, ContactReport&
     report.frozen_share = static_cast<double>(work.failsafe_bodies) / report.awake_bodies;
 }
 
-// A body that turns far is followed through what it turned in between.
-void keep_knots(const std::vector<Quat>& rotations, WorkBody& w) {
+// A body that turns far is followed through where it was in between.
+void keep_knots(const std::vector<Pose>& poses, WorkBody& w) {
   w.knots.clear();
+  w.bow = 0.0;
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (!turns_far(w)) return;
-  w.knots.push_back(w.start.rotation);
-  w.knots.insert(w.knots.end(), rotations.begin(), rotations.end());
-  w.knots.back() = w.end.rotation;
+  w.knots.push_back(w.start);
+  w.knots.insert(w.knots.end(), poses.begin(), poses.end());
+  w.knots.back() = w.end;
+  w.bow = find_bow(w);
 }
 
 void end_in_contact(WorkBody& w) {
   w.end.translation = w.start.translation + w.way;
   w.end.rotation = w.rotation;
-  keep_knots(w.substep_rotations, w);
+  keep_knots(w.substep_poses, w);
 }
 
 void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
   w.end = w.predicted;
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (turns_far(w)) {
-    std::vector<Quat> rotations;
+    // The centre goes straight: that is what the pair's meeting was told.
+    const Vec3 way = w.end.translation - w.start.translation;
+    std::vector<Pose> poses;
     Quat rotation = w.start.rotation;
     Vec3 spin = w.spin;
     const int parts = w.straight_parts;
@@ -170,9 +174,10 @@ void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
         advance_turning(w, settings.time_step / parts, rotation, spin);
       else
         rotation = (rotation_by(settings.time_step / parts * w.spin) * rotation).normalized();
-      rotations.push_back(rotation);
+      poses.push_back({rotation, w.start.translation + (k + 1.0) / parts * way});
     }
-    keep_knots(rotations, w);
+    keep_knots(poses, w);
+    w.bow = 0.0;
   }
   if (!is_dynamic) return;
   w.velocity += settings.time_step * w.gravity;

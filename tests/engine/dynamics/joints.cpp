@@ -92,6 +92,29 @@ TEST_CASE("joined boxes tumble as one body and keep their momenta") {
   CHECK(most_apart < 1e-4);
 }
 
+TEST_CASE("sheets that are joined and whirl as one are in each other's way nowhere in a step") {
+  Scene scene;
+  scene.settings.gravity.setZero();
+  constexpr double kHalf = 0.02, kGap = 3e-4;  // m
+  // A T: the second stands on the first, and its centre goes round in an arc of a radian.
+  scene.add(test::make_shell(test::square_mesh(kHalf, 4)));
+  scene.add(test::make_shell(test::square_mesh(kHalf, 4)));
+  scene.bodies[0].pose.rotation = Quat(core::sqrt(0.5), 0, 0, core::sqrt(0.5));
+  scene.bodies[1].pose.translation.x() = kHalf + kGap;
+  scene.state.joints.push_back(join_across_x(scene, 1, 2, Vec3(0.5 * kGap, 0, 0), 0.01, 0.01));
+  const Vec3 spin(0, 0, 250.0), centre = 0.5 * scene.bodies[1].pose.translation;
+  for (auto& b : scene.bodies) {
+    b.angular_velocity = spin;
+    b.velocity = spin.cross(b.pose.translation - centre);
+  }
+  for (int i = 0; i < 5; ++i) {
+    CHECK(scene.bodies[0].angular_velocity.norm() * scene.settings.time_step > 1.5 * 0.5);
+    scene.step();
+    CHECK(scene.report.near_bodies == 2);
+    CHECK(scene.report.hits == 0);
+  }
+}
+
 TEST_CASE("a body on a pivot swings with the period of a physical pendulum") {
   Scene scene;
   scene.settings.has_sleep = false;

@@ -1,0 +1,56 @@
+// The ways of pairs in which a body turns far: both are followed in as many straight parts, one after the
+// other. What is known of the features near each part is kept from one test to the next.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "engine/collision/feature_list.h"
+#include "engine/core/vec.h"
+#include "engine/dynamics/contact_settings.h"
+#include "engine/dynamics/feature_paths.h"
+#include "engine/dynamics/motion_work.h"
+
+namespace shatterbox::dynamics {
+
+class TurningPaths {
+ public:
+  TurningPaths(const ContactSettings& settings, MotionWork& work) : settings_(settings), work_(work) {}
+
+  /// Whether all that may meet on the ways of a pair was listed in a test before.
+  bool is_listed(const WorkPair& pair) const;
+
+  /// Divides the ways of the bodies in these pairs, and lists for those that are not listed the features that
+  /// may meet on them. All are placed at their starts; of those who do not turn far in pairs that are not
+  /// listed the way is swept.
+  void divide(const std::vector<std::size_t>& pairs);
+
+  /// Where one of these pairs meets, in any order that is always the same. Without a hit ways that stay
+  /// within `spare` (m) are free too. Different pairs may be followed at once.
+  std::vector<PathHit> find_hits(std::size_t pair_number, double& spare);
+
+ private:
+  // One body in one straight part of its way.
+  struct Part {
+    std::vector<Vec3> to;              // |V| x 3, at its end
+    Vec3 way = Vec3::Zero();           // of the centre, m
+    Vec3 centre = Vec3::Zero();        // where it begins
+    collision::PlacedCollider placed;  // its swept boxes, where they are needed
+  };
+  // How finely a way is divided: its straight parts are halved as often as the other body asks for.
+  static constexpr int kLevels = 7;
+  using Divided = std::array<std::vector<Part>, kLevels>;  // in 1, 2, 4, ..
+
+  std::size_t level_of(const WorkPair& pair) const;
+  void fill_parts(const WorkBody& body, std::size_t level, bool has_boxes, Divided& divided) const;
+  void list_part(WorkPair& pair, std::size_t number) const;
+  std::vector<PathHit> follow_part(WorkPair& pair, std::size_t number, double& spare) const;
+
+  const ContactSettings& settings_;
+  MotionWork& work_;
+  std::vector<Divided> bodies_;     // filled as pairs need
+  std::vector<char> are_followed_;  // per pair: balls about its bodies meet
+};
+
+}  // namespace shatterbox::dynamics
