@@ -9,6 +9,7 @@ namespace shatterbox::dynamics {
 using core::at;
 
 void IslandSolver::start_warm(double share) {
+  if (is_wary_) return;
   in_turn([&](std::size_t, SolverContact& c, Found&) {
     // What has come apart, or bounced, must not be pushed by what it weighed before.
     if (may_strike_on_ && c.is_arriving && !is_before_drift_) return;
@@ -87,6 +88,7 @@ bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
     joints_.hold(is_before_drift_);
     is_any = is_any || found.is_any;
     if (count == 0) break;
+    if (is_wary_ && round == 0) bound_friction();
     const double enough = round + 1 < how.plain ? how.enough : how.loose;
     if (found.excess < (found.has_strain ? how.tight : enough)) break;
     if (is_on_course && !is_bounded && found.excess > kRunaway * least_excess) {

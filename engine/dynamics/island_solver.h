@@ -33,6 +33,8 @@ class IslandSolver {
 
  private:
   // contact_solver.cpp
+  void take_substeps();
+  bool has_won_energy() const;
   void take_part(int substeps);
   void set_step(double step);
   double until_first_arrival(double left);
@@ -253,6 +255,7 @@ class IslandSolver {
   static constexpr int kMostCuts = 8;    // of a substep
   static constexpr double kLeastPart = 1.0 / 1024.0;  // of a substep
   static constexpr std::size_t kBodies = 32;          // that one thread takes at once
+  static constexpr double kWon = 1e-3;                // of its energy may an island win, beside openings
   static constexpr int kJointSweeps = 8;              // of an island with joints in which nothing arrives
 
   const ContactSettings& settings_;
@@ -275,6 +278,7 @@ class IslandSolver {
   bool may_strike_on_ = false;
   bool has_scripted_ = false;  // a scripted body is in it
   bool is_before_drift_ = false;
+  bool is_wary_ = false;  // it won energy: nothing starts warm, and friction is bounded from the first sweep
 };
 
 template <class Visit>

@@ -167,6 +167,43 @@ double rise_where_tumbling_meet(int a, std::optional<int> b, double restitution,
   return most / start - 1.0;
 }
 
+// A splinter whirls in the wedge between a floor and a block of some thousand times its mass that comes down
+// on it. By how much the energy grows in a step at most, J.
+double rise_of_wedged(std::uint64_t seed) {
+  core::Random random(seed);
+  test::Scene scene;
+  scene.settings.has_sleep = false;
+  scene.add(test::make_plane());
+  const double tilt = random.uniform(0.05, 0.4), half = 0.05;
+  auto block = test::make_box(Vec3(half, 0.03, half), Vec3::Zero(), true, 2400.0);
+  block.pose.rotation = dynamics::rotation_by(Vec3(0, 0, tilt));
+  // Its lower edge is at x = 0.
+  const Vec3 edge = block.pose.rotation * Vec3(-half, -0.03, 0.0);
+  block.pose.translation = Vec3(0, 2e-4, 0) - edge;
+  block.angular_velocity = Vec3(0, 0, -random.uniform(1.0, 10.0));
+  block.velocity = block.angular_velocity.cross(-edge);
+  scene.add(block);
+  const double thick = random.uniform(2e-4, 1e-3), length = random.uniform(0.003, 0.01);
+  auto splinter = test::make_box(Vec3(length, thick, 2.0 * thick), Vec3::Zero(), true, 2400.0);
+  const double lift = random.uniform(1.5, 6.0) * thick;
+  splinter.pose.rotation =
+      dynamics::rotation_by(Vec3(random.uniform(-1, 1), random.uniform(-3, 3), 0.0) * 0.1);
+  splinter.pose.translation = Vec3(2.2 * lift / core::sin(tilt) + length, lift, random.uniform(-0.02, 0.02));
+  for (int i = 0; i < 3; ++i) splinter.angular_velocity[i] = random.uniform(-900, 900);
+  scene.add(splinter);
+  for (body::Body& b : scene.bodies) {
+    b.friction = 0.65;
+    b.may_break = true;
+  }
+  double most = 0.0, last = scene.energy();
+  for (int i = 0; i < 24; ++i) {
+    scene.step();
+    most = std::max(most, scene.energy() - last);
+    last = scene.energy();
+  }
+  return most;
+}
+
 }  // namespace
 
 TEST_CASE("what falls and rubs in a room only loses energy") {
@@ -225,6 +262,15 @@ TEST_CASE("a splinter on a floor that resists its rolling wins no energy, whiche
     }
   }
   CHECK(most <= 1.0 + 1e-3);
+}
+
+TEST_CASE("a splinter that whirls in a wedge does not throw off the block that comes down on it") {
+  // Of 1400 these are some of the 22 in which a step won more than a fifth of a joule, up to 45 J: the load
+  // of one substep began the next along arms that had turned by a quarter of a radian.
+  for (const std::uint64_t seed : {65, 93, 119, 197, 324, 386, 493, 498, 646, 734, 765, 1069, 1193}) {
+    CAPTURE(seed);
+    CHECK(rise_of_wedged(seed) < 0.05);
+  }
 }
 
 TEST_CASE("elastic balls whose normal turns while they meet bounce all the same") {
