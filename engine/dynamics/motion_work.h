@@ -82,7 +82,7 @@ struct alignas(64) WorkBody {
 /// A turn of more than this in a step, rad, is followed in parts: straight paths would cut its corner.
 inline constexpr double kStraightTurn = 0.5;
 inline bool turns_far(const WorkBody& body) {
-  return body.turn_angle > kStraightTurn;
+  return body.turn_angle > kStraightTurn || body.straight_parts > 1;
 }
 
 /// What is no further apart, as a share of the pair's size, is in one place: there is no direction from one

@@ -130,6 +130,30 @@ TEST_CASE("who is woken in the midst of a step has stood still until then") {
   check_way(1, {0.25, 0.5, 0.75}, 1.0, 0.0);
 }
 
+TEST_CASE("what was let go only a little of a far turn is not taken for one that goes straight") {
+  // A stick goes straight from knot to knot; its tip is 2 mm beyond the line from its start to its end.
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  scene.settings.time_step = 1.0 / 60.0;
+  constexpr double kReach = 0.07;
+  auto stick = test::square_mesh(kReach, 1), bead = test::square_mesh(1e-4, 1);
+  for (Vec3& p : stick.positions) p.z() *= 0.01;
+  constexpr double kHalfWay = 0.24;  // rad, of the two fifths of its turn that it is let go
+  body::Body& turning = scene.add(test::make_shell(stick));
+  turning.pose.rotation = dynamics::rotation_by(Vec3(0, 0, -kHalfWay));
+  turning.angular_velocity = Vec3(0, 0, 60.0 * 5.0 * kHalfWay);
+  scene.add(test::make_shell(bead)).pose.translation = Vec3(kReach * core::cos(kHalfWay) + 1e-3, 0, 0);
+  dynamics::MotionWork work;
+  scene.fly(work);
+  REQUIRE(work.bodies[0].straight_parts > 1);
+  dynamics::shorten(work.bodies[0], 0.4);
+  REQUIRE(work.bodies[0].turn_angle < dynamics::kStraightTurn);
+  work.bodies[1].end = work.bodies[1].start;
+  for (auto& b : work.bodies) dynamics::sweep(b, b.end);
+  const auto &a = work.bodies[0], &b = work.bodies[1];
+  CHECK(!dynamics::keep_apart_as_balls(a, a.end, b, b.end, 1e-4));
+}
+
 TEST_CASE("a step in which many were cut goes on in shorter parts, from the part in which they were") {
   dynamics::ContactSettings settings;
   settings.time_step = 1.0 / 60.0;
