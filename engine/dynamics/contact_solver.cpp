@@ -42,10 +42,8 @@ bool IslandSolver::has_won_energy() const {
     const WorkBody& b = work_.bodies[at(i)];
     if (!b.torque.isZero(0.0)) return false;
     const double mass = 1.0 / b.inverse_mass;
-    before += 0.5 * mass * b.velocity_start.squaredNorm() +
-              0.5 * b.spin_start.dot(inertia_at(b, b.start.rotation) * b.spin_start);
-    after += 0.5 * mass * b.velocity.squaredNorm() + 0.5 * b.spin.dot(inertia_at(b, b.rotation) * b.spin);
-    after -= mass * b.gravity.dot(b.way);
+    before += kinetic_energy(b, b.start.rotation, b.velocity_start, b.spin_start);
+    after += kinetic_energy(b, b.rotation, b.velocity, b.spin) - mass * b.gravity.dot(b.way);
     from_openings += mass * (0.5 * speed * speed + b.gravity.norm() * widest);
   }
   return after - before > kWon * before + from_openings;

@@ -116,7 +116,6 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
     WorkBody& w = work_.bodies[at(i)];
     w.is_free = false;
     w.knots.clear();
-    w.bow = 0.0;
     w.straight_parts = 1;
     w.turn_angle = turned * angle;
     turn_end(w, share > 0.0 ? (rotation * w.start.rotation).normalized() : w.start.rotation);

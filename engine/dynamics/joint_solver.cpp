@@ -41,11 +41,6 @@ Mat3 cross_matrix(const Vec3& v) {
 }
 
 // J.
-double kinetic(const WorkBody& body, const Vec3& velocity, const Vec3& spin) {
-  return 0.5 * velocity.squaredNorm() / body.inverse_mass +
-         0.5 * spin.dot(inertia_at(body, body.rotation) * spin);
-}
-
 // How the joint's point moves and turns with the body at this arm.
 Six6 motion_at(const Vec3& arm) {
   Six6 m = Six6::Identity();
@@ -270,7 +265,8 @@ double JointSolver::energy_of(const VecX& speeds) const {
   double sum = 0.0;
   for (const int i : island_.bodies)
     if (dof(i) >= 0)
-      sum += kinetic(work_.bodies[at(i)], speeds.segment<3>(dof(i)), speeds.segment<3>(dof(i) + 3));
+      sum += kinetic_energy(work_.bodies[at(i)], work_.bodies[at(i)].rotation, speeds.segment<3>(dof(i)),
+                            speeds.segment<3>(dof(i) + 3));
   return sum;
 }
 
@@ -278,7 +274,7 @@ double JointSolver::energy_of_joined() const {
   double sum = 0.0;
   for (const int i : island_.bodies) {
     const WorkBody& b = work_.bodies[at(i)];
-    if (dof(i) >= 0) sum += kinetic(b, b.velocity, b.spin);
+    if (dof(i) >= 0) sum += kinetic_energy(b, b.rotation, b.velocity, b.spin);
   }
   return sum;
 }
@@ -376,7 +372,7 @@ double JointSolver::energy() const {
   double sum = 0.0;
   for (const int i : island_.bodies) {
     const WorkBody& b = work_.bodies[at(i)];
-    sum += kinetic(b, b.velocity, b.spin) - b.gravity.dot(b.way) / b.inverse_mass;
+    sum += kinetic_energy(b, b.rotation, b.velocity, b.spin) - b.gravity.dot(b.way) / b.inverse_mass;
   }
   return sum;
 }

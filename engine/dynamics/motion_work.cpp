@@ -31,6 +31,10 @@ Mat3 inertia_at(const WorkBody& body, const Quat& rotation) {
   return axes * body.inertia.moments.asDiagonal() * axes.transpose();
 }
 
+double kinetic_energy(const WorkBody& body, const Quat& rotation, const Vec3& velocity, const Vec3& spin) {
+  return 0.5 * velocity.squaredNorm() / body.inverse_mass + 0.5 * spin.dot(inertia_at(body, rotation) * spin);
+}
+
 Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation) {
   if (body.locked.any()) return body.locked.invert(inertia_at(body, rotation));
   const Mat3 axes = (rotation * body.inertia.body_from_axes).toRotationMatrix();
@@ -142,7 +146,6 @@ void shorten(WorkBody& body, double share) {
     body.turn_angle = 0.0;
     body.straight_parts = 1;
     body.knots.clear();
-    body.bow = 0.0;
     return;
   }
   std::vector<Pose> knots;
@@ -154,7 +157,6 @@ void shorten(WorkBody& body, double share) {
   body.end.translation = end.translation;
   turn_end(body, end.rotation);
   body.knots = std::move(knots);
-  body.bow = find_bow(body);
   body.turn_angle *= share;
 }
 
@@ -168,14 +170,18 @@ void sweep(WorkBody& body, const Pose& end) {
   body.swept_end = end;
 }
 
+double closest_approach(const Vec3& apart, const Vec3& way) {
+  const double length_squared = way.squaredNorm();
+  const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
+  return (apart + t * way).norm();
+}
+
 bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
                          double margin) {
   const Vec3 way_a = end_a.translation - a.start.translation, way_b = end_b.translation - b.start.translation;
   const Vec3 apart = a.start.translation - b.start.translation, way = way_a - way_b;
-  const double length_squared = way.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
-  const double kept = margin + a.bow + b.bow;
-  if ((apart + t * way).norm() > (a.reach + b.reach + kept) * (1.0 + 1e-9)) return true;
+  const double kept = margin + find_bow(a) + find_bow(b);
+  if (closest_approach(apart, way) > (a.reach + b.reach + kept) * (1.0 + 1e-9)) return true;
   if (turns_far(a) && turns_far(b)) return false;
   const WorkBody &ball = turns_far(a) ? a : b, &other = turns_far(a) ? b : a;
   const Vec3 relative = turns_far(a) ? way : Vec3(-way);
@@ -205,7 +211,7 @@ std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose&
 
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b) {
   const Vec3 way = (end_a.translation - a.start.translation) - (end_b.translation - b.start.translation);
-  return way.norm() + a.bow + b.bow + turn_bound(a, end_a) + turn_bound(b, end_b);
+  return way.norm() + find_bow(a) + find_bow(b) + turn_bound(a, end_a) + turn_bound(b, end_b);
 }
 
 }  // namespace shatterbox::dynamics

@@ -48,7 +48,6 @@ struct alignas(64) WorkBody {
   int straight_parts = 1;           // of its way, a power of two: between them vertices go straight
   // Poses at equal times, start and end included; empty: a short turn. The centre goes straight in between.
   std::vector<Pose> knots;
-  double bow = 0.0;                  // m: by so much it leaves the straight line from start to end
   Vec3 way = Vec3::Zero();           // m, of the centre since the start
   Quat rotation = Quat::Identity();  // now
   Mat3 turn = Mat3::Identity();      // rotation since the start
@@ -234,6 +233,9 @@ void free_pairs(MotionWork& work);
 /// kg m2, world, of a body that has turned to `rotation`.
 Mat3 inertia_at(const WorkBody& body, const Quat& rotation);
 
+/// J, of a body that can be moved and has turned to `rotation`.
+double kinetic_energy(const WorkBody& body, const Quat& rotation, const Vec3& velocity, const Vec3& spin);
+
 /// 1/(kg m2), world: spin by angular impulse of a body that has turned to `rotation`.
 Mat3 inverse_inertia_at(const WorkBody& body, const Quat& rotation);
 
@@ -259,7 +261,7 @@ Pose blend(const Pose& from, const Pose& to, double time);
 /// Where the body is after the share `time` of the step.
 Pose pose_on_way(const WorkBody& body, double time);
 
-/// How far the centre strays at most, on its way over the knots, from the straight line, m.
+/// How far the centre strays at most, on its way over the knots, from the straight line to its end, m.
 double find_bow(const WorkBody& body);
 
 /// Straight parts in which a turn of so much (rad) must be followed: a power of two, so that the parts of two
@@ -279,6 +281,9 @@ void shorten(WorkBody& body, double share);
 
 /// Fills the boxes over the way to `end`, once.
 void sweep(WorkBody& body, const Pose& end);
+
+/// Two that are `apart` and go straight, `way` against each other, come no closer than this, m.
+double closest_approach(const Vec3& apart, const Vec3& way);
 
 /// True if two bodies, one of which turns far, surely keep `margin` apart: the one within a ball. Those that
 /// do not turn far must be swept to their ends.

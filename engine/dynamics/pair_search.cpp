@@ -75,7 +75,7 @@ void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
   w.looked = box_at(w, w.start);
   if (!w.is_active) return;
   w.looked.include(box_at(w, end));
-  const double grow = w.reserve + (w.is_looked_straight ? 0.0 : 1.1 * (turn_bound(w, end) + w.bow));
+  const double grow = w.reserve + (w.is_looked_straight ? 0.0 : 1.1 * (turn_bound(w, end) + find_bow(w)));
   w.looked.low.array() -= grow;
   w.looked.high.array() += grow;
 }
@@ -89,7 +89,8 @@ bool is_within_looked(const ContactSettings& settings, const WorkBody& w) {
   }
   if (w.is_looked_straight) return false;
   const geometry::Box end = box_at(w, w.end);
-  const double gap = 2.0 * settings.kept_gap * w.reach + (is_straight ? 0.0 : turn_bound(w, w.end) + w.bow);
+  const double gap =
+      2.0 * settings.kept_gap * w.reach + (is_straight ? 0.0 : turn_bound(w, w.end) + find_bow(w));
   return (end.low.array() - gap >= w.looked.low.array()).all() &&
          (end.high.array() + gap <= w.looked.high.array()).all();
 }

@@ -108,7 +108,6 @@ void hold_up(WorkBody& w, int substeps) {
   }
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (!turns_far(w)) w.knots.clear();
-  w.bow = find_bow(w);
   w.gone = static_cast<double>(substeps) / static_cast<double>(w.rides.size());
   w.velocity.setZero();
   w.spin.setZero();

@@ -144,13 +144,11 @@ void report_contacts(const MotionWork& work, ContactState& state, ContactReport&
 // A body that turns far is followed through where it was in between.
 void keep_knots(const std::vector<Pose>& poses, WorkBody& w) {
   w.knots.clear();
-  w.bow = 0.0;
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (!turns_far(w)) return;
   w.knots.push_back(w.start);
   w.knots.insert(w.knots.end(), poses.begin(), poses.end());
   w.knots.back() = w.end;
-  w.bow = find_bow(w);
 }
 
 void end_in_contact(WorkBody& w) {
@@ -177,7 +175,6 @@ void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
       poses.push_back({rotation, w.start.translation + (k + 1.0) / parts * way});
     }
     keep_knots(poses, w);
-    w.bow = 0.0;
   }
   if (!is_dynamic) return;
   w.velocity += settings.time_step * w.gravity;

@@ -18,13 +18,6 @@ constexpr double kSlack = 0.05;  // of the slack of searches
 constexpr double kGrow = 3.0;    // times the margin of lists that did not last
 constexpr std::size_t kFeaturesToFollow = 512;
 
-// The centres do not come closer than this on a straight part.
-double centre_distance(const Vec3& apart, const Vec3& way) {
-  const double length_squared = way.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp(-apart.dot(way) / length_squared, 0.0, 1.0) : 0.0;
-  return (apart + t * way).norm();
-}
-
 // Where both bodies of a pair are at the ends of a straight part.
 struct PartEnds {
   const Positions &from_a, &to_a, &from_b, &to_b;
@@ -57,9 +50,9 @@ class PartFollower {
     const collision::FeatureGap gap = collision::measure(from, hint);
     parting_ = gap.normal;
     const auto path = collision::follow_paths(from, to, safe_, hint, &gap);
+    if (path.has_hit) return add_hit(features, from, to, hint, path);
     spare_ = std::min(spare_, path.spare);
-    free_until = path.has_hit ? -1.0 : moved + path.spare;
-    if (path.has_hit) add_hit(features, from, to, hint, path);
+    free_until = moved + path.spare;
   }
 
   double spare() const { return spare_; }
@@ -190,7 +183,7 @@ void TurningPaths::list_part(WorkPair& pair, std::size_t number) const {
   const Part &a = bodies_[at(pair.a)][level][number], &b = bodies_[at(pair.b)][level][number];
   const double reach = work_.bodies[at(pair.a)].reach + work_.bodies[at(pair.b)].reach;
   PathMemory::Part& known = pair.known.parts[number];
-  if (centre_distance(a.centre - b.centre, a.way - b.way) <= reach + pair.known.searched)
+  if (closest_approach(a.centre - b.centre, a.way - b.way) <= reach + pair.known.searched)
     collision::list_swept_features(a.placed, b.placed, b.way - a.way, pair.known.searched, known.features);
   known.free_until.assign(known.features.size(), -1.0);
 }
