@@ -22,16 +22,30 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
+/// Of a large cell, on average: how much farther from the surface they begin than they must, for they stand
+/// at whole multiples of their size; measured.
+constexpr double kAlignment = 0.75;
+
 /// The cell size for about `count` tetrahedra: twelve a cell, over the volume and a layer along the surface.
 double size_for_count(const TriangleMesh& surface, const TetrahedraOptions& options) {
-  const double count = options.count;
   const double layer = options.warps ? 0.16 : 0.31;  // of a cell, on average beyond the surface: measured
   const double volume = enclosed_volume(surface), area = surface_area(surface);
+  const double radius = 3.0 * volume / area;  // of a ball of such a volume and area
+  const auto makes_too_many = [&](double size) {
+    double filled = volume + layer * area * size;
+    // Where eight cells join to one, and that again.
+    for (int level = 1; 1 << level <= options.grading; ++level) {
+      const double depth = (least_depth(level) + kAlignment * (1 << level)) * size;
+      const double share = std::max(0.0, 1.0 - depth / radius);
+      filled -= 7.0 / core::pow(8.0, level) * volume * share * share * share;
+    }
+    return 12.0 * filled > options.count * size * size * size;
+  };
   double low = 0.0, high = core::sqrt(area) + volume / area;
-  while (12.0 * (volume + layer * area * high) > count * high * high * high) high *= 2.0;
+  while (makes_too_many(high)) high *= 2.0;
   for (int i = 0; i < 60; ++i) {
     const double size = 0.5 * (low + high);
-    (12.0 * (volume + layer * area * size) > count * size * size * size ? low : high) = size;
+    (makes_too_many(size) ? low : high) = size;
   }
   return high;
 }
@@ -121,7 +135,7 @@ core::Result<EmbeddedSolid> tetrahedralise(const TriangleMesh& surface, const Te
   const double size = element_size_for(surface, options);
   if (const auto fault = find_size_fault("the element size", size)) return core::Error{*fault};
 
-  core::Result<TetMesh> lattice = make_covering_lattice(surface, size, kMostTetrahedra);
+  core::Result<TetMesh> lattice = make_covering_lattice(surface, size, options.grading, kMostTetrahedra);
   if (!lattice) return core::Error{lattice.error()};
   SolidElements all{std::move(lattice.value()), {}};
   all.topology = build_tet_topology(all.mesh.tetrahedra);

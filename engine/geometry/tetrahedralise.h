@@ -14,6 +14,7 @@ struct TetrahedraOptions {
   double element_size =
       0.0;            // m: side of the lattice's cubes, of which a tetrahedron's edges are 0.87 to 1; or
   int count = 0;      // about how many tetrahedra (used if element_size is 0)
+  int grading = 1;    // 1, 2, 4 or 8: so many times as large they become inside
   bool warps = true;  // vertices near the surface are moved to it; false: the lattice as it is
 };
 
@@ -31,8 +32,8 @@ struct EmbeddedSolid {
 /// Tetrahedra of a body-centred cubic lattice about `surface` (closed, wound counter-clockwise seen from
 /// outside, not crossing itself; diagnose_solid). Vertices near the surface are moved to just outside of it,
 /// as in [LS07], as far as no tetrahedron gets an angle below 25 or above 140 degrees; but no tetrahedron is
-/// cut or left out that holds some of the inside, so every point of the solid lies in one. The same surface
-/// gives the same bits.
+/// cut or left out that holds some of the inside, so every point of the solid lies in one. Graded, the
+/// tetrahedra at the surface are those of the even lattice. The same surface gives the same bits.
 core::Result<EmbeddedSolid> tetrahedralise(const TriangleMesh& surface, const TetrahedraOptions& options);
 
 }  // namespace shatterbox::geometry

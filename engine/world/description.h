@@ -36,6 +36,7 @@ struct SolidDescription {
   std::vector<std::uint8_t> parts;  // per triangle: number of the look; empty for all 0
   bool is_breakable = true;         // scripted ones are not
   double element_size = 0.0;        // m, of the tetrahedra that its stress is told by; 0: about 10000 of them
+  int grading = 1;                  // 1, 2, 4 or 8: so many times as large they become inside
   std::vector<HalfSpace> held;      // what lies in all of these is held by the world; empty: a free body
 };
 

@@ -86,6 +86,7 @@ geometry::TetrahedraOptions options_of(const SolidDescription& solid) {
   geometry::TetrahedraOptions options;
   options.element_size = solid.element_size;
   options.count = kUsualTetrahedra;
+  options.grading = solid.grading;
   return options;
 }
 
@@ -203,7 +204,7 @@ std::uint64_t form_key(const SolidDescription& solid, const Substance& substance
   hash.add(std::uint64_t{substance.breaks});
   if (!substance.breaks) return hash.value();
   for (const HalfSpace& half : solid.held) hash.add(half.normal).add(half.offset);
-  hash.add(solid.element_size).add(substance.material.young);
+  hash.add(solid.element_size).add(static_cast<std::uint64_t>(solid.grading)).add(substance.material.young);
   return hash.add(static_cast<std::uint64_t>(substance.number)).value();
 }
 

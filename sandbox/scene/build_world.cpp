@@ -61,12 +61,12 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
                       const SceneDescription& scene, std::vector<std::string>& notes) {
   const double grain = scene.materials[static_cast<std::size_t>(body.material)].material.grain_size;
   if (!solid.is_breakable || !(grain > 0.0)) return;
-  const double size = world::element_size_of(solid);
+  const double size = solid.grading * world::element_size_of(solid);
   if (grain < kFinestGrain * size)
     notes.push_back(
         fmt::format("the grains of \"{}\" are {:.3g} m wide and its elements {:.3g} m: cracks cannot tell "
                     "them; element_size = {:.2g} can",
-                    body.name, grain, size, grain / kFinestGrain));
+                    body.name, grain, size, grain / kFinestGrain / solid.grading));
 }
 
 void measure(const world::SolidDescription& solid, BodyPlan& plan) {
@@ -84,6 +84,7 @@ std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, con
   world::SolidDescription solid;
   solid.is_breakable = form.is_breakable;
   solid.element_size = form.element_size.value_or(0.0);
+  solid.grading = form.grading.value_or(1);
   solid.mesh = std::move(built->mesh);
   solid.parts = std::move(built->parts);
   if (!geometry::diagnose(solid.mesh, {.allow_loose_parts = true}).is_closed) {

@@ -92,7 +92,7 @@ CapsuleForm read_capsule(TableReader& reader) {
 
 decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind,
                                     const SceneDescription& scene) {
-  if (kind != "solid") reader.foreign({"element_size"}, "it is for kind = \"solid\"");
+  if (kind != "solid") reader.foreign({"element_size", "grading"}, "it is for kind = \"solid\"");
   if (kind == "shell") return read_shell(reader, scene);
   reader.foreign({"thickness"}, fmt::format("it is for kind = \"shell\"; this is a {}", kind));
   if (kind == "solid") return read_solid(reader, scene);
@@ -154,9 +154,10 @@ std::vector<Vec3> read_colours(TableReader& reader) {
 void settle_breaking(TableReader& reader, const BodyEntry& body, SolidForm& solid) {
   const bool is_held = !std::holds_alternative<std::monostate>(body.support);
   if (body.motion == body::Motion::fixed && !is_held && !reader.has("breakable")) solid.is_breakable = false;
-  if (solid.element_size && !solid.is_breakable)
-    reader.add_problem_at("element_size", "only a breakable solid is divided into elements",
-                          "remove it, or write breakable = true");
+  for (const char* key : {"element_size", "grading"})
+    if (reader.has(key) && !solid.is_breakable)
+      reader.add_problem_at(key, "only a breakable solid is divided into elements",
+                            "remove it, or write breakable = true");
 }
 
 }  // namespace

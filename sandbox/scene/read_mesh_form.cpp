@@ -1,5 +1,6 @@
 #include "sandbox/scene/read_mesh_form.h"
 
+#include <bit>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -262,6 +263,12 @@ SolidForm read_solid(TableReader& reader, const SceneDescription& scene) {
   SolidForm form;
   read_mesh_form(reader, scene, kSolidShapes, form);
   form.element_size = reader.number("element_size", extent());
+  if (const auto grading = reader.whole_number("grading", 1, 8)) {
+    form.grading = static_cast<int>(*grading);
+    if (!std::has_single_bit(static_cast<unsigned>(*form.grading)))
+      reader.add_problem_at("grading", fmt::format("elements inside cannot be {} times as large", *grading),
+                            "eight of them join to one, and these again: 2, 4 or 8");
+  }
   return form;
 }
 

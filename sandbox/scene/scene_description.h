@@ -83,6 +83,7 @@ struct ShellForm : MeshForm {
 };
 struct SolidForm : MeshForm {
   std::optional<double> element_size;  // m, of the tetrahedra; nothing: about 10000 of them
+  std::optional<int> grading;          // so many times as large they become inside; nothing: they do not
 };
 using Form = std::variant<PlaneForm, BoxForm, SphereForm, CapsuleForm, ShellForm, SolidForm>;
 
@@ -224,7 +225,7 @@ struct RenderEntry {
 
 struct SceneDescription {
   std::string file, name;
-  std::string goal;  // the first line of the file without its #: what must be seen
+  std::string goal;   // the first line of the file without its #: what must be seen
   std::string takes;  // how long a run of it takes, where that is hours; else empty
   double seconds = 4.0;
   world::WorldSettings world;

@@ -156,6 +156,58 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
   CHECK(count_overlaps(first) == 0);
 }
 
+TEST_CASE("a solid whose elements are larger inside tells an impact as one of even ones, and breaks whole") {
+  // A plaster block that falls on its corner; `height` in m.
+  const auto drop_block = [](int grading, double height) {
+    world::World w{world::WorldSettings{}};
+    REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
+    world::BodyDescription ground;
+    ground.form = world::PlaneDescription{};
+    REQUIRE(w.add_body(ground).ok());
+    world::BodyDescription block = make_slab(Vec3(0.2, 0.17, 0.18), Vec3(0.7, 0.0, 0.0));
+    auto& solid = std::get<world::SolidDescription>(block.form);
+    solid.is_breakable = true;
+    solid.element_size = 0.022;
+    solid.grading = grading;
+    block.pose.rotation = Quat(Eigen::AngleAxisd(0.5, Vec3(1.0, 0.2, 1.2).normalized()));
+    double lowest = 1e9;
+    for (const Vec3& p : solid.mesh.positions) lowest = std::min(lowest, block.pose.apply(p).y());
+    block.pose.translation.y() = height - lowest;
+    block.velocity = Vec3(0.0, -1e-3, 0.0);
+    REQUIRE(w.add_body(block).ok());
+    const double until = std::sqrt(2.0 * height / 9.81) + 0.01;
+    while (w.time() < until) w.step();
+    return w;
+  };
+  const auto tetrahedra_of = [](const world::World& w) {
+    for (const world::PartCount& part : w.inventory())
+      if (part.part == "tetrahedra") return part.bytes;
+    return 0.0;
+  };
+  const world::World even = drop_block(1, 0.01), graded = drop_block(2, 0.01);
+  REQUIRE_FALSE(even.report().impacts.empty());
+  REQUIRE_FALSE(graded.report().impacts.empty());
+  CHECK(tetrahedra_of(graded) < 0.85 * tetrahedra_of(even));
+  const world::ImpactRow &a = even.report().impacts[0], &b = graded.report().impacts[0];
+  CHECK(b.stress == Approx(a.stress).epsilon(0.05));
+  CHECK(b.duration == Approx(a.duration).epsilon(0.01));
+
+  const world::World broken = drop_block(2, 1.5);
+  REQUIRE_FALSE(broken.report().breaks.empty());
+  CHECK(broken.report().breaks[0].pieces >= 2);
+  for (const world::BreakRow& row : broken.report().breaks) {
+    CHECK(row.mass_error < 1e-10);
+    CHECK(row.momentum_error < 1e-10);
+    CHECK(row.angular_momentum_error < 1e-10);
+    CHECK(row.energy_gain < 1e-10);
+    CHECK(row.fracture_energy <= row.elastic_energy);
+    CHECK(count_overlaps(row) == 0);
+  }
+  for (const body::Body& body : broken.bodies())
+    if (body.shape->kind == body::ShapeKind::solid)
+      CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
+}
+
 TEST_CASE("what breaks is followed in parts in which it goes a fifth of its size") {
   // Parts of the step in which a plaster slab of .72 m and one of a sixtieth of its size break.
   const auto parts_at = [](double share, double speed) {
