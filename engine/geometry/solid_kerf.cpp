@@ -19,6 +19,7 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kShareOfWidth = 0.25;  // of the material's width: the most that a vertex retreats
+constexpr double kFarthest = 8.0;       // kerfs: from where a piece's vertex would be to its whole's surface
 constexpr int kHalvings = 24;           // rounds in which a kerf that is still too wide is halved
 
 /// Triangles, with boxes about them for one state of their vertices. The positions must outlive it.
@@ -234,6 +235,30 @@ std::vector<char> find_tips_of_hollows(const SolidSurface& surface, const std::v
   return stays;
 }
 
+/// Vertices of crack faces that have stood back before, to which keep_kerf could give no place in these, get
+/// that on the whole's surface which is nearest to where they would stand back to from them alone.
+void take_places(const SurfaceDistance& whole, SolidSurface& surface, double kerf) {
+  const TriangleMesh& mesh = surface.mesh;
+  VertexFaces faces{std::vector<std::vector<Vec3>>(mesh.positions.size()),
+                    std::vector<std::vector<Vec3>>(mesh.positions.size())};
+  for (Size t = 0; t < mesh.triangles.size(); ++t) {
+    if (surface.is_crack_face[t] && !surface.is_old_face[t]) continue;
+    const std::optional<Vec3> normal = find_normal(mesh, mesh.triangles[t]);
+    if (!normal) continue;
+    for (const int v : mesh.triangles[t])
+      if (!surface.has_kerf[at(v)])
+        add_normal(faces.cracks[at(v)], faces.outers[at(v)], surface.is_old_face[t] != 0, *normal);
+  }
+  for (Size v = 0; v < faces.cracks.size(); ++v) {
+    if (faces.cracks[v].empty()) continue;
+    const Vec3 place = mesh.positions[v] + retreat(faces.cracks[v], faces.outers[v], kerf);
+    const NearestPlace nearest = whole.find(place, kFarthest * kerf);
+    if (nearest.triangle < 0) continue;
+    surface.mesh.positions[v] = nearest.place;
+    surface.has_kerf[v] = 1;
+  }
+}
+
 /// Parts the border's crack facets along the edges of the surface's triangles, which no longer lie in one
 /// plane.
 void divide_crack_facets(SolidComplex& piece, const SolidSurface& surface) {
@@ -273,9 +298,10 @@ void divide_crack_facets(SolidComplex& piece, const SolidSurface& surface) {
 
 }  // namespace
 
-double stand_back(SolidSurface& surface, double kerf) {
+double stand_back(SolidSurface& surface, double kerf, const SurfaceDistance* whole) {
   const std::vector<char> is_shared = find_shared_vertices(surface);
   part_vertices(surface, kerf);
+  if (whole) take_places(*whole, surface, kerf);
   const VertexFaces faces = collect_faces(surface);
   std::vector<Vec3> shift(surface.mesh.positions.size(), Vec3::Zero());
   for (Size v = 0; v < faces.cracks.size(); ++v)

@@ -91,6 +91,15 @@ bool stands_back(const SolidSurface& surface, int triangle, int vertex) {
          !(surface.is_old_face[at(triangle)] && surface.has_kerf[at(vertex)]);
 }
 
+std::optional<Vec3> find_normal(const TriangleMesh& mesh, const Triangle& triangle) {
+  const Vec3& a = mesh.positions[at(triangle[0])];
+  const Vec3 ab = mesh.positions[at(triangle[1])] - a, ac = mesh.positions[at(triangle[2])] - a;
+  const Vec3 normal = ab.cross(ac);
+  const double size = normal.norm();
+  if (!(size > kFlatFace * (ab.squaredNorm() + ac.squaredNorm()))) return std::nullopt;
+  return normal / size;
+}
+
 VertexFaces collect_faces(const SolidSurface& surface) {
   const TriangleMesh& mesh = surface.mesh;
   VertexFaces faces{std::vector<std::vector<Vec3>>(mesh.positions.size()),
@@ -102,15 +111,12 @@ VertexFaces collect_faces(const SolidSurface& surface) {
   for (Size t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = mesh.triangles[t];
     if (!is_at_crack[at(a)] && !is_at_crack[at(b)] && !is_at_crack[at(c)]) continue;
-    const Vec3 ab = mesh.positions[at(b)] - mesh.positions[at(a)];
-    const Vec3 ac = mesh.positions[at(c)] - mesh.positions[at(a)];
-    const Vec3 normal = ab.cross(ac);
-    const double size = normal.norm();
-    if (!(size > kFlatFace * (ab.squaredNorm() + ac.squaredNorm()))) continue;
+    const std::optional<Vec3> normal = find_normal(mesh, mesh.triangles[t]);
+    if (!normal) continue;
     for (const int v : mesh.triangles[t])
       if (is_at_crack[at(v)])
         add_normal(faces.cracks[at(v)], faces.outers[at(v)], stands_back(surface, static_cast<int>(t), v),
-                   normal / size);
+                   *normal);
   }
   return faces;
 }

@@ -1,6 +1,7 @@
 // Which way a vertex of a piece's surface stands back from the crack faces about it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/geometry/solid_surface.h"
@@ -29,5 +30,8 @@ Vec3 retreat(const std::vector<Vec3>& cracks, const std::vector<Vec3>& outers, d
 
 /// A face with less area than this, share of its squared size, has no normal.
 inline constexpr double kFlatFace = 1e-14;
+
+/// The unit normal of a triangle, if it has one.
+std::optional<Vec3> find_normal(const TriangleMesh& mesh, const Triangle& triangle);
 
 }  // namespace shatterbox::geometry

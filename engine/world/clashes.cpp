@@ -4,9 +4,11 @@
 #include <memory>
 
 #include "engine/collision/broad_phase.h"
+#include "engine/collision/feature_gap.h"
 #include "engine/collision/feature_list.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/dynamics/motion_work.h"
 
 namespace shatterbox::world {
 namespace {
@@ -48,6 +50,25 @@ std::vector<const Body*> find_neighbours(const Body& whole, const std::vector<Bo
   return out;
 }
 
+/// Where neither found a way back from the cracks about it, they are in one place, and between them there is
+/// no direction.
+bool touch(const Placed& a, const Placed& b) {
+  const double size = 2.0 * std::min(a.collider->bounding_radius, b.collider->bounding_radius);
+  collision::FeatureList features;
+  collision::list_near_features(a.placed, b.placed, dynamics::kNoDistance * size, features);
+  return std::any_of(features.begin(), features.end(), [&](const collision::FeaturePair& pair) {
+    const auto points = collision::gather(pair, *a.collider, a.placed.start, *b.collider, b.placed.start);
+    return collision::measure(points, Vec3::UnitY()).gap <= dynamics::kNoDistance * size;
+  });
+}
+
+enum class Meeting { none, touch, cross };
+
+Meeting find_meeting(const Placed& a, const Placed& b) {
+  if (collision::crosses(a.placed, b.placed)) return Meeting::cross;
+  return touch(a, b) ? Meeting::touch : Meeting::none;
+}
+
 }  // namespace
 
 std::vector<fracture::PieceClash> find_clashes(const Body& whole, const std::vector<Body>& born,
@@ -63,22 +84,22 @@ std::vector<fracture::PieceClash> find_clashes(const Body& whole, const std::vec
   std::vector<collision::SweptBound> bounds;
   for (Size i = 0; i < placed.size(); ++i) bounds.push_back({placed[i].box, i < born.size()});
   const std::vector<IndexPair> pairs = collision::find_overlapping_pairs(bounds);
-  std::vector<char> is_clash(pairs.size(), 0);
+  std::vector<Meeting> meetings(pairs.size());
   core::parallel_for(pairs.size(), 1, [&](Size k) {
-    is_clash[k] = collision::crosses(placed[at(pairs[k].a)].placed, placed[at(pairs[k].b)].placed) ? 1 : 0;
+    meetings[k] = find_meeting(placed[at(pairs[k].a)], placed[at(pairs[k].b)]);
   });
 
   std::vector<fracture::PieceClash> clashes;
   std::unique_ptr<Placed> before;  // where the whole is
   for (Size k = 0; k < pairs.size(); ++k) {
-    if (!is_clash[k]) continue;
+    if (meetings[k] == Meeting::none) continue;
     const auto [a, b] = pairs[k];
     if (at(b) < born.size()) {
       clashes.push_back({a, b});
       continue;
     }
     if (!before) before = std::make_unique<Placed>(place(whole, known_collider(whole, contact)));
-    if (!collision::crosses(before->placed, placed[at(b)].placed)) clashes.push_back({a, -1});
+    if (find_meeting(*before, placed[at(b)]) < meetings[k]) clashes.push_back({a, -1});
   }
   return clashes;
 }

@@ -328,7 +328,8 @@ std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& m
   return shape;
 }
 
-std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile) {
+std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile,
+                                                    const geometry::SurfaceDistance* whole) {
   auto shape = std::make_shared<body::Shape>();
   geometry::MassProperties mass;
   geometry::SolidSurface surface;
@@ -338,7 +339,7 @@ std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piec
       return;
     }
     surface = geometry::extract_surface(piece);
-    shape->least_gap = geometry::stand_back(surface, kKerf * fragile.size);
+    shape->least_gap = geometry::stand_back(surface, kKerf * fragile.size, whole);
   });
   geometry::keep_kerf(piece, surface);
   shape->kind = body::ShapeKind::solid;

@@ -5,6 +5,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/result.h"
 #include "engine/geometry/standing_surface.h"
+#include "engine/geometry/surface_distance.h"
 #include "engine/world/description.h"
 #include "engine/world/fragile.h"
 
@@ -54,6 +55,7 @@ std::shared_ptr<const body::Shape> make_shell_shape(const geometry::ShellMesh& m
                                                     const geometry::StandingSurface* whole = nullptr);
 
 /// Likewise of a piece of a solid (settled), which gets to know its surface.
-std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile);
+std::shared_ptr<const body::Shape> make_solid_shape(geometry::SolidComplex& piece, const Fragile& fragile,
+                                                    const geometry::SurfaceDistance* whole = nullptr);
 
 }  // namespace shatterbox::world

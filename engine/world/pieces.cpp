@@ -53,7 +53,8 @@ std::shared_ptr<Fragile> cut_from(const Fragile& parent, const fracture::SolidDe
   return fragile;
 }
 
-Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fracture::SolidDecision& decision) {
+Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fracture::SolidDecision& decision,
+                 const geometry::SurfaceDistance* whole) {
   Piece piece;
   const auto complex = std::make_shared<geometry::SolidComplex>(std::move(split.complex));
   const auto fragile = cut_from(parent, decision, complex);
@@ -62,7 +63,7 @@ Piece make_piece(fracture::SolidPiece split, const Fragile& parent, const fractu
     return std::binary_search(subject.clamped_vertices.begin(), subject.clamped_vertices.end(), v);
   });
   if (!piece.is_held) subject.clamped_vertices.clear();
-  piece.shape = make_solid_shape(*complex, *fragile);
+  piece.shape = make_solid_shape(*complex, *fragile, whole);
   piece.fragile = fragile;
   return piece;
 }
@@ -104,8 +105,11 @@ Pieces split_up(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
   const double volume = total_volume(*decision.complex);
   out.merged_share = volume > 0.0 ? split.merged_volume / volume : 0.0;
   out.pieces.resize(split.pieces.size());
+  geometry::TriangleMesh standing = shape->surface;
+  for (Vec3& p : standing.positions) p += shape->material_from_body;
+  const geometry::SurfaceDistance whole(standing);
   core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
-    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision);
+    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, &whole);
   });
   // What was joined again stands where it stood.
   if (out.pieces.size() == 1) out.pieces[0].shape = shape;

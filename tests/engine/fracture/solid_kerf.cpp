@@ -28,12 +28,13 @@ bool crosses_itself(const TriangleMesh& mesh) {
   return false;
 }
 
-std::vector<TriangleMesh> pieces_with_kerf(SolidComplex complex, double kerf, double& least) {
+std::vector<TriangleMesh> pieces_with_kerf(SolidComplex complex, double kerf, double& least,
+                                           const SurfaceDistance* whole = nullptr) {
   std::vector<TriangleMesh> meshes;
   least = kerf;
   for (const auto& piece : fracture::split_solid(std::move(complex)).pieces) {
     SolidSurface surface = extract_surface(piece.complex);
-    least = std::min(least, stand_back(surface, kerf));
+    least = std::min(least, stand_back(surface, kerf, whole));
     meshes.push_back(std::move(surface.mesh));
   }
   return meshes;
@@ -63,13 +64,10 @@ SolidCut whole_plane(const SolidComplex& complex, core::Random& random, int id) 
   return test::plane_cut(complex, normal, offset, id);
 }
 
-}  // namespace
-
-TEST_CASE(
-    "solid kerf: a vertex where material goes on from one side of a crack to the other becomes several") {
-  // Two half cracks in one plane from both sides, each beside what a third crack parts: the material of one
-  // piece is behind the plane on one side of it and in front on the other.
-  const double kerf = 1e-3;
+/// Four bars along z in a cube, of which two that touch along an edge hold together at the end: two half
+/// cracks in one plane from both sides, each beside what a third crack parts. The material of one piece is
+/// behind the plane on one side of it and in front on the other.
+SolidComplex make_crossed_bars() {
   SolidComplex complex = make_solid_complex(test::make_cube_elements(4));
   SolidCutter cutter(complex);
   const auto cut_where = [&](const Vec3& normal, double offset, int id, auto&& is_in) {
@@ -84,11 +82,34 @@ TEST_CASE(
     });
     cutter.cut(cut);
   };
-  // Four bars along z, of which two that touch along an edge hold together at the end.
   const auto in_front = [](const Vec3& p) { return p.z() < 0.75; };
   cut_where(Vec3::UnitX(), 0.5, 0, in_front);
   cut_where(Vec3::UnitY(), 0.5, 1, in_front);
   cut_where(Vec3::UnitZ(), 0.75, 2, [](const Vec3& p) { return (p.x() < 0.5) != (p.y() < 0.5); });
+  return complex;
+}
+
+/// How far vertices and middles of triangles are outside of a closed surface at most, m.
+double farthest_outside(const TriangleMesh& whole, const TriangleMesh& part) {
+  double farthest = 0.0;
+  for (const auto& t : part.triangles) {
+    Vec3 middle = Vec3::Zero();
+    for (const int v : t) {
+      const Vec3& p = part.positions[static_cast<std::size_t>(v)];
+      middle += p / 3.0;
+      farthest = std::max(farthest, distance_outside(whole, p));
+    }
+    farthest = std::max(farthest, distance_outside(whole, middle));
+  }
+  return farthest;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "solid kerf: a vertex where material goes on from one side of a crack to the other becomes several") {
+  const double kerf = 1e-3;
+  const SolidComplex complex = make_crossed_bars();
   double least = 0.0;
   const auto pieces = pieces_with_kerf(complex, kerf, least);
   REQUIRE(pieces.size() == 3);
@@ -123,19 +144,38 @@ TEST_CASE("solid kerf: pieces of pieces stick out of what they are of nowhere") 
       const auto pieces = pieces_with_kerf(std::move(complex), kerf, least);
       crossing += count_crossing_pairs(pieces) > 0;
       for (const TriangleMesh& part : pieces)
-        for (const auto& t : part.triangles) {
-          Vec3 middle = Vec3::Zero();
-          for (const int v : t) {
-            const Vec3& p = part.positions[static_cast<std::size_t>(v)];
-            middle += p / 3.0;
-            farthest = std::max(farthest, distance_outside(surface.mesh, p));
-          }
-          farthest = std::max(farthest, distance_outside(surface.mesh, middle));
-        }
+        farthest = std::max(farthest, farthest_outside(surface.mesh, part));
     }
   }
   CHECK(crossing == 0);
   CHECK(kept > 0);
+  CHECK(farthest < 1e-5 * kerf);
+}
+
+TEST_CASE("solid kerf: what is cut where a vertex of the whole had become several stays within the whole") {
+  const double kerf = 1e-3;
+  double farthest = 0.0, farthest_alone = 0.0;
+  for (auto& piece : fracture::split_solid(make_crossed_bars()).pieces) {
+    SolidSurface surface = extract_surface(piece.complex);
+    stand_back(surface, kerf);
+    keep_kerf(piece.complex, surface);
+    const SurfaceDistance whole(surface.mesh);
+    for (int trial = 0; trial < test::how_many(8, 3); ++trial) {
+      core::Random random(34, static_cast<std::uint64_t>(trial));
+      SolidComplex complex = piece.complex;
+      SolidCutter cutter(complex);
+      for (int i = 0; i < 2; ++i) cutter.cut(whole_plane(complex, random, 3 + i));
+      double least = 0.0;
+      const auto alone = pieces_with_kerf(complex, kerf, least);
+      const auto pieces = pieces_with_kerf(complex, kerf, least, &whole);
+      CHECK(count_crossing_pairs(pieces) == 0);
+      for (const TriangleMesh& part : alone)
+        farthest_alone = std::max(farthest_alone, farthest_outside(surface.mesh, part));
+      for (const TriangleMesh& part : pieces)
+        farthest = std::max(farthest, farthest_outside(surface.mesh, part));
+    }
+  }
+  CHECK(farthest_alone > 0.3 * kerf);
   CHECK(farthest < 1e-5 * kerf);
 }
 

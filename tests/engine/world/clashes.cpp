@@ -35,14 +35,24 @@ std::vector<std::pair<int, int>> clashes_of(const body::Body& whole, const std::
 
 }  // namespace
 
-TEST_CASE("pieces that are apart or only touch do not clash, and those that cross do") {
+TEST_CASE("pieces that are apart do not clash, and those that cross or touch do") {
   const body::Body whole = make_cube(1, Vec3::Zero());
   const body::Body left = make_cube(0, Vec3(-0.6, 0, 0)), right = make_cube(0, Vec3(0.6, 0, 0));
   const body::Body above = make_cube(0, Vec3(0.3, 0.7, 0.2));
-  CHECK(clashes_of(whole, {left, right}, {}).empty());
-  CHECK(clashes_of(whole, {left, make_cube(0, Vec3(0.4 + 1e-9, 0, 0))}, {}).empty());
   using Pairs = std::vector<std::pair<int, int>>;
+  CHECK(clashes_of(whole, {left, right}, {}).empty());
   CHECK(clashes_of(whole, {left, right, above}, {}) == Pairs{{0, 2}, {1, 2}});
+  // By faces, and by a corner that lies on a face.
+  CHECK(clashes_of(whole, {left, make_cube(0, Vec3(0.4, 0, 0))}, {}) == Pairs{{0, 1}});
+  CHECK(clashes_of(whole, {left, make_cube(0, Vec3(0.4 + 1e-8, 0, 0))}, {}).empty());
+  body::Body tilted = right;
+  tilted.pose.rotation = left.pose.rotation * Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(-1, 0, 0));
+  const Vec3 corner = tilted.pose.rotation * Vec3::Constant(0.5);
+  const Vec3 on_face = left.pose.apply(Vec3(0.5, 0.1, -0.2)), along = left.pose.rotation * Vec3(1, 0, 0);
+  tilted.pose.translation = on_face - corner;
+  CHECK(clashes_of(whole, {left, tilted}, {}) == Pairs{{0, 1}});
+  tilted.pose.translation += 1e-8 * along;
+  CHECK(clashes_of(whole, {left, tilted}, {}).empty());
 }
 
 TEST_CASE("a piece clashes with a body that its whole did not cross") {
