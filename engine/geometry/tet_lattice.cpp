@@ -48,7 +48,6 @@ class CubeBlock {
       counts_[at(axis)] = (((counts_[at(axis)] - 1) >> most_level) + 1) << most_level;
     }
     kinds_.assign(static_cast<Size>(counts_[0]) * at(counts_[1]) * at(counts_[2]), Kind::unknown);
-    levels_.assign(kinds_.size(), 0);
   }
 
   /// Marks cubes that a triangle may touch.
@@ -100,6 +99,8 @@ class CubeBlock {
 
   /// Cubes that are far from all marked ones join, eight to one and these again.
   void join(int most_level) {
+    if (most_level == 0) return;
+    levels_.assign(kinds_.size(), 0);
     const std::vector<int> depths = find_depths(least_depth(most_level));
     for (int level = most_level; level > 0; --level) {
       const int side = 1 << level;
@@ -176,7 +177,7 @@ class CubeBlock {
     return depths;
   }
 
-  int level(const Place& p) const { return levels_[number(p)]; }
+  int level(const Place& p) const { return levels_.empty() ? 0 : levels_[number(p)]; }
   /// The first of the cubes that have joined with this one.
   Place first_of(const Place& p) const {
     const int all_but = (1 << level(p)) - 1;
@@ -204,6 +205,7 @@ class CubeBlock {
   int halfway_vertex(const Place& from, const Place& to) {
     const Size along = from[0] != to[0] ? 0 : from[1] != to[1] ? 1 : 2;
     const int length = std::abs(to[along] - from[along]);
+    if (length == 1) return -1;
     Place halfway = from;
     halfway[along] = std::min(from[along], to[along]);
     bool is_divided = false;
@@ -254,7 +256,7 @@ class CubeBlock {
   Vec3 origin_;
   Place counts_;
   std::vector<Kind> kinds_;
-  std::vector<std::uint8_t> levels_;  // of the large cube that each has joined
+  std::vector<std::uint8_t> levels_;  // of the large cube that each has joined; empty: none has
   std::vector<int> middles_, corners_;
   TetMesh mesh_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -135,8 +134,7 @@ core::Result<EmbeddedSolid> tetrahedralise(const TriangleMesh& surface, const Te
   if (!(volume > 0.0)) return core::Error{"the surface is inside out, or encloses nothing"};
   const double size = element_size_for(surface, options);
   if (const auto fault = find_size_fault("the element size", size)) return core::Error{*fault};
-  if (options.grading < 1 || options.grading > 8 ||
-      !std::has_single_bit(static_cast<unsigned>(options.grading)))
+  if (!is_grading(options.grading))
     return core::Error{"a grading of " + std::to_string(options.grading) + " is none: it is 1, 2, 4 or 8"};
 
   core::Result<TetMesh> lattice = make_covering_lattice(surface, size, options.grading, kMostTetrahedra);

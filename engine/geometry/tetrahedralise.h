@@ -10,11 +10,16 @@
 
 namespace shatterbox::geometry {
 
+/// So many times as large as at the surface can tetrahedra become inside: 1, 2, 4 or 8.
+constexpr bool is_grading(int times) {
+  return times == 1 || times == 2 || times == 4 || times == 8;
+}
+
 struct TetrahedraOptions {
   double element_size =
       0.0;            // m: side of the lattice's cubes, of which a tetrahedron's edges are 0.87 to 1; or
   int count = 0;      // about how many tetrahedra (used if element_size is 0)
-  int grading = 1;    // 1, 2, 4 or 8: so many times as large they become inside
+  int grading = 1;    // is_grading: so many times as large they become inside
   bool warps = true;  // vertices near the surface are moved to it; false: the lattice as it is
 };
 

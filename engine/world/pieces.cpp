@@ -98,18 +98,16 @@ Pieces split_up(const Fragile& parent, const body::Shape& shape, const fracture:
 }
 
 Pieces split_up(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
-                const fracture::SolidDecision& decision, const fracture::SolidSplitter& splitter) {
+                const fracture::SolidDecision& decision, const fracture::SolidSplitter& splitter,
+                const geometry::SurfaceDistance* whole) {
   fracture::SolidSplit split = splitter.split();
   Pieces out;
   out.merged_count = split.merged_count;
   const double volume = total_volume(*decision.complex);
   out.merged_share = volume > 0.0 ? split.merged_volume / volume : 0.0;
   out.pieces.resize(split.pieces.size());
-  geometry::TriangleMesh standing = shape->surface;
-  for (Vec3& p : standing.positions) p += shape->material_from_body;
-  const geometry::SurfaceDistance whole(standing);
   core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
-    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, &whole);
+    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, whole);
   });
   // What was joined again stands where it stood.
   if (out.pieces.size() == 1) out.pieces[0].shape = shape;
@@ -125,12 +123,19 @@ std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::Sol
 Splitter::Splitter(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
                    const EvaluatedImpact& impact)
     : parent_(parent), shape_(std::move(shape)), impact_(impact) {
-  if (const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision))
-    solid_.emplace(*solid->complex, kLeastWidth * parent.size);
+  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
+  if (!solid) return;
+  solid_.emplace(*solid->complex, kLeastWidth * parent.size);
+  const std::vector<std::uint8_t>& is_crack_face = shape_->crack_faces;
+  if (std::find(is_crack_face.begin(), is_crack_face.end(), 1) == is_crack_face.end()) return;
+  standing_ = shape_->surface;
+  for (Vec3& p : standing_.positions) p += shape_->material_from_body;
+  whole_.emplace(standing_);
 }
 
 Pieces Splitter::split() const {
-  return solid_ ? split_up(parent_, shape_, std::get<fracture::SolidDecision>(impact_.decision), *solid_)
+  return solid_ ? split_up(parent_, shape_, std::get<fracture::SolidDecision>(impact_.decision), *solid_,
+                           whole_ ? &*whole_ : nullptr)
                 : split_up(parent_, *shape_, std::get<fracture::Decision>(impact_.decision));
 }
 

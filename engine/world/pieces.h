@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/fracture/split_solid.h"
+#include "engine/geometry/surface_distance.h"
 #include "engine/world/fragile.h"
 #include "engine/world/verdict.h"
 
@@ -30,6 +31,8 @@ std::shared_ptr<const Fragile> cracked(const Fragile& whole, const fracture::Sol
 class Splitter {
  public:
   Splitter(const Fragile& parent, std::shared_ptr<const body::Shape> shape, const EvaluatedImpact& impact);
+  Splitter(const Splitter&) = delete;
+  Splitter& operator=(const Splitter&) = delete;
 
   Pieces split() const;
 
@@ -44,6 +47,8 @@ class Splitter {
   const std::shared_ptr<const body::Shape> shape_;
   const EvaluatedImpact& impact_;
   std::optional<fracture::SolidSplitter> solid_;
+  geometry::TriangleMesh standing_;  // the surface of a solid that has crack faces already, material space
+  std::optional<geometry::SurfaceDistance> whole_;  // of that
 };
 
 }  // namespace shatterbox::world

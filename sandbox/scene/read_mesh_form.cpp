@@ -1,10 +1,10 @@
 #include "sandbox/scene/read_mesh_form.h"
 
-#include <bit>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "engine/geometry/tetrahedralise.h"
 #include "sandbox/scene/nearest_name.h"
 
 namespace shatterbox::sandbox::scene {
@@ -265,7 +265,7 @@ SolidForm read_solid(TableReader& reader, const SceneDescription& scene) {
   form.element_size = reader.number("element_size", extent());
   if (const auto grading = reader.whole_number("grading", 1, 8)) {
     form.grading = static_cast<int>(*grading);
-    if (!std::has_single_bit(static_cast<unsigned>(*form.grading)))
+    if (!geometry::is_grading(*form.grading))
       reader.add_problem_at("grading", fmt::format("elements inside cannot be {} times as large", *grading),
                             "eight of them join to one, and these again: 2, 4 or 8");
   }

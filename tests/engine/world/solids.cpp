@@ -97,10 +97,17 @@ namespace {
 
 constexpr double kBroken = 0.013;  // s after it has met the floor: it has broken, and its pieces move
 
-/// A plaster slab that falls on its corner from that height, m; `after` it has met the floor, s.
-world::World drop_slab(double height, double grain_size = 0.0,
-                       double after = test::kIsSanitized ? kBroken : 0.1,
-                       const world::WorldSettings& settings = {}) {
+/// What falls on its corner, of plaster.
+struct Dropped {
+  Vec3 half_extent;     // m
+  double element_size;  // m
+  int grading = 1;
+};
+constexpr double kLong = test::kIsSanitized ? kBroken : 0.1;
+
+/// From that height, m; `after` it has met the floor, s.
+world::World drop(const Dropped& dropped, double height, double grain_size = 0.0, double after = kLong,
+                  const world::WorldSettings& settings = {}) {
   world::World w{settings};
   material::Material plaster = *material::find_preset("plaster");
   plaster.grain_size = grain_size;
@@ -109,10 +116,11 @@ world::World drop_slab(double height, double grain_size = 0.0,
   ground.name = "floor";
   ground.form = world::PlaneDescription{};
   REQUIRE(w.add_body(ground).ok());
-  world::BodyDescription slab = make_slab(Vec3(0.3, 0.03, 0.2), Vec3(0.7, 0.0, 0.0));
+  world::BodyDescription slab = make_slab(dropped.half_extent, Vec3(0.7, 0.0, 0.0));
   auto& solid = std::get<world::SolidDescription>(slab.form);
   solid.is_breakable = true;
-  solid.element_size = 0.05;
+  solid.element_size = dropped.element_size;
+  solid.grading = dropped.grading;
   slab.pose.rotation = Quat(Eigen::AngleAxisd(0.5, Vec3(1.0, 0.2, 1.2).normalized()));
   double lowest = 1e9;
   for (const Vec3& p : solid.mesh.positions) lowest = std::min(lowest, slab.pose.apply(p).y());
@@ -121,6 +129,21 @@ world::World drop_slab(double height, double grain_size = 0.0,
   const double fall = std::sqrt(2.0 * height / 9.81);
   while (w.time() < fall + after) w.step();
   return w;
+}
+
+world::World drop_slab(double height, double grain_size = 0.0, double after = kLong,
+                       const world::WorldSettings& settings = {}) {
+  return drop({Vec3(0.3, 0.03, 0.2), 0.05}, height, grain_size, after, settings);
+}
+
+void check_conserved(const world::World& w) {
+  for (const world::BreakRow& row : w.report().breaks) {
+    CHECK(row.mass_error < 1e-10);
+    CHECK(row.momentum_error < 1e-10);
+    CHECK(row.angular_momentum_error < 1e-10);
+    CHECK(row.energy_gain < 1e-10);
+    CHECK(row.fracture_energy <= row.elastic_energy);
+  }
 }
 
 }  // namespace
@@ -137,13 +160,7 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
   const world::BreakRow& first = broken.report().breaks[0];
   CHECK(first.pieces >= 2);
   CHECK(first.new_area > 0.06 * 0.2);
-  for (const world::BreakRow& row : broken.report().breaks) {
-    CHECK(row.mass_error < 1e-10);
-    CHECK(row.momentum_error < 1e-10);
-    CHECK(row.angular_momentum_error < 1e-10);
-    CHECK(row.energy_gain < 1e-10);
-    CHECK(row.fracture_energy <= row.elastic_energy);
-  }
+  check_conserved(broken);
   double mass = 0.0;
   for (const body::Body& body : broken.bodies()) {
     mass += body.shape->mass;
@@ -157,27 +174,8 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
 }
 
 TEST_CASE("a solid whose elements are larger inside tells an impact as one of even ones, and breaks whole") {
-  // A plaster block that falls on its corner; `height` in m.
   const auto drop_block = [](int grading, double height) {
-    world::World w{world::WorldSettings{}};
-    REQUIRE(w.add_material(*material::find_preset("plaster")).ok());
-    world::BodyDescription ground;
-    ground.form = world::PlaneDescription{};
-    REQUIRE(w.add_body(ground).ok());
-    world::BodyDescription block = make_slab(Vec3(0.2, 0.17, 0.18), Vec3(0.7, 0.0, 0.0));
-    auto& solid = std::get<world::SolidDescription>(block.form);
-    solid.is_breakable = true;
-    solid.element_size = 0.022;
-    solid.grading = grading;
-    block.pose.rotation = Quat(Eigen::AngleAxisd(0.5, Vec3(1.0, 0.2, 1.2).normalized()));
-    double lowest = 1e9;
-    for (const Vec3& p : solid.mesh.positions) lowest = std::min(lowest, block.pose.apply(p).y());
-    block.pose.translation.y() = height - lowest;
-    block.velocity = Vec3(0.0, -1e-3, 0.0);
-    REQUIRE(w.add_body(block).ok());
-    const double until = std::sqrt(2.0 * height / 9.81) + 0.01;
-    while (w.time() < until) w.step();
-    return w;
+    return drop({Vec3(0.2, 0.17, 0.18), 0.022, grading}, height, 0.0, 0.01);
   };
   const auto tetrahedra_of = [](const world::World& w) {
     for (const world::PartCount& part : w.inventory())
@@ -197,14 +195,8 @@ TEST_CASE("a solid whose elements are larger inside tells an impact as one of ev
   const world::World broken = drop_block(2, 1.5);
   REQUIRE_FALSE(broken.report().breaks.empty());
   CHECK(broken.report().breaks[0].pieces >= 2);
-  for (const world::BreakRow& row : broken.report().breaks) {
-    CHECK(row.mass_error < 1e-10);
-    CHECK(row.momentum_error < 1e-10);
-    CHECK(row.angular_momentum_error < 1e-10);
-    CHECK(row.energy_gain < 1e-10);
-    CHECK(row.fracture_energy <= row.elastic_energy);
-    CHECK(count_overlaps(row) == 0);
-  }
+  check_conserved(broken);
+  for (const world::BreakRow& row : broken.report().breaks) CHECK(count_overlaps(row) == 0);
   for (const body::Body& body : broken.bodies())
     if (body.shape->kind == body::ShapeKind::solid)
       CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
@@ -251,12 +243,7 @@ TEST_CASE("a solid with grains breaks along them, into pieces as whole as any") 
   CHECK(first.grain_share > 0.1);
   CHECK(first.grain_share < 1.0);
   CHECK(count_overlaps(first) == 0);
-  for (const world::BreakRow& row : broken.report().breaks) {
-    CHECK(row.mass_error < 1e-10);
-    CHECK(row.momentum_error < 1e-10);
-    CHECK(row.energy_gain < 1e-10);
-    CHECK(row.fracture_energy <= row.elastic_energy);
-  }
+  check_conserved(broken);
   for (const body::Body& body : broken.bodies()) {
     if (body.shape->kind != body::ShapeKind::solid) continue;
     CHECK(geometry::enclosed_volume(body.shape->surface) > 0.0);
