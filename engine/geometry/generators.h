@@ -1,7 +1,7 @@
-// Surfaces by their sizes: sphere, ornament, bowl, pane, boat, vase, bottle, egg, and any surface of
-// revolution. Triangles are near-equilateral, of one size, and without directions that cracks could follow;
-// vertices lie on the exact surface, so that a finer mesh is the same shape. y is up. The same numbers give
-// the same mesh to the bit.
+// Surfaces by their sizes: sphere, ornament, bowl, wine glass, pane, boat, vase, bottle, egg, and any surface
+// of revolution. Triangles are near-equilateral, of one size, and without directions that cracks could
+// follow; vertices lie on the exact surface, so that a finer mesh is the same shape. y is up. The same
+// numbers give the same mesh to the bit.
 #pragma once
 
 #include <cstdint>
@@ -101,6 +101,18 @@ core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& 
 
 /// Outer side and bottom of the same as one sheet, open at the top, for shells; `wall` rounds its edge only.
 core::Result<TriangleMesh> make_bottle_sheet(const BottleSizes& sizes, const Meshing& meshing);
+
+/// A stemmed glass: foot on y = 0, stem, bowl, open rim at y = height. One sheet; the stem is a tube, open to
+/// the bowl and below the foot.
+struct WineGlassSizes {
+  double height = 0.2;         // m
+  double radius = 0.04;        // m, of the bowl where it is widest
+  double rim_radius = 0.032;   // m
+  double foot_radius = 0.035;  // m
+  double stem_radius = 0.004;  // m
+  double stem_length = 0.085;  // m, from the table to where the bowl begins
+};
+core::Result<TriangleMesh> make_wine_glass(const WineGlassSizes& sizes, const Meshing& meshing);
 
 /// An egg: half an ellipsoid above the plane y = 0 and a longer or shorter half below; closed.
 struct EggSizes {

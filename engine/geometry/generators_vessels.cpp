@@ -1,4 +1,4 @@
-// Closed surfaces for solids: vessels with a wall, and the egg.
+// Vessels, closed with a wall for solids or as one sheet for shells, and the egg.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -158,6 +158,39 @@ core::Result<TriangleMesh> make_bottle_sheet(const BottleSizes& sizes, const Mes
   core::Result<PartedMesh> sheet = make_surface_of_revolution(profile, meshing);
   if (!sheet) return core::Error{sheet.error()};
   return std::move(sheet.value().mesh);
+}
+
+core::Result<TriangleMesh> make_wine_glass(const WineGlassSizes& sizes, const Meshing& meshing) {
+  const double stem = sizes.stem_radius, fillet = 2.0 * stem, rise = 0.12 * sizes.foot_radius;
+  if (const auto fault = find_fault_of(
+          "a wine glass's", std::array<NamedSize, 6>{{{"stem_radius", stem, 0.0},
+                                                      {"foot_radius", sizes.foot_radius, stem + fillet},
+                                                      {"stem_length", sizes.stem_length, rise + 2.0 * fillet},
+                                                      {"height", sizes.height, sizes.stem_length},
+                                                      {"radius", sizes.radius, 2.0 * stem},
+                                                      {"rim_radius", sizes.rim_radius, stem}}}))
+    return core::Error{*fault};
+  using Kind = ProfileSegment::Kind;
+  const Vec2 foot(sizes.foot_radius, 0.0), foot_end(stem + fillet, rise);
+  const double foot_meets_stem = rise * (foot.x() - stem) / (foot.x() - foot_end.x());
+  const Vec2 stem_low(stem, foot_meets_stem + fillet), stem_high(stem, sizes.stem_length);
+  // The bowl flares out of the stem and turns upright where it is widest; both curves have one tangent.
+  const double depth = sizes.height - sizes.stem_length;
+  const Vec2 leaves(stem, sizes.stem_length + 0.06 * depth);
+  const Vec2 arrives(sizes.radius, sizes.stem_length + 0.12 * depth);
+  const Vec2 turning = leaves + 0.3 * (arrives - leaves);
+  const Vec2 widest(sizes.radius, sizes.stem_length + 0.45 * depth);
+  const Vec2 rim(sizes.rim_radius, sizes.height);
+  const std::vector<ProfileSegment> profile{
+      {Kind::line, foot, foot_end, Vec2::Zero(), Part::body},
+      {Kind::parabola, foot_end, stem_low, Vec2(stem, foot_meets_stem), Part::body},
+      {Kind::line, stem_low, stem_high, Vec2::Zero(), Part::body},
+      {Kind::parabola, stem_high, turning, leaves, Part::body},
+      {Kind::parabola, turning, widest, arrives, Part::body},
+      {Kind::parabola, widest, rim, Vec2(sizes.radius, 0.5 * (widest.y() + rim.y())), Part::body}};
+  core::Result<PartedMesh> glass = make_surface_of_revolution(profile, meshing);
+  if (!glass) return core::Error{glass.error()};
+  return std::move(glass.value().mesh);
 }
 
 core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing) {

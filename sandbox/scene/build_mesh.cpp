@@ -60,6 +60,9 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const BottleSheet& sheet) const {
     return with_parts(geometry::make_bottle_sheet(sheet.sizes, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const geometry::WineGlassSizes& sizes) const {
+    return with_parts(geometry::make_wine_glass(sizes, meshing));
+  }
   core::Result<geometry::PartedMesh> operator()(const FigureShape& figure) const {
     return with_parts(geometry::make_figure(figure.height, meshing));
   }
@@ -82,6 +85,7 @@ double coarse_edge(const MeshShape& shape) {
   if (const auto* bottle = std::get_if<geometry::BottleSizes>(&shape)) return 0.2 * bottle->neck_radius;
   if (const auto* sheet = std::get_if<BottleSheet>(&shape)) return 0.2 * sheet->sizes.neck_radius;
   if (const auto* figure = std::get_if<FigureShape>(&shape)) return figure->height / 40.0;
+  if (const auto* glass = std::get_if<geometry::WineGlassSizes>(&shape)) return 0.2 * glass->radius;
   if (const auto* egg = std::get_if<geometry::EggSizes>(&shape)) return 0.2 * egg->radius;
   const auto& pane = std::get<PaneShape>(shape);
   return 0.1 * std::min(pane.width, pane.height);

@@ -18,7 +18,8 @@ struct Shapes {
   const char* kind;
   std::vector<std::string> known;
 };
-const Shapes kShellShapes{"shell", {"ornament", "sphere", "bowl", "pane", "boat", "bottle", "egg"}};
+const Shapes kShellShapes{"shell",
+                          {"ornament", "sphere", "bowl", "wine_glass", "pane", "boat", "bottle", "egg"}};
 const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg", "figure"}};
 /// What goes by another name here.
 struct OtherName {
@@ -27,6 +28,10 @@ struct OtherName {
 constexpr const char* kBox = "a box that may break is a slab";
 constexpr const char* kSlab =
     "write kind = \"solid\", shape = \"slab\", size = [0.2, 0.1, 0.1]; a kind = \"box\" never breaks";
+constexpr const char* kGlass = "a drinking glass or cup is a high bowl, or a wine_glass";
+constexpr const char* kTumbler =
+    "write kind = \"shell\", shape = \"bowl\", radius = 0.037, foot_radius = 0.03, foot_height = 0, "
+    "height = 0.1, thickness = 0.0015; or shape = \"wine_glass\"";
 constexpr OtherName kOtherNames[] = {
     {"box", kBox, kSlab},
     {"cube", kBox, kSlab},
@@ -38,12 +43,16 @@ constexpr OtherName kOtherNames[] = {
     {"plate", "a plate is a low bowl",
      "write kind = \"shell\", shape = \"bowl\" with radius, foot_radius and height, as the scene plate_stack "
      "does"},
+    {"glass", kGlass, kTumbler},
+    {"tumbler", kGlass, kTumbler},
+    {"cup", kGlass, kTumbler},
+    {"mug", kGlass, kTumbler},
 };
-const std::vector<std::string> kShapeKeys{"radius",      "neck_radius",  "neck_height",   "cap",
-                                          "foot_radius", "foot_height",  "height",        "width",
-                                          "edge_length", "length",       "beam",          "depth",
-                                          "sheer",       "belly_radius", "rim_radius",    "wall",
-                                          "neck_length", "blunt_height", "pointed_height"};
+const std::vector<std::string> kShapeKeys{
+    "radius",      "neck_radius",  "neck_height",   "cap",    "foot_radius", "foot_height",
+    "height",      "width",        "edge_length",   "length", "beam",        "depth",
+    "sheer",       "belly_radius", "rim_radius",    "wall",   "neck_length", "stem_radius",
+    "stem_length", "blunt_height", "pointed_height"};
 
 /// Where a mesh file named in a scene lies: as it is, or beside the scene.
 std::string find_mesh_file(const std::string& file, const std::string& scene_file) {
@@ -171,6 +180,16 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
     if (!is_sheet) return sizes;
     sizes.wall = edge;
     return BottleSheet{sizes};
+  }
+  if (shape == "wine_glass") {
+    geometry::WineGlassSizes sizes;
+    read_scaled(reader, {"height", &sizes.height},
+                {{"radius", &sizes.radius},
+                 {"rim_radius", &sizes.rim_radius},
+                 {"foot_radius", &sizes.foot_radius},
+                 {"stem_radius", &sizes.stem_radius},
+                 {"stem_length", &sizes.stem_length}});
+    return sizes;
   }
   if (shape == "figure") {
     FigureShape sizes;

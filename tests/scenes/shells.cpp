@@ -71,8 +71,8 @@ long count_crossings(std::span<const body::Body> bodies) {
 }  // namespace
 
 TEST_CASE("no scene begins with shells that cross") {
-  for (const char* name :
-       {"boats_pile", "boats_edge", "ornaments", "card_house", "plate_stack", "bowls", "rain"}) {
+  for (const char* name : {"boats_pile", "boats_edge", "ornaments", "card_house", "plate_stack", "bowls",
+                           "rain", "champagne_tower"}) {
     INFO(name);
     Play play(name);
     CHECK(count_crossings(play.world().bodies()) == 0);
@@ -173,6 +173,22 @@ TEST_CASE("plate_stack: stands whole until the ball comes, which breaks some pla
     whole += body.shape->kind == body::ShapeKind::shell && play.world().ancestry(body.id).parent == 0 ? 1 : 0;
   CHECK(whole >= 2);
   CHECK(whole < 6);
+}
+
+TEST_CASE("champagne_tower: glasses stand on the rims of those below, until one of these is shattered") {
+  std::vector<std::string> settings{"throw.at=0.3"};
+  for (const char* storey : {"lower", "middle", "top"})
+    settings.push_back(storey + std::string(".edge_length=0.007"));
+  Play play("champagne_tower", settings);
+  const Vec3 top = play.named("top").pose.translation;
+  const auto breaks = [&] { return play.world().report().breaks.size(); };
+  play.run(0.3, [] {});
+  CHECK(breaks() == 0);
+  CHECK((play.named("top").pose.translation - top).norm() < 1e-3);
+  play.run(
+      0.2, [] {}, [&] { return breaks() > 0; });
+  CHECK(breaks() > 0);
+  CHECK(play.named("top").pose.translation.y() > 0.28);
 }
 
 TEST_CASE("ornaments: ten thousand triangles each, and enough pieces of each") {

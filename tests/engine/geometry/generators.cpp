@@ -55,6 +55,7 @@ std::uint64_t hash(const TriangleMesh& mesh) {
 TEST_CASE("generated meshes are well-shaped, of the size asked for, and nothing is wrong with them") {
   OrnamentSizes capped;
   capped.has_cap = true;
+  const WineGlassSizes large_glass{0.4, 0.08, 0.064, 0.07, 0.008, 0.17};
   // The finest meshes are the same loops run more often.
   const std::vector<double> lengths =
       test::kIsSanitized ? std::vector{0.009} : std::vector{0.012, 0.006, 0.003};
@@ -74,6 +75,7 @@ TEST_CASE("generated meshes are well-shaped, of the size asked for, and nothing 
                               {"ornament", make_ornament({}, meshing).value().mesh, 1, false},
                               {"capped", make_ornament(capped, meshing).value().mesh, 2, true},
                               {"bowl", make_bowl({}, meshing).value(), 1, false},
+                              {"wine glass", make_wine_glass(large_glass, meshing).value(), 0, false},
                               {"pane", make_pane(0.2, 0.15, meshing).value(), 1, false},
                               {"boat", make_boat({0.2, 0.08, 0.04, 0.02}, meshing).value(), 1, false}};
         for (const Case& c : cases) {
@@ -201,11 +203,43 @@ TEST_CASE("the same numbers give the same mesh to the bit, another seed another 
   CHECK(ornament == 0x7d92beb1a0590464ULL);
   CHECK(sphere == 0xc7a033d21d266e9cULL);
   CHECK(hash(make_bowl({}, one).value()) == 0x49b56e5077c15c28ULL);
+  CHECK(hash(make_wine_glass({}, one).value()) == 0x2df856231fc06d05ULL);
   CHECK(hash(make_pane(0.3, 0.2, one).value()) == 0xc7da8482011571a2ULL);
   CHECK(hash(make_boat({}, one).value()) == 0x89e1f2dab20bd6ffULL);
   CHECK(hash(make_ornament({}, one).value().mesh) == ornament);
   CHECK(hash(make_ornament({}, two).value().mesh) != ornament);
   CHECK(hash(make_sphere(0.04, two).value()) != sphere);
+}
+
+TEST_CASE("a wine glass has the sizes asked for, and is open at its rim and below its foot only") {
+  WineGlassSizes sizes;
+  sizes.height = 0.14;
+  sizes.radius = 0.05;
+  sizes.rim_radius = 0.045;
+  const TriangleMesh glass = make_wine_glass(sizes, {0.003, 0.3, 1}).value();
+  double widest = 0.0;
+  for (const Vec3& p : glass.positions) {
+    const double r = core::sqrt(p.x() * p.x() + p.z() * p.z());
+    widest = std::max(widest, r);
+    CHECK(p.y() >= 0.0);
+    CHECK(p.y() <= sizes.height * (1.0 + 1e-12));
+    CHECK(r > sizes.stem_radius * (1.0 - 1e-12));
+    const bool is_stem = p.y() > 0.03 && p.y() < sizes.stem_length;
+    if (is_stem) CHECK(r == Approx(sizes.stem_radius));
+  }
+  CHECK(widest == Approx(sizes.radius).epsilon(1e-3));
+  const EdgeTopology topology = build_edge_topology(glass.triangles);
+  double rim = 0.0, foot = 0.0;
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    if (!topology.is_boundary(static_cast<int>(e))) continue;
+    const Vec3 &p = glass.positions[static_cast<std::size_t>(topology.edges[e][0])],
+               &q = glass.positions[static_cast<std::size_t>(topology.edges[e][1])];
+    const bool is_rim = p.y() > 0.5 * sizes.height;
+    CHECK(p.y() == Approx(is_rim ? sizes.height : 0.0).margin(1e-12));
+    (is_rim ? rim : foot) += (p - q).norm();
+  }
+  CHECK(rim == Approx(2.0 * core::kPi * sizes.rim_radius).epsilon(0.01));
+  CHECK(foot == Approx(2.0 * core::kPi * sizes.foot_radius).epsilon(0.01));
 }
 
 TEST_CASE("the separate cap keeps its clearance and has a loop") {
@@ -256,6 +290,13 @@ TEST_CASE("sizes that make no sense are refused in a sentence") {
   CHECK_FALSE(make_pane(10.0, 10.0, {0.001, 0.3, 1}).ok());
   CHECK_FALSE(make_bowl({0.08, 0.035, 0.06, 0.07}, {}).ok());
   CHECK_FALSE(make_torus(0.1, 0.2, {}).ok());
+  WineGlassSizes glass;
+  glass.stem_length = 0.25;
+  CHECK(make_wine_glass(glass, {}).error() ==
+        "a wine glass's height must be greater than 0.25 m (it is 0.2 m)");
+  glass = {};
+  glass.stem_radius = 0.02;
+  CHECK(make_wine_glass(glass, {}).error().find("foot_radius") != std::string::npos);
   CHECK_FALSE(make_boat({1.0, 2.0, 0.2, 0.1}, {}).ok());
   CHECK_FALSE(make_boat({1.0, 0.4, nan, 0.1}, {}).ok());
   CHECK_FALSE(make_boat({1.0, 0.4, 0.2, -0.1}, {}).ok());
