@@ -385,6 +385,18 @@ bool an_edge_pierces(const std::array<Vec3, 3>& edges, const std::array<Vec3, 3>
   return false;
 }
 
+// Radii do not count.
+bool any_edge_pierces(const PlacedCollider& a, const PlacedCollider& b) {
+  bool result = false;
+  Descent(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), 0.0)
+      .run([&](int ta, const TightBox&, int tb, const TightBox&, int) {
+        if (result) return;
+        const auto p = corners(a, ta), q = corners(b, tb);
+        result = an_edge_pierces(p, q) || an_edge_pierces(q, p);
+      });
+  return result;
+}
+
 }  // namespace
 
 void place_vertices(const Collider& collider, const Pose& pose, std::vector<Vec3>& out) {
@@ -492,15 +504,12 @@ bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius
 }
 
 bool crosses(const PlacedCollider& a, const PlacedCollider& b) {
-  if (a.collider->radius > 0.0 || b.collider->radius > 0.0) return false;
-  bool result = false;
-  Descent(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), 0.0)
-      .run([&](int ta, const TightBox&, int tb, const TightBox&, int) {
-        if (result) return;
-        const auto p = corners(a, ta), q = corners(b, tb);
-        result = an_edge_pierces(p, q) || an_edge_pierces(q, p);
-      });
-  return result;
+  return a.collider->radius == 0.0 && b.collider->radius == 0.0 && any_edge_pierces(a, b);
+}
+
+bool is_run_through(const PlacedCollider& a, const PlacedCollider& b) {
+  return (a.collider->kind == body::ShapeKind::capsule || b.collider->kind == body::ShapeKind::capsule) &&
+         any_edge_pierces(a, b);
 }
 
 }  // namespace shatterbox::collision

@@ -99,4 +99,8 @@ bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius
 /// True if a triangle of a surely crosses one of b at `start`. Needs `boxes` of both.
 bool crosses(const PlacedCollider& a, const PlacedCollider& b);
 
+/// True if the axis of one, a capsule, surely passes through a triangle of the other at `start`. Needs
+/// `boxes` of both.
+bool is_run_through(const PlacedCollider& a, const PlacedCollider& b);
+
 }  // namespace shatterbox::collision

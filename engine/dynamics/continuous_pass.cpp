@@ -115,7 +115,7 @@ class Guard {
     core::stop_if_asked();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       // What crosses passes, unless it has sides: that may not cross deeper.
-      if (must_test_[p] && is_exempt(p) && !work_.pairs[p].has_sides) must_test_[p] = 0;
+      if (work_.pairs[p].passes) must_test_[p] = 0;
     }
     const std::vector<char> unknown = former_.pairs.empty() ? std::vector<char>{} : recall_all();
     const std::vector<char>& must_go = former_.pairs.empty() ? must_test_ : unknown;
@@ -570,6 +570,7 @@ class Guard {
   void note_stuck_pairs() {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       PairState& memory = state_.pairs[at(work_.pairs[p].state)];
+      if (work_.pairs[p].passes) continue;
       const bool is_cut = in_zone_[p] && zones_->share(work_.pairs[p].a) < 1.0;
       memory.stuck_steps = is_cut ? memory.stuck_steps + 1 : 0;
       report_.longest_cut = std::max(report_.longest_cut, memory.stuck_steps);

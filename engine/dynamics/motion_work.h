@@ -157,6 +157,7 @@ struct WorkPair {
   bool is_fast = false;      // moves further than a feature list is good for
   bool looks_ahead = false;  // may go so far that what it will meet is looked for on the predicted ways
   bool needs_search = false;
+  bool passes = false;             // crosses since it was first seen, and there is no side to part to
   bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is
   double motion = 0.0;             // m: bound of the relative motion if nothing touches
   double margin = 0.0;             // m: contacts are felt from this gap on

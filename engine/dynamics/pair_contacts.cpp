@@ -29,6 +29,7 @@ constexpr Manifold kOnSolid = {0.04, 16}, kOnSurface = {0.08, 8};
 constexpr std::size_t kFeaturesToTask = 256;
 constexpr double kFastSlack = 0.25;    // of the slack: a list for one step need not last
 constexpr double kAlwaysNear = 3.0;    // of the usual gap
+constexpr int kHangs = 3;              // steps in a row, cut short
 constexpr double kRaiseTime = 0.5;     // s
 constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks less only touches
 constexpr double kClose = 0.5;         // of the usual gap: there is hardly room for what sweeps leave
@@ -249,6 +250,17 @@ bool is_crossing(const MotionWork& work, const PairState& memory, const WorkPair
          (memory.is_exempt && pair.least_gap <= kNoDistance * pair.size);
 }
 
+// A capsule whose axis goes through a surface is on both its sides; what lies in a fold of one finds no way
+// out of it.
+bool has_no_side(const MotionWork& work, const PairState& memory, const WorkPair& pair) {
+  if (!pair.has_sides) return true;
+  if (pair.is_plane || pair.is_analytic) return false;
+  if (memory.stuck_steps >= kHangs) return true;
+  const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
+  const double radius = a.collider->radius + b.collider->radius;
+  return pair.least_gap <= kNoDistance * pair.size - radius || collision::is_run_through(a.placed, b.placed);
+}
+
 }  // namespace
 
 void find_pair_contacts(const ContactSettings& settings, const MotionWork& work, PairState& memory,
@@ -269,7 +281,8 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
   }
   if (pair.is_first_seen || memory.is_exempt) {
     memory.is_exempt = is_crossing(work, memory, pair);
-    if (memory.is_exempt && !pair.has_sides) pair.contacts.clear();
+    pair.passes = memory.is_exempt && has_no_side(work, memory, pair);
+    if (pair.passes) pair.contacts.clear();
   }
   adapt_gap(settings, work, memory, pair);
   std::vector<std::uint64_t> loaded;
@@ -292,6 +305,7 @@ void meet_again(const ContactSettings& settings, const PartMemory::Pair& former,
   pair.known.start_gaps = former.gaps;
   memory.gaps = former.keeps_gaps ? former.gaps : nullptr;
   memory.is_exempt = former.is_exempt;
+  pair.passes = former.passes;
   memory.kept_gap = former.kept_gap;
   take_gap(settings, work, memory.kept_gap, pair);
 }

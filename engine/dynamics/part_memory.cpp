@@ -97,6 +97,7 @@ void keep_meetings(const std::vector<PairState>& states, const MotionWork& work,
     PartMemory::Pair& row = memory.pairs[p];
     row.is_free_certified = pair.is_free_certified;
     row.is_exempt = state.is_exempt;
+    row.passes = pair.passes;
     row.kept_gap = state.kept_gap;
     row.least_gap = pair.least_gap;
     row.gaps = pair.known.start_gaps;

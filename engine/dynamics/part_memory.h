@@ -56,7 +56,7 @@ struct PartMemory {
     int trouble_age = 0;
     std::size_t contacts_before = 0;
     // What came of it.
-    bool is_free_certified = false, is_exempt = false;
+    bool is_free_certified = false, is_exempt = false, passes = false;
     double kept_gap = 0.0, least_gap = 0.0;  // m
     std::vector<collision::Contact> contacts;
     std::shared_ptr<const StartGaps> gaps;  // where features were listed

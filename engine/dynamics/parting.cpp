@@ -8,6 +8,7 @@
 #include "engine/core/index.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/shift_test.h"
+#include "engine/geometry/common_inside.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -24,16 +25,15 @@ class Parting {
  public:
   Parting(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
           const MotionWork& work)
-      : bodies_(bodies), settings_(settings), state_(state), work_(work) {}
+      : bodies_(bodies), settings_(settings), state_(state), work_(work), overlaps_(work.pairs.size(), 0) {}
 
   bool run(std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
-    bool is_changed = false;
-    for (const WorkPair& pair : work_.pairs) {
+    bool is_changed = exempt_overlaps();
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      const WorkPair& pair = work_.pairs[p];
       PairState& memory = state_.pairs[at(pair.state)];
       // What crosses may do so by rounding: a foot of a thousand vertices is seldom level to the last bit.
-      const bool is_due =
-          pair.is_first_seen && !pair.has_sides &&
-          (memory.is_exempt || (pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty()));
+      const bool is_due = is_new(pair) && !overlaps_[p] && (memory.is_exempt || is_in_one_place(pair));
       if (!is_due || has_moved(pair.a) || has_moved(pair.b)) continue;
       const bool crossed = memory.is_exempt;
       memory.is_exempt = false;
@@ -51,6 +51,43 @@ class Parting {
   }
 
  private:
+  static bool is_new(const WorkPair& pair) { return pair.is_first_seen && !pair.has_sides; }
+  static bool is_in_one_place(const WorkPair& pair) {
+    return pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
+  }
+
+  double aside(const WorkPair& pair) const { return kAside * settings_.kept_gap * pair.size; }
+
+  // What lies in each other too deep to be set aside passes, as what crosses does. Blocks that are pushed
+  // into each other with their sides in one plane only touch there.
+  bool exempt_overlaps() {
+    bool is_changed = false;
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      const WorkPair& pair = work_.pairs[p];
+      bool& is_exempt = state_.pairs[at(pair.state)].is_exempt;
+      if (!is_new(pair) || (!is_exempt && !is_in_one_place(pair))) continue;
+      overlaps_[p] = overlap(pair, bodies_[at(pair.a)].pose, bodies_[at(pair.b)].pose, 2.0 * aside(pair));
+      is_changed = is_changed || (overlaps_[p] && !is_exempt);
+      is_exempt = is_exempt || overlaps_[p];
+    }
+    return is_changed;
+  }
+
+  // Deeper than `least` (m).
+  bool overlap(const WorkPair& pair, const Pose& pose_a, const Pose& pose_b, double least) const {
+    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+    const auto has_inside = [](const WorkBody& w) {
+      return w.shape->kind == ShapeKind::solid || w.shape->kind == ShapeKind::box;
+    };
+    const auto surface = [](const WorkBody& w, const Pose& pose) {
+      geometry::TriangleMesh mesh{{}, w.collider->triangles};
+      collision::place_vertices(*w.collider, pose, mesh.positions);
+      return mesh;
+    };
+    return has_inside(a) && has_inside(b) &&
+           geometry::have_common_inside(surface(a, pose_a), surface(b, pose_b), least);
+  }
+
   bool has_moved(int i) const { return std::find(moved_.begin(), moved_.end(), i) != moved_.end(); }
 
   // What can move; of two, the sheet on a solid, else who came later.
@@ -99,7 +136,7 @@ class Parting {
   }
 
   bool set_aside(const WorkPair& pair, int mover) {
-    const double length = kAside * settings_.kept_gap * pair.size;
+    const double length = aside(pair);
     const int other = mover == pair.a ? pair.b : pair.a;
     const Vec3 between = bodies_[at(mover)].pose.translation - bodies_[at(other)].pose.translation;
     std::vector<Vec3> ways = {up(), -up(), Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitZ()};
@@ -116,7 +153,10 @@ class Parting {
     for (const Vec3& way : ways) {
       if (bodies_[at(mover)].locked.let_move(way) != way) continue;
       const Pose pose{start.rotation, start.translation + length * way};
-      if (!is_free(mover, pose)) continue;
+      const Pose& there = bodies_[at(other)].pose;
+      if (!is_free(mover, pose) || overlap(pair, pair.a == mover ? pose : there,
+                                           pair.b == mover ? pose : there, kNoDistance * pair.size))
+        continue;
       const bool is_clear = !passes_somebody(mover, pose, length);
       if (is_clear || !chosen) chosen = pose;
       if (is_clear) break;
@@ -170,7 +210,8 @@ class Parting {
   const ContactSettings& settings_;
   ContactState& state_;
   const MotionWork& work_;
-  std::vector<int> moved_;  // in this run: their pairs are out of date
+  std::vector<char> overlaps_;  // per pair: too deep to be set aside
+  std::vector<int> moved_;      // in this run: their pairs are out of date
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "sandbox/run/doubts.h"
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -90,19 +90,35 @@ std::vector<std::pair<const Body*, const Body*>> near_pairs(std::span<const Body
 
 void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                 scene::Problems& doubts) {
+  struct Inside {
+    const Body *a, *b;
+    int others;  // copies of the same two
+  };
   long triangles = 0;
-  std::set<std::pair<std::string, std::string>> told;  // of many copies the first
+  std::map<std::pair<std::string, std::string>, Inside> found;
   for (const auto& [a, b] : near_pairs(built.world.bodies())) {
     triangles += static_cast<long>(a->shape->surface.triangles.size() + b->shape->surface.triangles.size());
-    if (triangles > kMostTriangles || told.size() == kMostTold) return;
-    if (!script::lie_in_each_other(*a, *b)) continue;
-    const scene::BodyEntry &own = entry_of(scene, built, *a), &other = entry_of(scene, built, *b);
-    if (!told.emplace(own.name, other.name).second) continue;
-    const bool is_floor = b->shape->kind == ShapeKind::plane;
+    if (triangles > kMostTriangles) break;
+    const std::pair names(entry_of(scene, built, *a).name, entry_of(scene, built, *b).name);
+    const auto known = found.find(names);
+    if ((known == found.end() && found.size() == kMostTold) || !script::lie_in_each_other(*a, *b)) continue;
+    if (known == found.end())
+      found.emplace(names, Inside{a, b, 0});
+    else
+      ++known->second.others;
+  }
+  for (const auto& [names, inside] : found) {
+    const scene::BodyEntry &own = entry_of(scene, built, *inside.a),
+                           &other = entry_of(scene, built, *inside.b);
+    const bool is_floor = inside.b->shape->kind == ShapeKind::plane;
     const scene::BodyEntry& later = own.place.line > other.place.line || is_floor ? own : other;
     scene::book(
         doubts, later.place,
-        fmt::format("\"{}\" begins inside {}\"{}\"", a->name, is_floor ? "the plane " : "", b->name),
+        fmt::format(
+            "\"{}\" begins inside {}\"{}\"{}", inside.a->name, is_floor ? "the plane " : "", inside.b->name,
+            inside.others == 0
+                ? ""
+                : fmt::format(", and {} more such pair{}", inside.others, inside.others > 1 ? "s" : "")),
         "they pass each other until they have come apart: move one of them, or give copies more spacing");
   }
 }

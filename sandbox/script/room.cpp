@@ -6,6 +6,7 @@
 #include "engine/body/polyhedron.h"
 #include "engine/core/elementary.h"
 #include "engine/geometry/closest_points.h"
+#include "engine/geometry/common_inside.h"
 #include "engine/geometry/crossings.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/winding_number.h"
@@ -117,6 +118,16 @@ bool is_in_solid(const Placed& form, const Placed& solid) {
   return geometry::WindingNumber(solid.surface).about(point) > 0.5;
 }
 
+/// Blocks that are pushed into each other with their sides in one plane: nothing of them crosses.
+bool have_common_inside(const Placed& a, const Placed& b) {
+  const auto is_solid = [](const Placed& form) {
+    return form.kind == ShapeKind::solid || form.kind == ShapeKind::box;
+  };
+  constexpr double kTouching = 1e-9;  // of their size
+  return is_solid(a) && is_solid(b) &&
+         geometry::have_common_inside(a.surface, b.surface, kTouching * (a.most - a.least).norm());
+}
+
 bool cross(const Placed& a, const Placed& b) {
   if (b.kind == ShapeKind::plane) return is_in_half_space(a, b);
   if (a.kind == ShapeKind::plane) return is_in_half_space(b, a);
@@ -124,7 +135,8 @@ bool cross(const Placed& a, const Placed& b) {
   if (is_in_solid(a, b) || is_in_solid(b, a)) return true;
   if (b.kind == ShapeKind::sphere) return meets_sphere(a, b);
   if (a.kind == ShapeKind::sphere) return meets_sphere(b, a);
-  return is_in_box(a, b) || is_in_box(b, a) || geometry::count_crossing_pairs({a.surface, b.surface}) > 0;
+  return is_in_box(a, b) || is_in_box(b, a) || geometry::count_crossing_pairs({a.surface, b.surface}) > 0 ||
+         have_common_inside(a, b);
 }
 
 /// A ball about everything of a body but planes, against the new form's bounds: cheap, before its triangles

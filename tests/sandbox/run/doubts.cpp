@@ -52,6 +52,13 @@ TEST_CASE("bodies that begin in each other or in the floor are doubted, what tou
   CHECK(doubts_of(floor + crate + "repeat = {count = [2, 2, 1], spacing = 0.2}\n").empty());
   CHECK(has(doubts_of(floor + crate + "repeat = {count = 2, spacing = [0.1, 0, 0]}\n"),
             "t.toml:4:1: \"crate[1]\" begins inside \"crate[2]\""));
+  const std::string brick =
+      "[[body]]\nname = \"brick\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.1, 0.1]\nelement_size "
+      "= "
+      "0.05\nmaterial = \"brick\"\nposition = [0, 0.05, 0]\n";
+  CHECK(doubts_of(floor + brick + "repeat = {count = [2, 2, 1], spacing = [0.2, 0.1, 0]}\n").empty());
+  CHECK(has(doubts_of(floor + brick + "repeat = {count = [3, 1, 1], spacing = [0.19, 0, 0]}\n"),
+            "t.toml:4:1: \"brick[1]\" begins inside \"brick[2]\", and 1 more such pair"));
   CHECK(has(doubts_of(floor + crate + "rotation = [45, 0, 0]\n"),
             "t.toml:4:1: \"crate\" begins inside the plane \"floor\""));
   const std::string bowls =
