@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/body/polyhedron.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/script/room.h"
 #include "sandbox/script/script.h"
@@ -43,6 +44,30 @@ void doubt_thickness(const scene::SceneDescription& scene, const scene::BuiltSce
                 fmt::format("the shell \"{}\" is {:.3g} m thick, and {:.3g} m across", scene.bodies[i].name,
                             shell->thickness, across),
                 "thickness is in metres, 2 mm are 0.002; what is thick throughout is kind = \"solid\"");
+  }
+}
+
+/// Things of a household that are as large as a house: their sizes were hardly meant in metres.
+void doubt_sizes(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                 scene::Problems& doubts) {
+  constexpr double kOfHouse = 5.0;  // m
+  const auto is_of_household = [](const scene::MeshShape& shape) {
+    return !std::holds_alternative<scene::MeshFileShape>(shape) &&
+           !std::holds_alternative<scene::PaneShape>(shape) &&
+           !std::holds_alternative<scene::SlabShape>(shape) &&
+           !std::holds_alternative<scene::FigureShape>(shape) &&
+           !std::holds_alternative<geometry::BoatSizes>(shape);
+  };
+  for (const Body& body : built.world.bodies()) {
+    const scene::Origin& origin = built.origins.at(body.id);
+    const scene::BodyEntry& entry = entry_of(scene, built, body);
+    const scene::MeshForm* form = scene::find_mesh_form(entry.form);
+    const double across = 2.0 * body.shape->bounding_radius;
+    if (origin.copy > 0 || form == nullptr || across < kOfHouse || !scene::can_break(entry) ||
+        !is_of_household(form->shape))
+      continue;
+    scene::book(doubts, entry.place, fmt::format("\"{}\" is {:.3g} m across", entry.name, across),
+                "sizes are in metres: 30 cm are 0.3");
   }
 }
 
@@ -120,6 +145,63 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
                 ? ""
                 : fmt::format(", and {} more such pair{}", inside.others, inside.others > 1 ? "s" : "")),
         "they pass each other until they have come apart: move one of them, or give copies more spacing");
+  }
+}
+
+struct Bounds {
+  Vec3 least = Vec3::Constant(1e300), most = Vec3::Constant(-1e300);  // m, world
+};
+
+Bounds bounds_of(const Body& body) {
+  if (body.shape->kind == ShapeKind::sphere) {
+    const Vec3 reach = Vec3::Constant(body.shape->radius);
+    return {body.pose.translation - reach, body.pose.translation + reach};
+  }
+  Bounds bounds;
+  for (const Vec3& p : body::find_polyhedron(*body.shape).positions) {
+    const Vec3 there = body.pose.apply(p);
+    bounds.least = bounds.least.cwiseMin(there);
+    bounds.most = bounds.most.cwiseMax(there);
+  }
+  return bounds;
+}
+
+/// A box that carries something and lies on nothing: a table that was meant to stay where it is.
+void doubt_tables(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                  scene::Problems& doubts) {
+  constexpr double kAbove = 0.005, kBelow = 0.001;  // m
+  const Vec3& gravity = scene.world.gravity;
+  const bool is_down = gravity.y() < 0.0 && gravity.x() == 0.0 && gravity.z() == 0.0;
+  if (!is_down || !scene.joints.empty()) return;
+  const auto bodies = built.world.bodies();
+  const auto lies_on = [](const Bounds& upper, const Bounds& lower) {
+    const double gap = upper.least.y() - lower.most.y();
+    return gap > -kBelow && gap < kAbove && upper.least.x() < lower.most.x() &&
+           lower.least.x() < upper.most.x() && upper.least.z() < lower.most.z() &&
+           lower.least.z() < upper.most.z();
+  };
+  for (const Body& table : bodies) {
+    if (table.shape->kind != ShapeKind::box || !table.is_dynamic() || !table.velocity.isZero(0.0)) continue;
+    const Bounds own = bounds_of(table);
+    const Body* carried = nullptr;
+    bool is_carried = false;
+    for (const Body& body : bodies) {
+      if (&body == &table) continue;
+      if (body.shape->kind == ShapeKind::plane) {
+        is_carried = is_carried || own.least.y() - body.pose.translation.y() < kAbove;
+        continue;
+      }
+      const double reach = table.shape->bounding_radius + body.shape->bounding_radius + kAbove;
+      if ((body.pose.translation - table.pose.translation).norm() > reach) continue;
+      const Bounds other = bounds_of(body);
+      if (body.is_dynamic() && lies_on(other, own)) carried = carried ? carried : &body;
+      is_carried = is_carried || lies_on(own, other);
+    }
+    if (is_carried || carried == nullptr) continue;
+    scene::book(doubts, entry_of(scene, built, table).place,
+                fmt::format("\"{}\" lies on nothing, and falls with \"{}\" on it", table.name, carried->name),
+                "what is to stay where it is has motion = \"static\"");
+    return;
   }
 }
 
@@ -238,8 +320,10 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
 scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
   scene::Problems doubts;
   doubt_thickness(scene, built, doubts);
+  doubt_sizes(scene, built, doubts);
   doubt_criterion(scene, built, doubts);
   doubt_room(scene, built, doubts);
+  doubt_tables(scene, built, doubts);
   doubt_camera(scene, built, doubts);
   doubt_throws(scene, built, doubts);
   return doubts;

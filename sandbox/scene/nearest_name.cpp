@@ -14,6 +14,65 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+/// What is called otherwise elsewhere.
+struct OtherWords {
+  std::string_view ours, theirs;  // words with blanks between them
+};
+constexpr OtherWords kOtherWords[] = {
+    {"position", "pos place location translation"},
+    {"rotation", "rot angle angles"},
+    {"target", "lookat look_at aim"},
+    {"fov", "zoom"},
+    {"motion", "dynamic kinematic"},
+    {"kind", "type"},
+    {"mesh", "model file obj"},
+    {"repeat", "count copies"},
+    {"density", "weight rho"},
+    {"restitution", "bounce bounciness elasticity"},
+    {"young", "stiffness youngs_modulus"},
+    {"strength", "tensile_strength"},
+    {"fracture_energy", "toughness"},
+    {"seconds", "duration length time"},
+    {"at", "time start"},
+    {"after", "delay"},
+    {"ground", "floor"},
+    {"backdrop", "background"},
+    {"projectile", "throw shoot fire launch"},
+    {"drop", "spawn"},
+    {"push", "kick"},
+    {"explosion", "explode blast bomb"},
+    {"speed", "slow slowmo slow_motion"},
+    {"caption", "text"},
+    {"concrete", "stone rock cement"},
+    {"ceramic", "tile tiles"},
+    {"steel", "metal iron"},
+    {"porcelain", "china"},
+    {"terracotta", "clay"},
+    {"plaster", "gypsum"},
+    {"plane", "floor ground"},
+    {"box", "cube"},
+    {"sphere", "ball"},
+    {"capsule", "cylinder rod"},
+    {"pane", "window sheet"},
+    {"wine_glass", "goblet flute"},
+    {"ornament", "bauble"},
+    {"point", "hinge chain rope"},
+    {"mortar", "glue"},
+    {"-o", "--out --output"},
+    {"--size", "--resolution"},
+    {"--seconds", "--duration"},
+    {"--threads", "--jobs -j"},
+};
+
+bool has_word(std::string_view words, std::string_view word) {
+  for (std::size_t begin = 0; begin < words.size();) {
+    const std::size_t end = std::min(words.find(' ', begin), words.size());
+    if (words.substr(begin, end - begin) == word) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
 }  // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {
@@ -38,6 +97,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::string nearest;
   int least = 0;
   const std::string lower = lower_case(name);
+  for (const auto& [ours, theirs] : kOtherWords)
+    if (has_word(theirs, lower) && std::find(known.begin(), known.end(), ours) != known.end())
+      return std::string(ours);
   for (const std::string& candidate : known) {
     const int distance = edit_distance(lower, lower_case(candidate));
     const int allowed = std::max(2, static_cast<int>(std::max(name.size(), candidate.size())) / 3);

@@ -11,9 +11,9 @@ namespace shatterbox::sandbox::scene {
 /// (optimal string alignment).
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The name in `known` with the least edit distance to `name` (the earliest of equals), capitals ignored;
-/// empty when none is near enough to have been meant (more than a third of its letters wrong, at least two
-/// allowed).
+/// The name in `known` that other programs call `name`, else the one with the least edit distance to it (the
+/// earliest of equals), capitals ignored; empty when none is near enough to have been meant (more than a
+/// third of its letters wrong, at least two allowed).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 /// A hint: "did you mean "x"?" if a name is near, and in any case the list of all known names.

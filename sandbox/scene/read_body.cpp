@@ -217,6 +217,8 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
     reader.add_problem_at("repeat", "scripted bodies are all there from the start", "remove every");
   body.look.name = reader.choice("look", kLookNames).value_or("");
   body.look.colours = read_colours(reader);
+  reader.foreign({"mass"}, "it follows from size and density: write density in kg/m3");
+  reader.foreign({"static"}, "write motion = \"static\"");
   reader.foreign(
       material_keys(),
       fmt::format("it belongs to a material: [[material]] with name = \"mine\" and like = \"{}\", and "

@@ -133,6 +133,10 @@ void read_render(const TomlValue& table, RenderEntry& render, Problems& problems
   render.overlay_most = reader.number("overlay_most", positive());
   render.exposure = reader.number("exposure", between(1e-3, 1e3)).value_or(1.0);
   render.has_caption = reader.truth("caption").value_or(false);
+  reader.foreign({"fps", "size", "resolution", "quality"},
+                 "it is of the film: on the command line --fps 30, --size 1280x720 or --quality full");
+  reader.foreign({"motion_blur", "shutter"}, "write [camera] with shutter = 0.5");
+  reader.foreign({"light", "sun"}, "write [light] with preset = \"noon\", or sun = [0.5, 0.8, 0.4]");
   reader.finish();
 }
 

@@ -1,6 +1,7 @@
 #include "sandbox/scene/toml_tree.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -66,6 +67,19 @@ TomlValue convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
+/// Whether what could not be read is a unit behind a number: "4mm", "0.5 cm".
+bool is_unit(std::string_view text, const Place& place) {
+  for (int line = 1; line < place.line; ++line)
+    text.remove_prefix(std::min(text.find('\n') + 1, text.size()));
+  text = text.substr(0, text.find('\n'));
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ ";
+  // The place is that of the letter, or behind it.
+  const std::string_view before = text.substr(0, static_cast<std::size_t>(std::max(place.column, 0)));
+  const std::size_t last = before.find_last_not_of(kLetters);
+  return last != std::string_view::npos && std::isdigit(static_cast<unsigned char>(before[last])) != 0 &&
+         text.find_first_of(kLetters.substr(0, kLetters.size() - 1), last) != std::string_view::npos;
+}
+
 }  // namespace
 
 const TomlValue* TomlValue::find(std::string_view key) const {
@@ -108,8 +122,12 @@ TomlValue parse_toml(std::string_view text, const std::string& file, Problems& p
     value.place = {file, 1, 1};
     return value;
   } catch (const toml::parse_error& error) {
-    book(problems, place_of(error.source(), file), std::string(error.description()),
-         "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}");
+    const Place place = place_of(error.source(), file);
+    book(problems, place, std::string(error.description()),
+         is_unit(text, place)
+             ? "this is not TOML: numbers have no unit; lengths are metres (10 cm are 0.1), "
+               "masses kg, times s, angles degrees"
+             : "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}");
     TomlValue empty;
     empty.place = {file, 0, 0};
     return empty;

@@ -69,6 +69,31 @@ TEST_CASE("bodies that begin in each other or in the floor are doubted, what tou
   CHECK(doubts_of(crate + "motion = \"static\"\n[[body]]\nkind = \"sphere\"\nmotion = \"static\"\n").empty());
 }
 
+TEST_CASE(
+    "a table that would fall with what is on it is doubted, one that stands or that nothing is on is not") {
+  const std::string table =
+      "[[body]]\nname = \"table\"\nkind = \"box\"\nsize = [1, 0.04, 0.6]\nposition = [0, 0.7, 0]\n";
+  const std::string ball =
+      "[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.05\nposition = [0.2, 0.771, 0]\n";
+  const std::string legs =
+      "[[body]]\nname = \"legs\"\nkind = \"box\"\nsize = [0.1, 0.68, 0.1]\nposition = [0, 0.34, 0]\n";
+  const std::string floor = kFloor;
+  CHECK(has(doubts_of(floor + table + ball),
+            "t.toml:4:1: \"table\" lies on nothing, and falls with \"ball\" on it"));
+  CHECK(doubts_of(floor + table).empty());
+  CHECK(doubts_of(floor + table + "motion = \"static\"\n" + ball).empty());
+  CHECK(doubts_of(floor + table + ball + legs).empty());
+  CHECK(doubts_of(floor + kCrate + "[[body]]\nkind = \"sphere\"\nradius = 0.05\nposition = [0, 0.251, 0]\n")
+            .empty());
+}
+
+TEST_CASE("a vase as large as a house is doubted, a pane is not") {
+  const std::string vase = "[[body]]\nname = \"vase\"\nkind = \"shell\"\nthickness = 0.01\nshape = ";
+  CHECK(has(doubts_of(vase + "\"wine_glass\"\nheight = 20\n"), "t.toml:1:1: \"vase\" is "));
+  CHECK(doubts_of(vase + "\"wine_glass\"\nheight = 0.2\n").empty());
+  CHECK(doubts_of(vase + "\"pane\"\nwidth = 8\nheight = 6\n").empty());
+}
+
 TEST_CASE("a camera in a body is doubted, at its start, on its path and where events put it") {
   const std::string scene = std::string(kFloor) + kCrate + "motion = \"static\"\n";
   const std::string camera = scene + "[camera]\ntarget = [0, 0, 5]\nposition = ";

@@ -233,6 +233,8 @@ TEST_CASE("the nearest name is the one meant, or none") {
   CHECK(nearest_name("postion", known) == "position");
   CHECK(nearest_name("Radius", known) == "radius");
   CHECK(nearest_name("meshes", known) == "mesh");
+  CHECK(nearest_name("Pos", known) == "position");
+  CHECK(nearest_name("lookat", known).empty());  // there is no target here
   CHECK(nearest_name("xyz", known).empty());
   CHECK(nearest_name("", known).empty());
 }
