@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "engine/body/polyhedron.h"
+#include "engine/world/forms.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/script/room.h"
 #include "sandbox/script/script.h"
@@ -326,6 +327,37 @@ scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::B
   doubt_tables(scene, built, doubts);
   doubt_camera(scene, built, doubts);
   doubt_throws(scene, built, doubts);
+  return doubts;
+}
+
+scene::Problems find_coarse_solids(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
+  std::map<int, const world::ImpactRow*> held;  // by entry
+  const world::WorldReport& report = built.world.report();
+  for (const world::ImpactRow& row : report.impacts) {
+    const auto origin = built.origins.find(row.id);  // none: a piece
+    if (origin == built.origins.end() || row.ratio < 1.0 ||
+        row.verdict.find("no crack could start") == std::string::npos)
+      continue;
+    const world::ImpactRow*& hardest = held[origin->second.entry];
+    if (hardest == nullptr || row.ratio > hardest->ratio) hardest = &row;
+  }
+  for (const world::BreakRow& row : report.breaks)
+    if (const auto origin = built.origins.find(row.id); origin != built.origins.end())
+      held.erase(origin->second.entry);
+  scene::Problems doubts;
+  for (const auto& [entry, row] : held) {
+    const auto number = static_cast<std::size_t>(entry);
+    const auto* solid = std::get_if<world::SolidDescription>(&built.plan.bodies[number].description.form);
+    if (solid == nullptr) continue;
+    const double size = world::element_size_of(*solid);
+    scene::book(
+        doubts, scene.bodies[number].place,
+        fmt::format("\"{}\" held, stressed to {:.2g} of its strength: in elements of {:.2g} m no crack "
+                    "could start",
+                    row->body, row->ratio, size),
+        fmt::format("--set {}.element_size={:.2g} looks closer, and takes longer", scene.bodies[number].name,
+                    0.5 * size));
+  }
   return doubts;
 }
 

@@ -244,7 +244,12 @@ std::string describe(const Foreseen& f) {
                        met.empty() ? "" : ", at its hardest it " + met, given_up);
   if (met.empty()) return who + ": meets nothing";
   const std::string stressed =
-      f.ratio > 0.0 ? fmt::format(", at most {:.2g} of what it bears", f.ratio) : "; far from what it bears";
+      f.ratio >= 1.0 ? fmt::format(
+                           ", though stressed to {:.2g} of what it bears: no crack starts in elements as "
+                           "large as its own (element_size)",
+                           f.ratio)
+      : f.ratio > 0.0 ? fmt::format(", at most {:.2g} of what it bears", f.ratio)
+                      : "; far from what it bears";
   const char* holds = f.has_others || f.is_alone ? "holds if nothing else breaks" : "holds";
   return fmt::format("{}: {}{}, at {:.3f} s {}", who, holds, stressed, f.time, met);
 }

@@ -1,8 +1,10 @@
 #include "sandbox/run/projector.h"
+#include "sandbox/run/doubts.h"
 
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "sandbox/run/doubts.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/script/between.h"
@@ -107,6 +109,8 @@ void Projector::finish() {
   while (built_.world.steps() < last_step && !wants_to_stop_()) (void)step(1e300);
   if (wants_to_stop_()) return;
   for (std::string& sentence : throws_.missed()) recorder_.record.warnings.push_back(std::move(sentence));
+  for (const scene::Problem& doubt : find_coarse_solids(scene_, built_))
+    recorder_.record.warnings.push_back(scene::describe(doubt));
 }
 
 }  // namespace shatterbox::sandbox::run

@@ -155,3 +155,22 @@ TEST_CASE(
     CHECK(all.front().pieces == 0);
   }
 }
+
+TEST_CASE(
+    "after a run: a solid whose elements are too large for a crack is told, one that is not stressed is "
+    "not") {
+  const auto afterthoughts = [](const std::string& size, int steps) {
+    const auto reading =
+        scene::read(std::string(kFloor) +
+                    "[[body]]\nname = \"vase\"\nkind = \"solid\"\nshape = \"vase\"\nheight = 0.3\nmaterial = "
+                    "\"ceramic\"\nposition = [0, 0.8, 0]\nrotation = [0, 0, 100]\n" +
+                    size);
+    auto built = build(reading);
+    for (int step = 0; step < steps; ++step) built->world.step();
+    return scene::describe(run::find_coarse_solids(*reading.scene, *built));
+  };
+  CHECK(afterthoughts("element_size = 0.012\n", 60).empty());
+  const std::string told = afterthoughts("element_size = 0.012\n", 96);
+  CHECK(has(told, "t.toml:4:1: \"vase\" held, stressed to 1."));
+  CHECK(has(told, "--set vase.element_size=0.006 looks closer"));
+}
