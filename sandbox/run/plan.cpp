@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/core/clock.h"
 #include "engine/core/parallel.h"
+#include "engine/world/forms.h"
 #include "sandbox/run/exposure.h"
 #include "sandbox/run/foresee.h"
 #include "sandbox/run/job.h"
@@ -124,13 +127,41 @@ void tell_expectation(const Job& job, const Measured& measured, const std::vecto
   if (job.options.has_pictures && samples > 1) fmt::print("    a frame           {} pictures\n", samples);
   // Steps and pictures have a thread each.
   const double a_frame = std::max(simulate, samples * measured.picture);
-  fmt::print("    in all            {:.0f} frames at true speed: {:.1f} s, if it goes on as it begins\n",
-             frames, 1e-3 * (measured.load + frames * a_frame));
+  const double all = 1e-3 * (measured.load + frames * a_frame);
+  const auto given_up =
+      std::find_if(foreseen.begin(), foreseen.end(), [](const Foreseen& f) { return f.was_given_up; });
+  if (given_up == foreseen.end())
+    fmt::print("    in all            {:.0f} frames at true speed: {:.1f} s, if it goes on as it begins\n",
+               frames, all);
+  else
+    fmt::print(
+        "    in all            {:.0f} frames at true speed: {:.1f} s until \"{}\" is hit hard, and minutes "
+        "from then on\n",
+        frames, std::min(all, 1e-3 * (measured.load + given_up->given_up_at * fps * a_frame)),
+        given_up->body);
   if (const double breaks = cost_of_breaks(foreseen); breaks > 0.0)
     fmt::print(
         "    breaks            {:.1f} s more for the first {:g} s of those foreseen, each copy as the one "
         "tried\n",
         1e-3 * breaks, kAftermath);
+}
+
+/// The solid that can break of which there are most, and its elements' size, m; none: null.
+std::pair<const scene::BodyEntry*, double> finest_solid(const Job& job) {
+  std::map<int, int> copies;
+  for (const auto& [id, origin] : job.built->origins) ++copies[origin.entry];
+  const scene::BodyEntry* most = nullptr;
+  double size = 0.0;
+  int count = 0;
+  for (const auto& [entry, number] : copies) {
+    const auto i = static_cast<std::size_t>(entry);
+    const auto* solid = std::get_if<world::SolidDescription>(&job.built->plan.bodies[i].description.form);
+    if (solid == nullptr || !solid->is_breakable || number <= count) continue;
+    most = &job.scene->bodies[i];
+    size = world::element_size_of(*solid);
+    count = number;
+  }
+  return {most, size};
 }
 
 void tell_lean(const Job& job, const Measured& measured, const std::vector<PartPlan>& parts) {
@@ -149,6 +180,9 @@ void tell_lean(const Job& job, const Measured& measured, const std::vector<PartP
     row("breakable = false, where nothing need break",
         fmt::format("at most {:.2f} s of loading, {:.1f} MB, and all that breaking costs",
                     1e-3 * measured.factors, factor_bytes / 1e6));
+  if (const auto [solid, size] = finest_solid(job); solid != nullptr)
+    row(fmt::format("--set {}.element_size={:.2g}", solid->name, 2.0 * size),
+        "an eighth of its tetrahedra: cheaper breaks, told more coarsely");
   if (needs("shadow"))
     row("--set light.shadow=false",
         fmt::format("{:.1f} of {:.1f} ms a picture", measured.shadow, measured.picture));

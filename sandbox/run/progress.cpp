@@ -26,32 +26,38 @@ double remaining_seconds(const std::deque<std::pair<double, int>>& history, int 
   return (total - done) * (now - since.first) / (done - since.second);
 }
 
-Progress::Progress(int total, bool is_shown)
-    : total_(total), is_shown_(is_shown), start_(std::chrono::steady_clock::now()), last_shown_(start_) {}
+Progress::Progress(int total, bool is_bar)
+    : total_(total), is_bar_(is_bar), start_(std::chrono::steady_clock::now()), last_shown_(start_) {}
 
 Progress::~Progress() {
   clear();
 }
 
 void Progress::show(int done, const std::string& note) {
-  if (!is_shown_ || total_ <= 0) return;
+  if (total_ <= 0) return;
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - start_).count();
   if (history_.empty() || history_.back().second < done) history_.emplace_back(seconds, done);
-  if (done < total_ && now - last_shown_ < std::chrono::milliseconds(100)) return;
+  const bool is_last = is_bar_ && done >= total_;
+  if (!is_last && now - last_shown_ < (is_bar_ ? std::chrono::milliseconds(100) : std::chrono::seconds(30)))
+    return;
   last_shown_ = now;
-  constexpr int kWidth = 30;
-  const int filled = kWidth * std::min(done, total_) / total_;
   const double remaining = remaining_seconds(history_, total_);
   const std::string left = remaining < 0.0 ? "" : fmt::format("  {:.0f} s left", remaining);
-  fmt::print(stderr, "\r\x1b[K[{}{}] {:3} %{}  {}", std::string(static_cast<std::size_t>(filled), '#'),
-             std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * done / total_, left, note);
+  if (is_bar_) {
+    constexpr int kWidth = 30;
+    const int filled = kWidth * std::min(done, total_) / total_;
+    fmt::print(stderr, "\r\x1b[K[{}{}] {:3} %{}  {}", std::string(static_cast<std::size_t>(filled), '#'),
+               std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * done / total_, left, note);
+  } else {
+    fmt::print(stderr, "{:3} % after {:.0f} s{}  {}\n", 100 * done / total_, seconds, left, note);
+  }
   std::fflush(stderr);
 }
 
 void Progress::clear() {
-  if (is_shown_) fmt::print(stderr, "\r\x1b[K");
-  is_shown_ = false;
+  if (is_bar_) fmt::print(stderr, "\r\x1b[K");
+  is_bar_ = false;
 }
 
 }  // namespace shatterbox::sandbox::run

@@ -1,4 +1,5 @@
-// A progress bar on stderr with the time still needed; silent where stderr is no terminal.
+// A progress bar on stderr with the time still needed; where stderr is no terminal a line every half a
+// minute.
 #pragma once
 
 #include <chrono>
@@ -9,7 +10,7 @@ namespace shatterbox::sandbox::run {
 
 class Progress {
  public:
-  Progress(int total, bool is_shown);
+  Progress(int total, bool is_bar);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -22,7 +23,7 @@ class Progress {
 
  private:
   int total_;
-  bool is_shown_;
+  bool is_bar_;
   std::chrono::steady_clock::time_point start_, last_shown_;
   std::deque<std::pair<double, int>> history_;  // seconds since the start, done
 };

@@ -92,6 +92,9 @@ void check_point(TableReader& reader, JointEntry& joint, const SceneDescription&
                         "name two, a copy as in \"bead[2]\"; or one that has copies: each holds the next");
 }
 
+/// Pa: the yield strength of structural steel, S355 of EN 10025-2.
+constexpr double kPinStrength = 355e6;
+
 }  // namespace
 
 void read_joint(const TomlValue& table, std::size_t index, SceneDescription& scene, Problems& problems) {
@@ -102,7 +105,8 @@ void read_joint(const TomlValue& table, std::size_t index, SceneDescription& sce
   reader.text("name");
   const bool is_point = reader.choice("kind", {"mortar", "point"}).value_or("mortar") == "point";
   read_partners(reader, joint, scene);
-  joint.strength = reader.number("strength", positive("Pa")).value_or(joint.strength);
+  joint.strength =
+      reader.number("strength", positive("Pa")).value_or(is_point ? kPinStrength : joint.strength);
   if (is_point) {
     world::PivotDescription pivot;
     pivot.area = reader.number("area", positive("m2")).value_or(pivot.area);

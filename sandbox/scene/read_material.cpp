@@ -111,7 +111,8 @@ int find_material(const std::string& name, const Place& place, SceneDescription&
     book(problems, place,
          "wood is stiff and strong along its grain and weak across it; every material here is alike in all "
          "directions",
-         "write look = \"wood\" on the body, with a material of another name for its weight and friction");
+         "write look = \"wood\" and density = 700 on the body instead: it looks and weighs like wood, and "
+         "does not break as wood would");
     return -1;
   }
   book(problems, place, fmt::format("there is no material \"{}\"", name),
