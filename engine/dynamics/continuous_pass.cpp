@@ -95,8 +95,6 @@ class Guard {
   }
 
  private:
-  bool is_exempt(std::size_t p) const { return state_.pairs[at(work_.pairs[p].state)].is_exempt; }
-
   // Bodies that end elsewhere than was thought may meet others.
   void resize() {
     find_missed_pairs(bodies_, settings_, state_, work_);
@@ -114,7 +112,7 @@ class Guard {
   bool test() {
     core::stop_if_asked();
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      // What crosses passes, unless it has sides: that may not cross deeper.
+      // What crosses passes, unless it has a side: that may not cross deeper.
       if (work_.pairs[p].passes) must_test_[p] = 0;
     }
     const std::vector<char> unknown = former_.pairs.empty() ? std::vector<char>{} : recall_all();

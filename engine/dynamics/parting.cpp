@@ -66,26 +66,27 @@ class Parting {
       const WorkPair& pair = work_.pairs[p];
       bool& is_exempt = state_.pairs[at(pair.state)].is_exempt;
       if (!is_new(pair) || (!is_exempt && !is_in_one_place(pair))) continue;
-      overlaps_[p] = overlap(pair, bodies_[at(pair.a)].pose, bodies_[at(pair.b)].pose, 2.0 * aside(pair));
+      overlaps_[p] = overlap(pair, pair.a, bodies_[at(pair.a)].pose, 2.0 * aside(pair));
       is_changed = is_changed || (overlaps_[p] && !is_exempt);
       is_exempt = is_exempt || overlaps_[p];
     }
     return is_changed;
   }
 
-  // Deeper than `least` (m).
-  bool overlap(const WorkPair& pair, const Pose& pose_a, const Pose& pose_b, double least) const {
-    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-    const auto has_inside = [](const WorkBody& w) {
-      return w.shape->kind == ShapeKind::solid || w.shape->kind == ShapeKind::box;
+  // Deeper than `least` (m), with the mover at that pose.
+  bool overlap(const WorkPair& pair, int mover, const Pose& pose, double least) const {
+    const auto has_inside = [&](int i) {
+      const ShapeKind kind = work_.bodies[at(i)].shape->kind;
+      return kind == ShapeKind::solid || kind == ShapeKind::box;
     };
-    const auto surface = [](const WorkBody& w, const Pose& pose) {
-      geometry::TriangleMesh mesh{{}, w.collider->triangles};
-      collision::place_vertices(*w.collider, pose, mesh.positions);
+    const auto surface = [&](int i) {
+      const collision::Collider& collider = *work_.bodies[at(i)].collider;
+      geometry::TriangleMesh mesh{{}, collider.triangles};
+      collision::place_vertices(collider, i == mover ? pose : bodies_[at(i)].pose, mesh.positions);
       return mesh;
     };
-    return has_inside(a) && has_inside(b) &&
-           geometry::have_common_inside(surface(a, pose_a), surface(b, pose_b), least);
+    return has_inside(pair.a) && has_inside(pair.b) &&
+           geometry::have_common_inside(surface(pair.a), surface(pair.b), least);
   }
 
   bool has_moved(int i) const { return std::find(moved_.begin(), moved_.end(), i) != moved_.end(); }
@@ -153,10 +154,7 @@ class Parting {
     for (const Vec3& way : ways) {
       if (bodies_[at(mover)].locked.let_move(way) != way) continue;
       const Pose pose{start.rotation, start.translation + length * way};
-      const Pose& there = bodies_[at(other)].pose;
-      if (!is_free(mover, pose) || overlap(pair, pair.a == mover ? pose : there,
-                                           pair.b == mover ? pose : there, kNoDistance * pair.size))
-        continue;
+      if (!is_free(mover, pose) || overlap(pair, mover, pose, kNoDistance * pair.size)) continue;
       const bool is_clear = !passes_somebody(mover, pose, length);
       if (is_clear || !chosen) chosen = pose;
       if (is_clear) break;

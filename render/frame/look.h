@@ -14,6 +14,9 @@ enum class Pattern : std::uint8_t {
   checker,  // cubes of `pattern_size`
   clouds,   // smooth noise of three grains, the largest `pattern_size` across: stone, clay, ice; on crack
             // faces too
+  grain_x,  // wood: fibres along the axis, growth rings about it, a ring about `pattern_size` wide
+  grain_y,
+  grain_z,
 };
 
 struct Look {

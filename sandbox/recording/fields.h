@@ -14,7 +14,7 @@ void pass_look(Archive& archive, Look& look) {
   archive(look.roughness), archive(look.metalness);
   archive(look.inside_roughness), archive(look.inside_metalness), archive(look.crack_roughness);
   archive(look.clear_coat), archive(look.clear_coat_roughness), archive(look.transmission);
-  archive.choice(look.pattern, render::Pattern::clouds);
+  archive.choice(look.pattern, render::Pattern::grain_z);
   archive(look.pattern_colour), archive(look.pattern_metalness);
   archive(look.pattern_size), archive(look.pattern_centre);
 }

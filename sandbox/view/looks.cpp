@@ -101,7 +101,7 @@ glm::vec3 linear_colour(const Vec3& srgb) {
 }
 
 std::vector<render::Look> make_looks(const std::string& name, const std::optional<Vec3>& colour, double size,
-                                     const Vec3& centre) {
+                                     const Vec3& centre, int axis) {
   std::optional<glm::vec3> linear;
   if (colour) linear = linear_colour(*colour);
   render::Look look = make_look(name, linear);
@@ -123,6 +123,13 @@ std::vector<render::Look> make_looks(const std::string& name, const std::optiona
     look.pattern = render::Pattern::speckle;
     look.pattern_colour = 0.55F * look.outside;
     look.pattern_size = static_cast<float>(0.05 * size);
+  } else if (name == "wood") {
+    constexpr render::Pattern kGrain[] = {render::Pattern::grain_x, render::Pattern::grain_y,
+                                          render::Pattern::grain_z};
+    look.pattern = kGrain[axis];
+    look.pattern_colour = 0.45F * look.outside;
+    look.outside *= 1.35F;
+    look.pattern_size = static_cast<float>(std::min(0.012, 0.1 * size));
   } else if (look.pattern == render::Pattern::clouds) {
     // Stone and clay have grains of their own size; those of ice are as large as the block that froze.
     const double grain = name == "concrete" ? 0.07 : 0.04;

@@ -15,9 +15,9 @@ glm::vec3 linear_colour(const Vec3& srgb);
 
 /// The looks of a body by geometry::Part (body, neck, cap, loop). `name` is one of scene::kLookNames;
 /// `colour` (sRGB) replaces the name's own. `size` (m, from the middle to the surface) and `centre` (m, in
-/// pattern space) place paint.
+/// pattern space) place paint; wood has its fibres along `axis` (0, 1, 2).
 std::vector<render::Look> make_looks(const std::string& name, const std::optional<Vec3>& colour, double size,
-                                     const Vec3& centre);
+                                     const Vec3& centre, int axis);
 
 /// The look that a material has of itself: of its preset, or plain.
 std::string usual_look(const std::string& preset);

@@ -17,6 +17,25 @@ std::optional<Vec3> colour_of(const scene::LookEntry& look, std::size_t entry, i
   return look.colours[static_cast<std::size_t>(draw % look.colours.size())];
 }
 
+/// Along which a body is longest, in its shape's own frame.
+int longest_axis(const world::BodyDescription& description) {
+  Vec3 extent = Vec3::UnitY();
+  const auto measure = [&extent](const geometry::TriangleMesh& mesh) {
+    Vec3 least = Vec3::Constant(1e300), most = -least;
+    for (const Vec3& p : mesh.positions) {
+      least = least.cwiseMin(p);
+      most = most.cwiseMax(p);
+    }
+    extent = most - least;
+  };
+  if (const auto* box = std::get_if<world::BoxDescription>(&description.form)) extent = box->half_extent;
+  if (const auto* shell = std::get_if<world::ShellDescription>(&description.form)) measure(shell->mesh);
+  if (const auto* solid = std::get_if<world::SolidDescription>(&description.form)) measure(solid->mesh);
+  int axis = 0;
+  extent.maxCoeff(&axis);
+  return axis;
+}
+
 bool is_level(const body::Body& body) {
   const Vec3 normal = body.pose.rotation * Vec3::UnitY();
   return normal.y() > 1.0 - 1e-9;
@@ -35,7 +54,7 @@ const std::vector<render::Look>& Wardrobe::looks_of(body::BodyId id) {
   if (!is_new) return place->second;
   const auto found = built_.origins.find(original);
   if (found == built_.origins.end()) {
-    place->second = make_looks("matt", std::nullopt, 0.1, Vec3::Zero());
+    place->second = make_looks("matt", std::nullopt, 0.1, Vec3::Zero(), 0);
     return place->second;
   }
   const auto number = static_cast<std::size_t>(found->second.entry);
@@ -44,8 +63,8 @@ const std::vector<render::Look>& Wardrobe::looks_of(body::BodyId id) {
   std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
   const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
   if (name.empty()) name = usual_look(material.preset);
-  place->second =
-      make_looks(name, colour_of(entry.look, number, found->second.copy), plan.bounding_radius, -plan.centre);
+  place->second = make_looks(name, colour_of(entry.look, number, found->second.copy), plan.bounding_radius,
+                             -plan.centre, longest_axis(plan.description));
   return place->second;
 }
 

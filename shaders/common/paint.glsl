@@ -42,7 +42,7 @@ float cell_noise(vec3 cell) {
   return float(h >> 8) * (1.0 / 16777216.0);
 }
 
-#if PATTERNS & 16
+#if PATTERNS & 240
 // Smooth, 0 to 1, a grain about 1 across.
 float grains(vec3 p) {
   vec3 cell = floor(p), f = p - cell;
@@ -84,6 +84,17 @@ float pattern_share(int kind, vec3 p, float width) {
     const mat3 athwart = mat3(0.49, -0.73, 0.48, 0.48, 0.68, 0.56, -0.73, -0.05, 0.68);
     vec3 n = vec3(grains(askew * p), grains(p * askew * 4.3 + 7.0), grains(athwart * p * 17.0 + 3.0)) - 0.5;
     return smoothstep(-0.24, 0.24, dot(n, shown * vec3(0.46, 0.38, 0.2)));
+  }
+#endif
+#if PATTERNS & 224
+  if (kind >= 5 && kind <= 7) {  // wood along x, y or z: of rings about a heart beside the body, and fibres
+    p = kind == 5 ? p : kind == 6 ? p.yzx : p.zxy;
+    float sway = grains(vec3(0.06 * p.x, 0.35 * p.yz)) + 0.3 * grains(vec3(0.3 * p.x, 1.1 * p.yz + 9.0));
+    float ring = fract(length(p.yz - vec2(3.7, 5.3)) + 2.2 * sway);
+    float late = smoothstep(0.25, 0.85, ring) * smoothstep(1.0, 0.93, ring);  // slowly darker, then at once pale
+    float fibre = grains(vec3(0.5 * p.x, 14.0 * p.yz));
+    vec2 shown = clamp(1.5 - 1.5 * width * vec2(2.0, 14.0), 0.0, 1.0);
+    return clamp(0.4 + shown.x * 0.75 * (late - 0.4) + shown.y * 0.35 * (fibre - 0.5), 0.0, 1.0);
   }
 #endif
   vec3 s = (abs(fract(p * 0.5) - 0.5) - 0.25) * 2.0;  // checker

@@ -146,6 +146,36 @@ TEST_CASE("clouds lie between their two colours, fade into the mean far away") {
   CHECK(far_least > dark_too + 10);
 }
 
+TEST_CASE("wood changes across its fibres, hardly along them, and fades into its mean far away") {
+  Look look = matt(glm::vec3(0.6F));
+  look.pattern_colour = glm::vec3(0.2F);
+  Frame frame = plain_frame();
+  frame.lights.casts_shadow = false;
+  Renderer renderer(kSize, Quality::full);
+  // Mean steps between neighbours in a row and in a column.
+  const auto steps = [&](Pattern pattern, float ring) {
+    look.pattern = pattern;
+    look.pattern_size = ring;
+    frame.camera = {glm::vec3(0, 1, 4), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 20.0F};
+    frame.draws = {at(make_box(1, {2.0F, 0.9F, 0.1F}), {0, 1, 0}, look)};
+    const Image image = renderer.render(frame);
+    int across = 0, down = 0;
+    for (int y = 70; y < 110; ++y)
+      for (int x = 140; x < 180; ++x) {
+        across += std::abs(green(image, {x + 1, y}) - green(image, {x, y}));
+        down += std::abs(green(image, {x, y + 1}) - green(image, {x, y}));
+      }
+    return std::pair(across / 1600.0, down / 1600.0);
+  };
+  const auto [along_x, across_x] = steps(Pattern::grain_x, 0.1F);
+  CHECK(across_x > 2.5);
+  CHECK(across_x > 3.0 * along_x);
+  const auto [across_y, along_y] = steps(Pattern::grain_y, 0.1F);
+  CHECK(across_y > 2.5);
+  CHECK(across_y > 3.0 * along_y);
+  CHECK(steps(Pattern::grain_x, 0.001F).second < 0.5);
+}
+
 TEST_CASE("the stress overlay paints the scale's colours and the pieces overlay tells pieces apart") {
   Frame frame = plain_frame();
   frame.camera = {glm::vec3(0, 1, 6), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 30.0F};

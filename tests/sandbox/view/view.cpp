@@ -1,5 +1,6 @@
 // The bridge: poses, cracks and looks arrive in the frame; every name has its look.
 #include "sandbox/view/view.h"
+#include "sandbox/view/wardrobe.h"
 
 #include <catch2/catch.hpp>
 
@@ -74,7 +75,7 @@ TEST_CASE("crack edges become crack bits of the triangles they bound") {
 
 TEST_CASE("every name of the vocabulary means something") {
   for (const std::string& name : scene::kLookNames) {
-    CHECK(view::make_looks(name, std::nullopt, 0.1, Vec3::Zero()).size() == 4);
+    CHECK(view::make_looks(name, std::nullopt, 0.1, Vec3::Zero(), 0).size() == 4);
   }
   for (const std::string& name : scene::kGroundNames) {
     CHECK(view::make_ground(name, 0.0).has_value() == (name != "none"));
@@ -82,6 +83,22 @@ TEST_CASE("every name of the vocabulary means something") {
   for (const material::Preset& preset : material::presets()) {
     CHECK(view::usual_look(preset.material.name) != "matt");
   }
+}
+
+TEST_CASE("wood has its fibres along what it is longest") {
+  const auto pattern_of = [](const std::string& form) {
+    const auto reading = scene::read("[[body]]\nname = \"thing\"\nlook = \"wood\"\n" + form);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    scene::Problems problems;
+    const auto built = scene::build_world(*reading.scene, problems);
+    REQUIRE(built.has_value());
+    return view::Wardrobe(*reading.scene, *built).looks_of(1).front().pattern;
+  };
+  CHECK(pattern_of("kind = \"box\"\nsize = [1, 0.1, 0.2]\n") == render::Pattern::grain_x);
+  CHECK(pattern_of("kind = \"box\"\nsize = [0.1, 0.3, 0.2]\n") == render::Pattern::grain_y);
+  CHECK(pattern_of("kind = \"capsule\"\nradius = 0.1\n") == render::Pattern::grain_y);
+  CHECK(pattern_of("kind = \"shell\"\nshape = \"boat\"\n") == render::Pattern::grain_x);
 }
 
 TEST_CASE("a light preset is a sun with a sky and a backdrop that single keys override") {
