@@ -9,12 +9,20 @@ namespace shatterbox::sandbox::view {
 
 namespace {
 
-/// The colour of one copy: drawn from the list by the numbers of the body and the copy.
-std::optional<Vec3> colour_of(const scene::LookEntry& look, std::size_t entry, int copy) {
-  if (look.colours.empty()) return std::nullopt;
+/// The colour of one copy: drawn from the list by the numbers of the body and the copy. Bricks are never all
+/// of one colour: a wall of them would be seen as one block.
+std::optional<Vec3> colour_of(const scene::LookEntry& look, const std::string& name, std::size_t entry,
+                              int copy) {
+  static const std::vector<Vec3> kBricks{{0.635, 0.329, 0.231},
+                                         {0.580, 0.282, 0.184},
+                                         {0.678, 0.384, 0.271},
+                                         {0.545, 0.290, 0.220},
+                                         {0.690, 0.416, 0.298}};
+  const std::vector<Vec3>& colours = look.colours.empty() && name == "brick" ? kBricks : look.colours;
+  if (colours.empty()) return std::nullopt;
   const std::uint64_t draw =
       core::Hash(std::uint64_t{entry}).add(static_cast<std::uint64_t>(copy)).value() >> 16U;
-  return look.colours[static_cast<std::size_t>(draw % look.colours.size())];
+  return colours[static_cast<std::size_t>(draw % colours.size())];
 }
 
 /// Along which a body is longest, in its shape's own frame.
@@ -63,8 +71,8 @@ const std::vector<render::Look>& Wardrobe::looks_of(body::BodyId id) {
   std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
   const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
   if (name.empty()) name = usual_look(material.preset);
-  place->second = make_looks(name, colour_of(entry.look, number, found->second.copy), plan.bounding_radius,
-                             -plan.centre, longest_axis(plan.description));
+  place->second = make_looks(name, colour_of(entry.look, name, number, found->second.copy),
+                             plan.bounding_radius, -plan.centre, longest_axis(plan.description));
   return place->second;
 }
 

@@ -1,13 +1,13 @@
 // The bridge: poses, cracks and looks arrive in the frame; every name has its look.
 #include "sandbox/view/view.h"
-#include "sandbox/view/wardrobe.h"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
 
 #include "engine/geometry/edge_topology.h"
 #include "sandbox/view/looks.h"
+#include "sandbox/view/wardrobe.h"
 #include "tests/sandbox/scene/reading.h"
 
 using namespace shatterbox;
@@ -99,6 +99,26 @@ TEST_CASE("wood has its fibres along what it is longest") {
   CHECK(pattern_of("kind = \"box\"\nsize = [0.1, 0.3, 0.2]\n") == render::Pattern::grain_y);
   CHECK(pattern_of("kind = \"capsule\"\nradius = 0.1\n") == render::Pattern::grain_y);
   CHECK(pattern_of("kind = \"shell\"\nshape = \"boat\"\n") == render::Pattern::grain_x);
+}
+
+TEST_CASE("bricks are not all of one colour unless they are given one") {
+  const auto colours_of = [](const std::string& colour) {
+    const auto reading = scene::read(
+        "[[body]]\nkind = \"box\"\nsize = 0.1\nlook = \"brick\"\nrepeat = {count = 12, spacing = 0.2}\n" +
+        colour);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    scene::Problems problems;
+    const auto built = scene::build_world(*reading.scene, problems);
+    REQUIRE(built.has_value());
+    view::Wardrobe wardrobe(*reading.scene, *built);
+    std::set<float> reds;
+    for (const body::Body& body : built->world.bodies())
+      reds.insert(wardrobe.looks_of(body.id).front().outside.r);
+    return reds.size();
+  };
+  CHECK(colours_of("") > 2);
+  CHECK(colours_of("colour = \"#a2543b\"\n") == 1);
 }
 
 TEST_CASE("a light preset is a sun with a sky and a backdrop that single keys override") {
