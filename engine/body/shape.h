@@ -31,6 +31,11 @@ constexpr bool is_round(ShapeKind kind) {
   return kind == ShapeKind::sphere || kind == ShapeKind::capsule;
 }
 
+/// True for what has an inside between faces, edges and corners.
+constexpr bool is_closed(ShapeKind kind) {
+  return kind == ShapeKind::solid || kind == ShapeKind::box;
+}
+
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Vec3 half_extent = Vec3::Zero();  // box, m

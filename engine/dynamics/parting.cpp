@@ -25,16 +25,29 @@ class Parting {
  public:
   Parting(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
           const MotionWork& work)
-      : bodies_(bodies), settings_(settings), state_(state), work_(work), overlaps_(work.pairs.size(), 0) {}
+      : bodies_(bodies), settings_(settings), state_(state), work_(work) {}
 
   bool run(std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
-    bool is_changed = exempt_overlaps();
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      const WorkPair& pair = work_.pairs[p];
-      PairState& memory = state_.pairs[at(pair.state)];
+    bool is_changed = false;
+    std::vector<const WorkPair*> touching;
+    for (const WorkPair& pair : work_.pairs) {
+      bool& is_exempt = state_.pairs[at(pair.state)].is_exempt;
       // What crosses may do so by rounding: a foot of a thousand vertices is seldom level to the last bit.
-      const bool is_due = is_new(pair) && !overlaps_[p] && (memory.is_exempt || is_in_one_place(pair));
-      if (!is_due || has_moved(pair.a) || has_moved(pair.b)) continue;
+      const bool is_in_one_place = pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
+      if (!pair.is_first_seen || pair.has_sides || (!is_exempt && !is_in_one_place)) continue;
+      // Blocks that are pushed into each other with their sides in one plane only touch there. What lies in
+      // each other too deep to be set aside passes, as what crosses does.
+      if (overlap(pair, pair.a, bodies_[at(pair.a)].pose, 2.0 * aside(pair))) {
+        is_changed = is_changed || !is_exempt;
+        is_exempt = true;
+      } else {
+        touching.push_back(&pair);
+      }
+    }
+    for (const WorkPair* touched : touching) {
+      const WorkPair& pair = *touched;
+      if (has_moved(pair.a) || has_moved(pair.b)) continue;
+      PairState& memory = state_.pairs[at(pair.state)];
       const bool crossed = memory.is_exempt;
       memory.is_exempt = false;
       const int mover = choose(pair), other = mover == pair.a ? pair.b : pair.a;
@@ -51,41 +64,18 @@ class Parting {
   }
 
  private:
-  static bool is_new(const WorkPair& pair) { return pair.is_first_seen && !pair.has_sides; }
-  static bool is_in_one_place(const WorkPair& pair) {
-    return pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
-  }
-
   double aside(const WorkPair& pair) const { return kAside * settings_.kept_gap * pair.size; }
-
-  // What lies in each other too deep to be set aside passes, as what crosses does. Blocks that are pushed
-  // into each other with their sides in one plane only touch there.
-  bool exempt_overlaps() {
-    bool is_changed = false;
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      const WorkPair& pair = work_.pairs[p];
-      bool& is_exempt = state_.pairs[at(pair.state)].is_exempt;
-      if (!is_new(pair) || (!is_exempt && !is_in_one_place(pair))) continue;
-      overlaps_[p] = overlap(pair, pair.a, bodies_[at(pair.a)].pose, 2.0 * aside(pair));
-      is_changed = is_changed || (overlaps_[p] && !is_exempt);
-      is_exempt = is_exempt || overlaps_[p];
-    }
-    return is_changed;
-  }
 
   // Deeper than `least` (m), with the mover at that pose.
   bool overlap(const WorkPair& pair, int mover, const Pose& pose, double least) const {
-    const auto has_inside = [&](int i) {
-      const ShapeKind kind = work_.bodies[at(i)].shape->kind;
-      return kind == ShapeKind::solid || kind == ShapeKind::box;
-    };
+    const auto is_closed = [&](int i) { return body::is_closed(work_.bodies[at(i)].shape->kind); };
     const auto surface = [&](int i) {
       const collision::Collider& collider = *work_.bodies[at(i)].collider;
       geometry::TriangleMesh mesh{{}, collider.triangles};
       collision::place_vertices(collider, i == mover ? pose : bodies_[at(i)].pose, mesh.positions);
       return mesh;
     };
-    return has_inside(pair.a) && has_inside(pair.b) &&
+    return is_closed(pair.a) && is_closed(pair.b) &&
            geometry::have_common_inside(surface(pair.a), surface(pair.b), least);
   }
 
@@ -208,8 +198,7 @@ class Parting {
   const ContactSettings& settings_;
   ContactState& state_;
   const MotionWork& work_;
-  std::vector<char> overlaps_;  // per pair: too deep to be set aside
-  std::vector<int> moved_;      // in this run: their pairs are out of date
+  std::vector<int> moved_;  // in this run: their pairs are out of date
 };
 
 }  // namespace

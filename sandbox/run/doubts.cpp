@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "engine/body/polyhedron.h"
+#include "engine/geometry/bvh.h"
 #include "engine/world/forms.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/script/room.h"
@@ -34,12 +35,8 @@ void doubt_thickness(const scene::SceneDescription& scene, const scene::BuiltSce
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const auto* shell = std::get_if<world::ShellDescription>(&built.plan.bodies[i].description.form);
     if (shell == nullptr) continue;
-    Vec3 least = shell->mesh.positions.front(), most = least;
-    for (const Vec3& p : shell->mesh.positions) {
-      least = least.cwiseMin(p);
-      most = most.cwiseMax(p);
-    }
-    const double across = (most - least).maxCoeff();
+    const geometry::Box box = geometry::box_of(shell->mesh);
+    const double across = (box.high - box.low).maxCoeff();
     if (shell->thickness <= kThick * across) continue;
     scene::book(doubts, scene.bodies[i].place,
                 fmt::format("the shell \"{}\" is {:.3g} m thick, and {:.3g} m across", scene.bodies[i].name,
@@ -59,13 +56,11 @@ void doubt_sizes(const scene::SceneDescription& scene, const scene::BuiltScene& 
            !std::holds_alternative<scene::FigureShape>(shape) &&
            !std::holds_alternative<geometry::BoatSizes>(shape);
   };
-  for (const Body& body : built.world.bodies()) {
-    const scene::Origin& origin = built.origins.at(body.id);
-    const scene::BodyEntry& entry = entry_of(scene, built, body);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& entry = scene.bodies[i];
     const scene::MeshForm* form = scene::find_mesh_form(entry.form);
-    const double across = 2.0 * body.shape->bounding_radius;
-    if (origin.copy > 0 || form == nullptr || across < kOfHouse || !scene::can_break(entry) ||
-        !is_of_household(form->shape))
+    const double across = 2.0 * built.plan.bodies[i].bounding_radius;
+    if (form == nullptr || across < kOfHouse || !scene::can_break(entry) || !is_of_household(form->shape))
       continue;
     scene::book(doubts, entry.place, fmt::format("\"{}\" is {:.3g} m across", entry.name, across),
                 "sizes are in metres: 30 cm are 0.3");
@@ -149,58 +144,58 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
   }
 }
 
-struct Bounds {
-  Vec3 least = Vec3::Constant(1e300), most = Vec3::Constant(-1e300);  // m, world
-};
-
-Bounds bounds_of(const Body& body) {
+geometry::Box bounds_of(const Body& body) {
   if (body.shape->kind == ShapeKind::sphere) {
     const Vec3 reach = Vec3::Constant(body.shape->radius);
     return {body.pose.translation - reach, body.pose.translation + reach};
   }
-  Bounds bounds;
-  for (const Vec3& p : body::find_polyhedron(*body.shape).positions) {
-    const Vec3 there = body.pose.apply(p);
-    bounds.least = bounds.least.cwiseMin(there);
-    bounds.most = bounds.most.cwiseMax(there);
-  }
+  geometry::Box bounds;
+  for (const Vec3& p : body::find_polyhedron(*body.shape).positions) bounds.include(body.pose.apply(p));
   return bounds;
+}
+
+bool lies_on(const Body& upper, const Body& lower) {
+  constexpr double kAbove = 0.005, kBelow = 0.001;  // m
+  const geometry::Box box = bounds_of(upper);
+  if (lower.shape->kind == ShapeKind::plane) return box.low.y() - lower.pose.translation.y() < kAbove;
+  if (upper.shape->kind == ShapeKind::plane) return false;
+  const geometry::Box below = bounds_of(lower);
+  const double gap = box.low.y() - below.high.y();
+  return gap > -kBelow && gap < kAbove && box.low.x() < below.high.x() && below.low.x() < box.high.x() &&
+         box.low.z() < below.high.z() && below.low.z() < box.high.z();
 }
 
 /// A box that carries something and lies on nothing: a table that was meant to stay where it is.
 void doubt_tables(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                   scene::Problems& doubts) {
-  constexpr double kAbove = 0.005, kBelow = 0.001;  // m
   const Vec3& gravity = scene.world.gravity;
   const bool is_down = gravity.y() < 0.0 && gravity.x() == 0.0 && gravity.z() == 0.0;
   if (!is_down || !scene.joints.empty()) return;
-  const auto bodies = built.world.bodies();
-  const auto lies_on = [](const Bounds& upper, const Bounds& lower) {
-    const double gap = upper.least.y() - lower.most.y();
-    return gap > -kBelow && gap < kAbove && upper.least.x() < lower.most.x() &&
-           lower.least.x() < upper.most.x() && upper.least.z() < lower.most.z() &&
-           lower.least.z() < upper.most.z();
-  };
-  for (const Body& table : bodies) {
-    if (table.shape->kind != ShapeKind::box || !table.is_dynamic() || !table.velocity.isZero(0.0)) continue;
-    const Bounds own = bounds_of(table);
-    const Body* carried = nullptr;
+  struct Table {
+    const Body* body;
+    const Body* load = nullptr;
     bool is_carried = false;
-    for (const Body& body : bodies) {
-      if (&body == &table) continue;
-      if (body.shape->kind == ShapeKind::plane) {
-        is_carried = is_carried || own.least.y() - body.pose.translation.y() < kAbove;
-        continue;
-      }
-      const double reach = table.shape->bounding_radius + body.shape->bounding_radius + kAbove;
-      if ((body.pose.translation - table.pose.translation).norm() > reach) continue;
-      const Bounds other = bounds_of(body);
-      if (body.is_dynamic() && lies_on(other, own)) carried = carried ? carried : &body;
-      is_carried = is_carried || lies_on(own, other);
+  };
+  std::map<body::BodyId, Table> tables;
+  for (const Body& body : built.world.bodies())
+    if (body.shape->kind == ShapeKind::box && body.is_dynamic() && body.velocity.isZero(0.0))
+      tables.emplace(body.id, Table{&body});
+  if (tables.empty()) return;
+  for (const auto& [a, b] : near_pairs(built.world.bodies()))
+    for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
+      const auto found = tables.find(body->id);
+      if (found == tables.end()) continue;
+      Table& table = found->second;
+      table.is_carried = table.is_carried || lies_on(*body, *other);
+      if (!table.is_carried && other->is_dynamic() && (!table.load || other->id < table.load->id) &&
+          lies_on(*other, *body))
+        table.load = other;
     }
-    if (is_carried || carried == nullptr) continue;
-    scene::book(doubts, entry_of(scene, built, table).place,
-                fmt::format("\"{}\" lies on nothing, and falls with \"{}\" on it", table.name, carried->name),
+  for (const auto& [id, table] : tables) {
+    if (table.is_carried || table.load == nullptr) continue;
+    scene::book(doubts, entry_of(scene, built, *table.body).place,
+                fmt::format("\"{}\" lies on nothing, and falls with \"{}\" on it", table.body->name,
+                            table.load->name),
                 "what is to stay where it is has motion = \"static\"");
     return;
   }

@@ -120,11 +120,8 @@ bool is_in_solid(const Placed& form, const Placed& solid) {
 
 /// Blocks that are pushed into each other with their sides in one plane: nothing of them crosses.
 bool have_common_inside(const Placed& a, const Placed& b) {
-  const auto is_solid = [](const Placed& form) {
-    return form.kind == ShapeKind::solid || form.kind == ShapeKind::box;
-  };
   constexpr double kTouching = 1e-9;  // of their size
-  return is_solid(a) && is_solid(b) &&
+  return body::is_closed(a.kind) && body::is_closed(b.kind) &&
          geometry::have_common_inside(a.surface, b.surface, kTouching * (a.most - a.least).norm());
 }
 

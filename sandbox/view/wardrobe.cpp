@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/hash.h"
+#include "engine/geometry/bvh.h"
 #include "sandbox/view/looks.h"
 
 namespace shatterbox::sandbox::view {
@@ -29,12 +30,8 @@ std::optional<Vec3> colour_of(const scene::LookEntry& look, const std::string& n
 int longest_axis(const world::BodyDescription& description) {
   Vec3 extent = Vec3::UnitY();
   const auto measure = [&extent](const geometry::TriangleMesh& mesh) {
-    Vec3 least = Vec3::Constant(1e300), most = -least;
-    for (const Vec3& p : mesh.positions) {
-      least = least.cwiseMin(p);
-      most = most.cwiseMax(p);
-    }
-    extent = most - least;
+    const geometry::Box box = geometry::box_of(mesh);
+    extent = box.high - box.low;
   };
   if (const auto* box = std::get_if<world::BoxDescription>(&description.form)) extent = box->half_extent;
   if (const auto* shell = std::get_if<world::ShellDescription>(&description.form)) measure(shell->mesh);
@@ -71,8 +68,9 @@ const std::vector<render::Look>& Wardrobe::looks_of(body::BodyId id) {
   std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
   const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
   if (name.empty()) name = usual_look(material.preset);
-  place->second = make_looks(name, colour_of(entry.look, name, number, found->second.copy),
-                             plan.bounding_radius, -plan.centre, longest_axis(plan.description));
+  place->second =
+      make_looks(name, colour_of(entry.look, name, number, found->second.copy), plan.bounding_radius,
+                 -plan.centre, name == "wood" ? longest_axis(plan.description) : 0);
   return place->second;
 }
 

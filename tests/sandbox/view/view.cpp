@@ -88,11 +88,7 @@ TEST_CASE("every name of the vocabulary means something") {
 TEST_CASE("wood has its fibres along what it is longest") {
   const auto pattern_of = [](const std::string& form) {
     const auto reading = scene::read("[[body]]\nname = \"thing\"\nlook = \"wood\"\n" + form);
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    const auto built = scene::build_world(*reading.scene, problems);
-    REQUIRE(built.has_value());
+    const auto built = build(reading);
     return view::Wardrobe(*reading.scene, *built).looks_of(1).front().pattern;
   };
   CHECK(pattern_of("kind = \"box\"\nsize = [1, 0.1, 0.2]\n") == render::Pattern::grain_x);
@@ -106,11 +102,7 @@ TEST_CASE("bricks are not all of one colour unless they are given one") {
     const auto reading = scene::read(
         "[[body]]\nkind = \"box\"\nsize = 0.1\nlook = \"brick\"\nrepeat = {count = 12, spacing = 0.2}\n" +
         colour);
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    const auto built = scene::build_world(*reading.scene, problems);
-    REQUIRE(built.has_value());
+    const auto built = build(reading);
     view::Wardrobe wardrobe(*reading.scene, *built);
     std::set<float> reds;
     for (const body::Body& body : built->world.bodies())
@@ -124,11 +116,7 @@ TEST_CASE("bricks are not all of one colour unless they are given one") {
 TEST_CASE("a light preset is a sun with a sky and a backdrop that single keys override") {
   const auto frame_of = [](const std::string& tables) {
     const auto reading = scene::read("[[body]]\nkind = \"sphere\"\n" + tables);
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    auto built = scene::build_world(*reading.scene, problems);
-    REQUIRE(built.has_value());
+    auto built = build(reading);
     return view::View(*reading.scene, *built).make_frame();
   };
   const render::Frame usual = frame_of(""), studio = frame_of("[light]\npreset = \"studio\"\n");
