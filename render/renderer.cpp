@@ -78,9 +78,10 @@ struct Renderer::Rooms {
     int samples_across;  // a pixel has as many down
     int shadow_map, shadow_taps;
     int occlusion_taps, occlusion_scale;
+    int glass_faces;  // seen through each other
   };
   static Level level_of(Quality quality) {
-    return quality == Quality::full ? Level{2, 1536, 14, 6, 2} : Level{1, 1024, 5, 6, 3};
+    return quality == Quality::full ? Level{2, 1536, 14, 6, 2, 3} : Level{1, 1024, 5, 6, 3, 2};
   }
 
   Size size;
@@ -119,7 +120,7 @@ struct Renderer::Rooms {
         changes(size.width, size.height, level.occlusion_scale),
         floor(size.width, size.height),
         shadow(level.shadow_map),
-        surface(size.width, size.height, level.samples_across, reset),
+        surface(size.width, size.height, level.samples_across, level.glass_faces, reset),
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale,
                   reset),
         light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale, reset),

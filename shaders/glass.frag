@@ -1,5 +1,5 @@
-// Thin glass over what is drawn (dual-source blending), in two passes. First its broken rims (RIMS), which gather light and
-// show through the faces, bright and a little green; then its faces, which mirror the surroundings and tint what is behind.
+// Thin glass over what is drawn (dual-source blending): the faces behind others; its broken rims (RIMS), which gather light
+// and show through the faces, bright and a little green; the nearest faces, which mirror the surroundings and tint what is behind.
 // Samples that see none, or glass behind a body, keep what is there.
 #include "common/light.glsl"
 #include "common/paint.glsl"

@@ -31,8 +31,8 @@ const gpu::Program& GlassPass::faces(unsigned pattern_kinds) {
 // a pixel the layers' own depths tell that.
 void GlassPass::find_cover(const SurfacePass& surface, const gpu::Framebuffer& drawn, const Tiles& tiles) {
   if (samples_across_ == 1) {
-    if (on_faces_.name() == 0) {
-      on_faces_ = gpu::Framebuffer(drawn, surface.glass_faces().depth);
+    if (on_rims_.name() == 0) {
+      for (const Layer& layer : surface.glass_faces()) on_faces_.emplace_back(drawn, layer.depth);
       on_rims_ = gpu::Framebuffer(drawn, surface.glass_rims().depth);
     }
     return;
@@ -41,8 +41,9 @@ void GlassPass::find_cover(const SurfacePass& surface, const gpu::Framebuffer& d
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  surface.glass_faces().bind(4, 5);
+  surface.glass_faces()[0].bind(4, 5);
   surface.glass_rims().depth.bind(9);
+  surface.glass_faces()[1].depth.bind(10);
   cover_.use();
   Tiles::draw(tiles.glass());
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -67,8 +68,12 @@ void GlassPass::run(const SurfacePass& surface, const gpu::Framebuffer& drawn, c
     gpu::Program::set(kTileDepth, is_direct ? 1.0F : depth);
     Tiles::draw(tiles.glass());
   };
-  draw(rims_, surface.glass_rims(), on_rims_, 0.75F);
-  draw(faces(pattern_kinds), surface.glass_faces(), on_faces_, 0.25F);
+  const auto draw_faces = [&](std::size_t number, float depth) {
+    draw(faces(pattern_kinds), surface.glass_faces()[number], is_direct ? on_faces_[number] : drawn, depth);
+  };
+  for (std::size_t number = surface.glass_faces().size() - 1; number > 0; --number) draw_faces(number, 0.8F);
+  draw(rims_, surface.glass_rims(), on_rims_, 0.45F);
+  draw_faces(0, 0.15F);
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);

@@ -1,8 +1,9 @@
-// Thin glass over the lit picture: rims, then faces, through which rims show (shaders/glass_cover.frag,
-// glass.frag).
+// Thin glass over the lit picture: the faces behind others, rims, then the nearest faces, through which all
+// that shows (shaders/glass_cover.frag, glass.frag).
 #pragma once
 #include <map>
 #include <string>
+#include <vector>
 
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/program.h"
@@ -26,7 +27,8 @@ class GlassPass {
   std::string side_;
   gpu::Program cover_, rims_;
   std::map<unsigned, gpu::Program> faces_;
-  gpu::Framebuffer on_faces_, on_rims_;  // the picture with a layer's depth; for one sample a pixel
+  std::vector<gpu::Framebuffer> on_faces_;  // the picture with a layer's depth; for one sample a pixel
+  gpu::Framebuffer on_rims_;                // the same
 };
 
 }  // namespace shatterbox::render::pass

@@ -38,9 +38,10 @@ void Layer::bind(unsigned seen_unit, unsigned depth_unit) const {
   depth.bind(depth_unit);
 }
 
-SurfacePass::SurfacePass(int width, int height, int samples_across, const TileReset& reset)
+SurfacePass::SurfacePass(int width, int height, int samples_across, int glass_faces, const TileReset& reset)
     : samples_across_(samples_across),
       opaque_(width * samples_across, height * samples_across),
+      glass_faces_(static_cast<std::size_t>(glass_faces)),
       program_("surface.vert", "surface.frag"),
       reset_(&reset) {}
 
@@ -55,15 +56,19 @@ void SurfacePass::run(const MeshStore& meshes, const Tiles& tiles, const Changes
 }
 
 void SurfacePass::run_glass(const MeshStore& meshes, const Tiles& tiles, const Changes& changes) {
-  if (glass_faces_.seen.name() == 0) {
-    glass_faces_ = Layer(opaque_.seen.width(), opaque_.seen.height());
+  if (!has_glass()) {
+    for (Layer& layer : glass_faces_) layer = Layer(opaque_.seen.width(), opaque_.seen.height());
     glass_rims_ = Layer(opaque_.seen.width(), opaque_.seen.height());
+    behind_ = gpu::Program("surface.vert", "surface.frag", {"BEHIND"});
   }
-  glass_faces_.target.bind();
   glDisable(GL_CULL_FACE);  // one face of a thin pane stands for both
-  reset_->reset_depth(changes.glass(), tiles.changed_glass());
-  program_.use();
-  draw_items(meshes, changes, true, [](const Item&) { return Part::outer; });
+  for (std::size_t i = 0; i < glass_faces_.size(); ++i) {
+    glass_faces_[i].target.bind();
+    reset_->reset_depth(changes.glass(), tiles.changed_glass());
+    if (i > 0) glass_faces_[i - 1].depth.bind(5);
+    (i > 0 ? behind_ : program_).use();
+    draw_items(meshes, changes, true, [](const Item&) { return Part::outer; });
+  }
   glass_rims_.target.bind();
   reset_->reset_depth(changes.glass(), tiles.changed_glass());
   program_.use();

@@ -29,6 +29,18 @@ inline std::shared_ptr<const Mesh> make_cracked_box(std::uint64_t id, glm::vec3 
   return box;
 }
 
+// With cracked edges.
+inline std::shared_ptr<const Mesh> make_pane(std::uint64_t id, float width, float height) {
+  auto pane = std::make_shared<Mesh>();
+  pane->id = id;
+  pane->thickness = 0.02F;
+  const glm::vec3 x(0.5F * width, 0, 0), y(0, 0.5F * height, 0);
+  pane->positions = {-x - y, x - y, x + y, -x + y};
+  pane->triangles = {{0, 1, 2}, {0, 2, 3}};
+  pane->cracks = {kCrackEdge0, kCrackEdge1};
+  return pane;
+}
+
 inline Frame plain_frame() {
   Frame frame;
   frame.camera.position = {0.0F, 2.0F, 6.0F};

@@ -11,17 +11,6 @@ using namespace shatterbox::render::testing;
 
 namespace {
 
-std::shared_ptr<const Mesh> make_pane(std::uint64_t id, float width, float height) {
-  auto pane = std::make_shared<Mesh>();
-  pane->id = id;
-  pane->thickness = 0.02F;
-  const glm::vec3 x(0.5F * width, 0, 0), y(0, 0.5F * height, 0);
-  pane->positions = {-x - y, x - y, x + y, -x + y};
-  pane->triangles = {{0, 1, 2}, {0, 2, 3}};
-  pane->cracks = {kCrackEdge0, kCrackEdge1};
-  return pane;
-}
-
 // Bodies near, far, before and behind each other, on the floor and above it; some cast shadows on others.
 Frame still_life() {
   Frame frame = plain_frame();

@@ -99,6 +99,34 @@ TEST_CASE("glass lets the picture behind it through, tinted") {
   CHECK_FALSE(with == without);
 }
 
+TEST_CASE("glass is seen through glass, whichever is drawn first, as deep as the quality looks") {
+  const auto red_behind = [](int count, bool is_nearest_first, Quality quality) {
+    Frame frame = plain_frame();
+    frame.camera = {glm::vec3(0, 1, 6), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 30.0F};
+    frame.draws = {at(make_box(1, {2.0F, 2.0F, 0.1F}), {0, 1, -1}, matt({0.6F, 0.6F, 0.6F}))};
+    for (int i = 0; i < count; ++i) {
+      const int place = is_nearest_first ? i : count - 1 - i;
+      const auto pane = make_pane(static_cast<std::uint64_t>(2 + place), 0.8F, 0.8F);
+      frame.draws.push_back(
+          at(pane, {0, 1, 1.0F - 0.3F * static_cast<float>(place)}, glass({0.4F, 0.8F, 0.8F})));
+    }
+    Renderer renderer(kSize, quality);
+    return static_cast<int>(renderer.render(frame).at(160, 90)[0]);
+  };
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    const int seen = quality == Quality::full ? 3 : 2;
+    for (int count = 1; count <= seen + 1; ++count) {
+      const int red = red_behind(count, true, quality), fewer = red_behind(count - 1, true, quality);
+      CAPTURE(count, red, fewer);
+      CHECK(red == red_behind(count, false, quality));
+      if (count <= seen)
+        CHECK(red < fewer - 10);
+      else
+        CHECK(red == fewer);
+    }
+  }
+}
+
 TEST_CASE("a ball of clear glass on a pale ground has a dark outline, one of frosted glass has none") {
   Frame frame = plain_frame();
   frame.camera = {glm::vec3(0, 5, 5), glm::vec3(0, 1, 0), glm::vec3(0, 1, 0), 30.0F};
