@@ -59,9 +59,12 @@ void Recorder::note_pictures(const Painted& painted, int first) {
       continue;
     }
     report::FrameRecord& frame = record.frames[number];
-    frame.frame = std::max(painted.frame[i] - frame.audit, 0.0);
     frame.render = painted.render[i];
     frame.encode = painted.encode[i];
+    // Since the picture before a still many frames have passed that were not drawn.
+    const int before = i > 0 ? painted.numbers[i - 1] : first - 1;
+    frame.frame = painted.numbers[i] == before + 1 ? std::max(painted.frame[i] - frame.audit, 0.0)
+                                                   : std::max(frame.simulate, frame.render + frame.encode);
     for (std::size_t pass = 0; pass < painted.passes.size(); ++pass) {
       const auto& [name, times] = painted.passes[pass];
       if (pass == record.passes.size()) record.passes.emplace_back(name, std::vector<double>());
