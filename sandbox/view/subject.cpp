@@ -14,8 +14,9 @@ namespace {
 
 using Corners = std::array<Vec3, 8>;
 
-constexpr double kRoomForPieces = 2.0;  // times as wide as what fell
-constexpr double kWorthGoing = 1.3;     // times as far the eye would have to be, to see all of the fall
+constexpr double kRoomForPieces = 2.0;   // times as wide as what fell
+constexpr double kWorthGoing = 1.3;      // times as far the eye would have to be, to see all of the fall
+constexpr double kRoomForScenery = 1.0;  // on each side, of the size of what moves or breaks
 
 Corners corners_of(const geometry::Box& box, const Pose& pose) {
   Corners corners;
@@ -27,9 +28,44 @@ Corners corners_of(const geometry::Box& box, const Pose& pose) {
   return corners;
 }
 
+// What neither moves nor breaks.
+bool is_scenery(const scene::BodyEntry& body) {
+  return body.motion == body::Motion::fixed && !body.path && !scene::can_break(body);
+}
+
+std::vector<Corners> find_scenery(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
+  std::vector<Corners> scenery;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& body = scene.bodies[i];
+    if (body.is_held_back || plan.bodies[i].bounding_radius <= 0.0 || !is_scenery(body)) continue;
+    for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i))
+      scenery.push_back(corners_of(plan.bodies[i].box, pose));
+  }
+  return scenery;
+}
+
+// How far `above` may go down before its box, upright, is on that of `below`; the most there is if it is not
+// above it.
+double room_above(const Corners& below, const Corners& above, const Vec3& down) {
+  constexpr double kNone = std::numeric_limits<double>::max();
+  const Vec3 aside = down.unitOrthogonal();
+  const auto upright = [&](const Corners& corners) {
+    geometry::Box box;
+    for (const Vec3& p : corners) box.include(Vec3(p.dot(aside), p.dot(down), p.dot(down.cross(aside))));
+    return box;
+  };
+  const geometry::Box from = upright(above), to = upright(below);
+  const double way = to.low.y() - from.high.y();
+  if (way < 0.0) return kNone;
+  geometry::Box passed = from;
+  passed.high.y() = to.low.y();
+  return geometry::overlaps(passed, to) ? way : kNone;
+}
+
 // The way that what has these corners would fall to the nearest plane below it that is at most `kSteepest`
-// steep; none if there is none, or if nothing pulls.
-Vec3 way_down(const scene::SceneDescription& scene, const Corners& corners) {
+// steep, or to scenery; none if there is none, or if nothing pulls.
+Vec3 way_down(const scene::SceneDescription& scene, const std::vector<Corners>& scenery,
+              const Corners& corners) {
   constexpr double kSteepest = 0.7;  // cosine of the angle between gravity and the plane's normal
   const Vec3& gravity = scene.world.gravity;
   double nearest = std::numeric_limits<double>::max();
@@ -41,6 +77,10 @@ Vec3 way_down(const scene::SceneDescription& scene, const Corners& corners) {
     double way = std::numeric_limits<double>::max();
     for (const Vec3& corner : corners) way = std::min(way, normal.dot(corner - entry.position) / sinking);
     if (way > 0.0) nearest = std::min(nearest, way);
+  }
+  const double pull = gravity.norm();
+  for (const Corners& below : scenery) {
+    if (pull > 0.0) nearest = std::min(nearest, room_above(below, corners, gravity / pull) / pull);
   }
   return nearest < std::numeric_limits<double>::max() ? Vec3(nearest * gravity) : Vec3(Vec3::Zero());
 }
@@ -71,6 +111,25 @@ Corners spread_out(Corners corners, const Vec3& way) {
 
 void add(const Corners& corners, std::vector<Vec3>& all) {
   all.insert(all.end(), corners.begin(), corners.end());
+}
+
+// Of scenery what is about the others, so that a cup on a long table is not lost on it; all of it if there
+// are no others.
+void add_scenery(const std::vector<Corners>& scenery, std::vector<Vec3>& points) {
+  if (points.empty()) {
+    for (const Corners& corners : scenery) add(corners, points);
+    return;
+  }
+  geometry::Box about;
+  for (const Vec3& p : points) about.include(p);
+  const Vec3 room = Vec3::Constant(kRoomForScenery * (about.high - about.low).maxCoeff());
+  about = {about.low - room, about.high + room};
+  for (const Corners& corners : scenery) {
+    geometry::Box box;
+    for (const Vec3& corner : corners) box.include(corner);
+    if (!geometry::overlaps(box, about)) continue;
+    for (const Vec3& corner : corners) points.push_back(corner.cwiseMax(about.low).cwiseMin(about.high));
+  }
 }
 
 Vec3 middle_of(const std::vector<Vec3>& points) {
@@ -116,7 +175,7 @@ std::vector<char> find_hung(const scene::SceneDescription& scene) {
 // The fall of all that moves, if all that happens is that it falls and is thrown at: nothing follows a path,
 // or comes in later.
 std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene::ScenePlan& plan,
-                              const std::vector<char>& is_hung) {
+                              const std::vector<Corners>& scenery, const std::vector<char>& is_hung) {
   constexpr double kSideways = 0.5;  // m/s
   Fall fall;
   fall.acceleration = scene.world.gravity.norm();
@@ -129,13 +188,13 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
     if (body.path || body.repeat.every > 0.0) return std::nullopt;
     if (body.is_held_back && !find_entrances(scene, i).empty()) return std::nullopt;
     if (body.is_held_back) continue;  // thrown
-    if (plan.bodies[i].reach <= 0.0) continue;
+    if (plan.bodies[i].reach <= 0.0 || is_scenery(body)) continue;
     const bool is_falling = body.motion == body::Motion::dynamic && is_hung[i] == 0;
     const double speed = body.velocity.dot(down);
     if (is_falling && (speed < 0.0 || (body.velocity - speed * down).norm() > kSideways)) return std::nullopt;
     for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i)) {
       const Corners corners = corners_of(plan.bodies[i].box, pose);
-      const Vec3 way = is_falling ? way_down(scene, corners) : Vec3(Vec3::Zero());
+      const Vec3 way = is_falling ? way_down(scene, scenery, corners) : Vec3(Vec3::Zero());
       add(corners, fall.from);
       add(spread_out(corners, way), fall.to);
       for (const Vec3& corner : corners) landed.push_back(corner + way);
@@ -145,6 +204,7 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
     moves = true;
   }
   if (!moves) return std::nullopt;
+  for (std::vector<Vec3>* points : {&fall.from, &fall.to, &landed}) add_scenery(scenery, *points);
   fall.way = (middle_of(landed) - middle_of(fall.from)).norm();
   return fall;
 }
@@ -154,10 +214,11 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
 Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
   Subject subject;
   const std::vector<char> is_hung = find_hung(scene);
+  const std::vector<Corners> scenery = find_scenery(scene, plan);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodyEntry& body = scene.bodies[i];
     const scene::BodyPlan& planned = plan.bodies[i];
-    if (planned.bounding_radius <= 0.0) continue;
+    if (planned.bounding_radius <= 0.0 || is_scenery(body)) continue;
     for (const Vec3& shift : find_entrances(scene, i)) {
       for (const Pose& own : scene::copy_poses(body, scene.world.seed, i)) {
         const Pose pose{own.rotation, own.translation + shift};
@@ -171,17 +232,18 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
                 subject.corners);
         }
         if (body.motion != body::Motion::dynamic || is_hung[i] != 0) continue;
-        const Vec3 way = way_down(scene, corners);
+        const Vec3 way = way_down(scene, scenery, corners);
         if (way.isZero(0.0)) continue;
         const Vec3 aside = way_aside(scene.world.gravity, body.velocity, way);
         for (const Vec3& corner : spread_out(corners, way)) subject.corners.push_back(corner + aside);
       }
     }
   }
+  add_scenery(scenery, subject.corners);
   if (subject.corners.empty())
     add(corners_of({Vec3::Constant(-1.0), Vec3::Constant(1.0)}, Pose()), subject.corners);
   subject.centre = middle_of(subject.corners);
-  subject.fall = find_fall(scene, plan, is_hung);
+  subject.fall = find_fall(scene, plan, scenery, is_hung);
   if (subject.fall) {
     const Framing framing{scene.camera.up, scene.camera.fov, std::nullopt};
     const auto distance = [&](const std::vector<Vec3>& corners) {

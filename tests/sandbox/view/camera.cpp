@@ -122,6 +122,34 @@ TEST_CASE("what a camera without a place must see reaches down to where bodies w
   CHECK(centre(floor + ball + hook + joint) == Approx(2.1));  // it hangs
 }
 
+TEST_CASE("a camera without a place sees of great scenery what is about the things on it") {
+  const std::string cup =
+      "[[body]]\nname = \"cup\"\nkind = \"sphere\"\nradius = 0.05\nposition = [0, 0.85, 0]\n";
+  const auto on_table = [&](const std::string& length) {
+    return look_at(cup + "[[body]]\nname = \"table\"\nkind = \"box\"\nsize = [" + length +
+                   ", 0.05, 0.1]\nposition = [0, 0.775, 0]\nmotion = \"static\"\n");
+  };
+  const auto width = [](const Look& look) {
+    double most = 0.0;
+    for (const Vec3& p : look.subject.corners) most = std::max(most, std::abs(p.x()));
+    return most;
+  };
+  CHECK(width(on_table("0.16")) == Approx(0.08));
+  CHECK(width(on_table("4")) == Approx(0.15));
+  CHECK(width(look_at(cup + "motion = \"static\"\n")) == Approx(0.05));  // there is nothing else
+  const Look hit = look_at(cup +
+                           "[[body]]\nname = \"pole\"\nkind = \"box\"\nsize = [1, 1, 1]\nposition = [9, 1, "
+                           "0]\nmotion = \"static\"\n");
+  CHECK(width(hit) == Approx(0.05));
+  // What falls on it falls no further.
+  const Look falls = look_at("[[body]]\nkind = \"plane\"\n" + cup +
+                             "[[body]]\nname = \"table\"\nkind = \"box\"\nsize = [4, 0.05, 2]\n"
+                             "position = [0, 0.675, 0]\nmotion = \"static\"\n");
+  double lowest = 1.0;
+  for (const Vec3& p : falls.subject.corners) lowest = std::min(lowest, p.y());
+  CHECK(lowest == Approx(0.65));
+}
+
 TEST_CASE("a camera without a place sees where things are dropped, though nothing is there yet") {
   const Look look = look_at(
       "[[body]]\nkind = \"plane\"\n[[body]]\nname = \"egg\"\nkind = \"sphere\"\nradius = 0.1\n"
