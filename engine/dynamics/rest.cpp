@@ -180,6 +180,17 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
       if (moves) given = kAll;
     }
   }
+  // Who was woken alone, by a joint that opened or because what bore him is gone, has all that hang on him.
+  for (const Joint& joint : state.joints) {
+    const int ends[2] = {find_number(bodies, joint.body_a), find_number(bodies, joint.body_b)};
+    for (int k = 0; k < 2; ++k) {
+      if (ends[k] < 0 || ends[1 - k] < 0) continue;
+      const Body &one = bodies[static_cast<std::size_t>(ends[k])],
+                 &other = bodies[static_cast<std::size_t>(ends[1 - k])];
+      double& given = momentum[static_cast<std::size_t>(ends[k])];
+      if (!one.is_awake && other.is_dynamic() && other.is_awake) given = std::max(given, kItAlone);
+    }
+  }
   rouse(bodies, settings, state, std::move(momentum));
 }
 

@@ -310,6 +310,47 @@ TEST_CASE("a chain that a blow tears opens at one of its links, and another one 
   CHECK(std::count_if(rows.begin() + 6, rows.end(), is_open) == 0);
 }
 
+TEST_CASE("what sleeps on joints falls as a whole when what bears it is gone or opens") {
+  for (const bool is_removed : {true, false}) {
+    CAPTURE(is_removed);
+    world::World world = make_world(240);
+    const int steel = world.add_material(*material::find_preset("steel")).value();
+    const auto hook = add_brick(world, steel, Vec3(0, 3, 0), body::Motion::fixed);
+    body::BodyId last = hook;
+    for (int k = 0; k < 4; ++k) {
+      const auto id = add_brick(world, steel, Vec3(0, 2.9 - 0.1 * k, 0), body::Motion::dynamic);
+      world::JointDescription joint;
+      joint.body_a = last;
+      joint.body_b = id;
+      joint.form = world::PivotDescription{Vec3(0, 2.95 - 0.1 * k, 0), 1e-4};
+      joint.strength = joint.shear_strength = k == 0 ? 5e6 : 5e8;
+      REQUIRE(world.add_joint(joint));
+      last = id;
+    }
+    while (world.time() < 1.5) world.step();
+    for (const body::Body& body : world.bodies()) CHECK(body.is_awake == !body.is_dynamic());
+    if (is_removed) {
+      REQUIRE(world.remove_body(hook));
+    } else {
+      world::BodyDescription stone;  // it hits the uppermost of them from above
+      stone.form = world::SphereDescription{0.02};
+      stone.material = steel;
+      stone.pose.translation = Vec3(0.1, 2.96, 0);
+      stone.velocity = Vec3(0, -20, 0);
+      world.add_body(stone).value();
+    }
+    const double begin = world.time();
+    while (world.time() < begin + 0.3) world.step();
+    if (!is_removed) CHECK(world.report().joints.front().opened >= 0.0);
+    for (int k = 0; k < 4; ++k) {
+      const body::Body& link = world.bodies()[static_cast<std::size_t>(k + (is_removed ? 0 : 1))];
+      CAPTURE(k);
+      CHECK(link.is_awake);
+      CHECK(link.pose.translation.y() < 2.9 - 0.1 * k - 0.2);
+    }
+  }
+}
+
 TEST_CASE("what touches where it is hinged turns about that place freely") {
   world::World world = make_world(240, false);
   const int stone = world.add_material(*material::find_preset("brick")).value();
