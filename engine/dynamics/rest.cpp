@@ -180,7 +180,8 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
       if (moves) given = kAll;
     }
   }
-  // Who was woken alone, by a joint that opened or because what bore him is gone, has all that hang on him.
+  // Who was woken alone, by a joint that opened or because what bore him is gone, wakes all that hang on him,
+  // and so does a support that begins to move.
   for (const Joint& joint : state.joints) {
     const int ends[2] = {find_number(bodies, joint.body_a), find_number(bodies, joint.body_b)};
     for (int k = 0; k < 2; ++k) {
@@ -188,7 +189,8 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
       const Body &one = bodies[static_cast<std::size_t>(ends[k])],
                  &other = bodies[static_cast<std::size_t>(ends[1 - k])];
       double& given = momentum[static_cast<std::size_t>(ends[k])];
-      if (!one.is_awake && other.is_dynamic() && other.is_awake) given = std::max(given, kItAlone);
+      if (!one.is_awake && (other.is_driven() || (other.is_dynamic() && other.is_awake)))
+        given = std::max(given, kItAlone);
     }
   }
   rouse(bodies, settings, state, std::move(momentum));

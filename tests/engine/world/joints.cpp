@@ -351,6 +351,29 @@ TEST_CASE("what sleeps on joints falls as a whole when what bears it is gone or 
   }
 }
 
+TEST_CASE("what sleeps on a joint goes along when what bears it begins to move") {
+  world::World world = make_world(240);
+  const int steel = world.add_material(*material::find_preset("steel")).value();
+  world::BodyDescription arm;
+  arm.form = world::BoxDescription{Vec3(0.1, 0.1, 0.1)};
+  arm.material = steel;
+  arm.motion = body::Motion::scripted;
+  arm.pose.translation = Vec3(0, 2, 0);
+  arm.path =
+      world::PathDescription{{{1.5, Vec3(0, 2, 0), Vec3::Zero()}, {2.0, Vec3(0, 2.5, 0), Vec3::Zero()}}};
+  world::JointDescription joint;
+  joint.body_a = world.add_body(arm).value();
+  joint.body_b = add_brick(world, steel, Vec3(0, 1.8, 0), body::Motion::dynamic);
+  joint.form = world::PivotDescription{Vec3(0, 1.87, 0), 1e-4};
+  joint.strength = joint.shear_strength = 1e9;
+  REQUIRE(world.add_joint(joint));
+  while (world.time() < 1.4) world.step();
+  CHECK_FALSE(world.bodies()[1].is_awake);
+  while (world.time() < 2.0) world.step();
+  CHECK(world.bodies()[1].pose.translation.y() == Approx(2.3).margin(1e-2));
+  CHECK(world.report().joints.front().opened < 0.0);
+}
+
 TEST_CASE("what touches where it is hinged turns about that place freely") {
   world::World world = make_world(240, false);
   const int stone = world.add_material(*material::find_preset("brick")).value();
