@@ -22,14 +22,16 @@ bool is_partly_inside(const TriangleMesh& mesh, const TriangleMesh& other, doubl
     if (!distance) distance.emplace(other);
     return distance->find(p, least).triangle < 0;
   };
-  constexpr double kNearCorner = 0.9;
+  constexpr double kNearCorner = 0.9, kWithin = 2.0;
   constexpr std::size_t kMostAsked = 500;
   const std::size_t stride = mesh.triangles.size() / kMostAsked + 1;
   for (std::size_t k = 0; k < mesh.triangles.size(); k += stride) {
     const Triangle& t = mesh.triangles[k];
     const Vec3 &a = mesh.positions[at(t[0])], &b = mesh.positions[at(t[1])], &c = mesh.positions[at(t[2])];
     const Vec3 middle = (a + b + c) / 3.0;
-    if (is_inside(middle)) return true;
+    // Slightly within it: of what lies exactly in one place nothing else is.
+    if (is_inside(middle) || is_inside(middle - kWithin * least * (b - a).cross(c - a).normalized()))
+      return true;
     for (const Vec3& corner : {a, b, c})
       if (is_inside(middle + kNearCorner * (corner - middle))) return true;
   }

@@ -95,6 +95,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--report", options.report, "hashes and times of the frames in JSON")->type_name("FILE");
   command.add_option("--size", options.size, "picture size; as recorded without it")
       ->type_name("WIDTHxHEIGHT");
+  command.add_option("--set", options.changes, "another camera: its position, target, up and fov")
+      ->type_name("camera.key=value")
+      ->allow_extra_args(false);
   command.add_option("--quality", options.quality, "preview or full; as recorded without it")
       ->check(CLI::IsMember({"preview", "full"}));
   add_gl_option(command, options.gl);

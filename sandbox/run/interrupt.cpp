@@ -2,16 +2,28 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 
 namespace shatterbox::sandbox::run {
 
 namespace {
 
-std::atomic<bool> g_interrupted{false};  // without locks, so a signal handler may touch it
-static_assert(std::atomic<bool>::is_always_lock_free);
+constexpr std::int64_t kOnce = 500;  // ms: what sends one to a process and to its group sends one (timeout)
+
+std::atomic<std::int64_t> g_first{0};  // ms; 0: none came. Without locks, so a signal handler may touch it
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
+std::int64_t milliseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);  // a handler may
+  return now.tv_sec * 1000 + now.tv_nsec / 1000000 + 1;
+}
 
 extern "C" void on_interrupt(int signal) {
-  if (!g_interrupted.exchange(true)) return;
+  std::int64_t first = 0;
+  const std::int64_t now = milliseconds();
+  if (g_first.compare_exchange_strong(first, now) || now - first < kOnce) return;
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -37,7 +49,7 @@ void catch_interrupts() {
 }
 
 bool is_interrupted() {
-  return g_interrupted;
+  return g_first != 0;
 }
 
 }  // namespace shatterbox::sandbox::run

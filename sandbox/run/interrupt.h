@@ -1,4 +1,5 @@
-// Ctrl-C asks a run to end in order: the video is closed and plays. A second one ends the program at once.
+// Ctrl-C asks a run to end in order: the video is closed and plays. A second one, half a second later or more,
+// ends the program at once.
 #pragma once
 
 namespace shatterbox::sandbox::run {

@@ -16,6 +16,9 @@
 #include "sandbox/run/job.h"
 #include "sandbox/run/painter.h"
 #include "sandbox/run/progress.h"
+#include "sandbox/scene/overrides.h"
+#include "sandbox/scene/read_picture.h"
+#include "sandbox/view/to_glm.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -64,11 +67,57 @@ PainterSettings painter_settings(const RenderOptions& options, const recording::
   return settings;
 }
 
+/// An eye in place of the recorded one.
+struct Eye {
+  glm::vec3 position, target, up;
+  std::optional<float> fov;  // degrees; nothing: as recorded
+
+  void take_over(render::Camera& camera) const {
+    camera = {position, target, up, fov.value_or(camera.vertical_fov)};
+  }
+};
+
+/// Nothing if no other is asked for, or with problems.
+std::optional<Eye> read_eye(const std::vector<std::string>& changes, scene::Problems& problems) {
+  scene::TomlValue tree;
+  for (const std::string& change : changes) {
+    if (change.rfind("camera.", 0) == 0)
+      scene::apply_override(tree, change, problems);
+    else
+      scene::book(
+          problems, scene::Place{"--set " + change, 0, 0}, "of a recording the camera alone can be another",
+          "for example --set camera.position=[1,1,3] --set camera.target=[0,0,0]; else run the scene again");
+  }
+  const scene::TomlValue* table = tree.find("camera");
+  if (table == nullptr || !problems.empty()) return std::nullopt;
+  for (const auto& [key, value] : table->entries)
+    if (key != "position" && key != "target" && key != "up" && key != "fov")
+      scene::book(problems, value.place, "the camera of a recording has a position, target, up and fov alone",
+                  "leave " + key + " out, or run the scene again");
+  if (!problems.empty()) return std::nullopt;
+  scene::SceneDescription scene;
+  scene::read_camera(*table, scene, problems);
+  const scene::CameraEntry& camera = scene.camera;
+  if (problems.empty() && (!camera.position || !camera.target))
+    scene::book(problems, table->entries.front().value.place, "another camera needs a position and a target",
+                "for example --set camera.position=[1,1,3] --set camera.target=[0,0,0]");
+  if (!problems.empty()) return std::nullopt;
+  Eye eye{view::to_glm(*camera.position), view::to_glm(*camera.target), view::to_glm(camera.up),
+          std::nullopt};
+  if (table->find("fov") != nullptr) eye.fov = static_cast<float>(camera.fov);
+  return eye;
+}
+
 /// The frames from `first` to before `end`, all or until Ctrl-C. A sentence if it failed, else empty.
-std::string paint_frames(RecordingReader& reader, int first, int end, Painter& painter) {
+std::string paint_frames(RecordingReader& reader, int first, int end, const std::optional<Eye>& eye,
+                         Painter& painter) {
   Progress progress(end - first, stderr_is_terminal());
   for (int number = first; number < end && !is_interrupted(); ++number) {
-    if (!painter.add(reader.read(number), number)) return painter.error();
+    auto panels = reader.read(number);
+    for (std::vector<render::Frame>& samples : panels)
+      for (render::Frame& frame : samples)
+        if (eye) eye->take_over(frame.camera);
+    if (!painter.add(std::move(panels), number)) return painter.error();
     progress.show(painter.finished_frames(), fmt::format("frame {}", number));
   }
   return painter.finish() ? std::string() : painter.error();
@@ -164,13 +213,14 @@ int render_recording(const RenderOptions& options) {
   if (!reader) return refuse(problems);
   prepare(options, problems);
   const PainterSettings settings = painter_settings(options, reader->settings(), problems);
+  const std::optional<Eye> eye = read_eye(options.changes, problems);
   if (!problems.empty()) return refuse(problems);
   Painter painter(settings);
   if (!painter.opening_fault().empty()) {
     scene::book(problems, scene::Place{"-o", 0, 0}, painter.opening_fault());
     return refuse(problems);
   }
-  std::string fault = paint_frames(*reader, range.first, range.second, painter);
+  std::string fault = paint_frames(*reader, range.first, range.second, eye, painter);
   (void)painter.finish();
   const double seconds = core::milliseconds_since(start) / 1000.0;
   if (fault.empty() && !options.report.empty())

@@ -126,6 +126,30 @@ TEST_CASE("a recording is drawn in another size and quality as the run would hav
   }
 }
 
+TEST_CASE("a recording is seen from another place as the run would have been") {
+  const Folder folder;
+  std::string scene = kBreakingScene;
+  const std::size_t camera = scene.find("[camera]");
+  folder.write("pane.toml", scene.erase(camera, scene.find("[render]") - camera));  // no path
+  const std::string eye =
+      " --set camera.position=[0.5,0.4,0.9] --set camera.target=[0,0.1,0] --set camera.fov=40";
+  const std::string run = "run pane.toml --size 160x90 --seconds 0.15";
+  REQUIRE(program(folder, run + " --report r.json --record film.rec").status == 0);
+  REQUIRE(program(folder, run + eye + " --frames other --report other.json").status == 0);
+  const Outcome outcome = program(folder, "render film.rec --report drawn.json" + eye);
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(read_json(folder / "drawn.json")["frame_hashes"] == read_json(folder / "other.json")["frame_hashes"]);
+  for (const char* wrong : {"camera.position=[0,1,2]", "camera.fov=400", "camera.follow=pane", "pane.mass=3",
+                            "camera.position"}) {
+    const Outcome refused = program(folder, std::string("render film.rec --report no.json --set ") + wrong);
+    CAPTURE(wrong, refused.err);
+    CHECK(refused.status == 2);
+    CHECK(refused.err.find("--set") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "no.json"));
+  }
+}
+
 TEST_CASE("a recording does not depend on what else the run does nor on how it came about") {
   const Folder folder;
   folder.write("pane.toml", kBreakingScene);
