@@ -26,38 +26,68 @@ double remaining_seconds(const std::deque<std::pair<double, int>>& history, int 
   return (total - done) * (now - since.first) / (done - since.second);
 }
 
+Progress::Progress(int total, bool is_bar, std::chrono::milliseconds patience)
+    : total_(total),
+      is_bar_(is_bar),
+      patience_(patience),
+      start_(std::chrono::steady_clock::now()),
+      last_shown_(start_),
+      last_news_(start_),
+      watch_([this](const std::stop_token& stops) { wait_for_news(stops); }) {}
+
 Progress::Progress(int total, bool is_bar)
-    : total_(total), is_bar_(is_bar), start_(std::chrono::steady_clock::now()), last_shown_(start_) {}
+    : Progress(total, is_bar, is_bar ? std::chrono::seconds(2) : std::chrono::seconds(30)) {}
 
 Progress::~Progress() {
   clear();
 }
 
+void Progress::wait_for_news(const std::stop_token& stops) {
+  std::unique_lock lock(mutex_);
+  while (!wakes_.wait_until(lock, stops, last_shown_ + patience_, [&] { return stops.stop_requested(); })) {
+    const auto now = std::chrono::steady_clock::now();
+    if (stops.stop_requested() || is_over_) return;
+    if (now - last_shown_ < patience_) continue;
+    const double waited = std::chrono::duration<double>(now - last_news_).count();
+    say(now, "", fmt::format("{}{}nothing new for {:.0f} s", note_, note_.empty() ? "" : ", ", waited));
+  }
+}
+
 void Progress::show(int done, const std::string& note) {
   if (total_ <= 0) return;
+  const std::lock_guard lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - start_).count();
   if (history_.empty() || history_.back().second < done) history_.emplace_back(seconds, done);
+  last_news_ = now;
+  done_ = done;
+  note_ = note;
   const bool is_last = is_bar_ && done >= total_;
-  if (!is_last && now - last_shown_ < (is_bar_ ? std::chrono::milliseconds(100) : std::chrono::seconds(30)))
-    return;
-  last_shown_ = now;
+  if (!is_last && now - last_shown_ < (is_bar_ ? std::chrono::milliseconds(100) : patience_)) return;
   const double remaining = remaining_seconds(history_, total_);
-  const std::string left = remaining < 0.0 ? "" : fmt::format("  {:.0f} s left", remaining);
+  say(now, remaining < 0.0 ? "" : fmt::format("  {:.0f} s left", remaining), note);
+}
+
+void Progress::say(Time now, const std::string& left, const std::string& note) {
+  last_shown_ = now;
+  if (total_ <= 0 || is_over_) return;
+  const int percent = 100 * done_ / total_;
   if (is_bar_) {
     constexpr int kWidth = 30;
-    const int filled = kWidth * std::min(done, total_) / total_;
+    const int filled = kWidth * std::min(done_, total_) / total_;
     fmt::print(stderr, "\r\x1b[K[{}{}] {:3} %{}  {}", std::string(static_cast<std::size_t>(filled), '#'),
-               std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100 * done / total_, left, note);
+               std::string(static_cast<std::size_t>(kWidth - filled), '.'), percent, left, note);
   } else {
-    fmt::print(stderr, "{:3} % after {:.0f} s{}  {}\n", 100 * done / total_, seconds, left, note);
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    fmt::print(stderr, "{:3} % after {:.0f} s{}  {}\n", percent, seconds, left, note);
   }
   std::fflush(stderr);
 }
 
 void Progress::clear() {
-  if (is_bar_) fmt::print(stderr, "\r\x1b[K");
-  is_bar_ = false;
+  const std::lock_guard lock(mutex_);
+  if (is_bar_ && !is_over_) fmt::print(stderr, "\r\x1b[K");
+  is_over_ = true;
 }
 
 }  // namespace shatterbox::sandbox::run

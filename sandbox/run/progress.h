@@ -1,15 +1,20 @@
 // A progress bar on stderr with the time still needed; where stderr is no terminal a line every half a
-// minute.
+// minute. Both go on while one frame takes long.
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <deque>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace shatterbox::sandbox::run {
 
 class Progress {
  public:
+  /// `patience`: how long nothing is said at most.
+  Progress(int total, bool is_bar, std::chrono::milliseconds patience);
   Progress(int total, bool is_bar);
   ~Progress();
   Progress(const Progress&) = delete;
@@ -18,14 +23,27 @@ class Progress {
   /// `done` of the total are finished; `note` is shown behind.
   void show(int done, const std::string& note);
 
-  /// Removes the bar.
+  /// Removes the bar; nothing is said any more.
   void clear();
 
  private:
-  int total_;
-  bool is_bar_;
-  std::chrono::steady_clock::time_point start_, last_shown_;
+  using Time = std::chrono::steady_clock::time_point;
+
+  void wait_for_news(const std::stop_token& stops);
+  void say(Time now, const std::string& left, const std::string& note);
+
+  const int total_;
+  const bool is_bar_;
+  const std::chrono::milliseconds patience_;
+  const Time start_;
+  std::mutex mutex_;  // of all that follows
+  bool is_over_ = false;
+  Time last_shown_, last_news_;
+  int done_ = 0;
+  std::string note_;
   std::deque<std::pair<double, int>> history_;  // seconds since the start, done
+  std::condition_variable_any wakes_;
+  std::jthread watch_;  // the last: it ends before what it reads
 };
 
 /// Seconds still needed: from the rate of the last quarter of what is done, so that a run that has become

@@ -1,9 +1,52 @@
 // The time still needed, as the bar tells it.
 #include "sandbox/run/progress.h"
 
-#include <catch2/catch.hpp>
+#include <unistd.h>
 
-using shatterbox::sandbox::run::remaining_seconds;
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+using namespace shatterbox::sandbox::run;
+
+namespace {
+
+/// What is said on stderr while `talk` goes on.
+template <class Talk>
+std::string listen(const Talk& talk) {
+  char name[] = "/tmp/progress_XXXXXX";
+  const int file = mkstemp(name), usual = dup(STDERR_FILENO);
+  std::fflush(stderr);
+  dup2(file, STDERR_FILENO);
+  talk();
+  std::fflush(stderr);
+  dup2(usual, STDERR_FILENO);
+  close(usual);
+  close(file);
+  std::stringstream said;
+  said << std::ifstream(name).rdbuf();
+  std::remove(name);
+  return said.str();
+}
+
+}  // namespace
+
+TEST_CASE("a frame that takes long is told, and who is done says nothing any more") {
+  const std::string said = listen([] {
+    Progress progress(4, false, std::chrono::milliseconds(20));
+    progress.show(1, "0.25 s");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    progress.clear();
+    std::fprintf(stderr, "over\n");
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  });
+  INFO(said);
+  CHECK(said.find(" 25 % after 0 s  0.25 s, nothing new for 0 s\n") != std::string::npos);
+  CHECK(said.substr(said.size() - 5) == "over\n");
+  CHECK(listen([] { Progress(4, false).show(1, "quick"); }).empty());
+}
 
 TEST_CASE("a steady run says what is left") {
   std::deque<std::pair<double, int>> history;
