@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -77,6 +78,15 @@ void finish(Row& row, int status) {
   (void)report::write_text((row.folder / "done.json").string(), done.dump(1) + "\n");
 }
 
+/// The first lines of a log, which say what is wrong with a run's words or scene.
+std::string first_lines(const fs::path& log) {
+  constexpr int kMost = 4;
+  std::istringstream text(report::read_text(log.string()));
+  std::string lines, line;
+  for (int k = 0; k < kMost && std::getline(text, line); ++k) lines += "    " + line + "\n";
+  return lines;
+}
+
 /// Runs what is not done, `jobs` at a time, in the order of the table.
 void run_rows(std::vector<Row>& rows, int jobs, bool resumes) {
   std::map<pid_t, Row*> running;
@@ -107,6 +117,7 @@ void run_rows(std::vector<Row>& rows, int jobs, bool resumes) {
                  row.status == kDone ? ""
                                      : fmt::format(" ended with status {}: see {}", row.status,
                                                    (row.folder / "log.txt").string()));
+      if (row.status == kBadInput) fmt::print(stderr, "{}", first_lines(row.folder / "log.txt"));
       child = running.erase(child);
     }
     if (!running.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -113,6 +113,16 @@ TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
   CHECK(program(folder, "batch good.toml -o good.toml").status == 2);
 }
 
+TEST_CASE("a batch says what is wrong with its words, and with which") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const Outcome outcome = program(folder, "batch good.toml --sweep scene.secnds=1,2 -o out");
+  INFO(outcome.err);
+  CHECK(outcome.status != 0);
+  CHECK(outcome.err.find("--set scene.secnds=1: ") != std::string::npos);
+  CHECK(outcome.err.find("did you mean \"seconds\"?") != std::string::npos);
+}
+
 TEST_CASE("Ctrl-C ends a batch in order, and it goes on where it was") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
