@@ -279,6 +279,55 @@ bool can_foretell(const scene::SceneDescription& scene) {
   });
 }
 
+/// How far a point is from the nearest of the bodies that a joint's partner means.
+struct Reach {
+  double distance = 1e300;  // m, from its centre
+  double radii = 1e300;     // the same, of the ball about it
+};
+
+Reach find_reach(const Vec3& point, const scene::JointPartner& partner, const scene::BuiltScene& built) {
+  Reach nearest;
+  for (const Body& body : built.world.bodies()) {
+    const scene::Origin& origin = built.origins.at(body.id);
+    if (origin.entry != partner.body || (partner.copy >= 0 && origin.copy != partner.copy)) continue;
+    if (body.shape->kind == ShapeKind::plane) return {0.0, 0.0};
+    const double distance = (body.pose.translation - point).norm();
+    const double radii = distance / body.shape->bounding_radius;
+    if (radii < nearest.radii) nearest = {distance, radii};
+  }
+  return nearest;
+}
+
+void doubt_joints(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                  scene::Problems& doubts) {
+  constexpr double kFar = 4.0;  // radii of either body
+  for (const scene::JointEntry& joint : scene.joints) {
+    const auto* pivot = std::get_if<world::PivotDescription>(&joint.form);
+    if (pivot == nullptr || joint.is_chain || joint.partners.size() != 2) continue;
+    const Reach first = find_reach(pivot->point, joint.partners[0], built),
+                second = find_reach(pivot->point, joint.partners[1], built);
+    const double radii = std::min(first.radii, second.radii);
+    if (radii <= kFar || radii >= 1e300) continue;
+    const auto name = [&](std::size_t k) {
+      return scene.bodies[static_cast<std::size_t>(joint.partners[k].body)].name;
+    };
+    scene::book(doubts, joint.place,
+                fmt::format("joint \"{}\" is far from both: {:.3g} m from \"{}\" and {:.3g} m from \"{}\"",
+                            joint.name, first.distance, name(0), second.distance, name(1)),
+                "at is a point of the world, mostly on one of them or between them");
+  }
+}
+
+void doubt_waiting(const scene::SceneDescription& scene, scene::Problems& doubts) {
+  if (std::any_of(scene.bodies.begin(), scene.bodies.end(), scene::can_break)) return;
+  for (const scene::EventEntry& event : scene.events)
+    if (event.when == scene::When::first_break)
+      scene::book(
+          doubts, event.place,
+          fmt::format("event \"{}\" waits for the first break, and nothing here can break", event.name),
+          "shells and solids can: kind = \"shell\" or \"solid\"; or give it a time, at = 0.5");
+}
+
 void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                   scene::Problems& doubts) {
   if (!can_foretell(scene)) return;
@@ -321,6 +370,8 @@ scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::B
   doubt_room(scene, built, doubts);
   doubt_tables(scene, built, doubts);
   doubt_camera(scene, built, doubts);
+  doubt_joints(scene, built, doubts);
+  doubt_waiting(scene, doubts);
   doubt_throws(scene, built, doubts);
   return doubts;
 }

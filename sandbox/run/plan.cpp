@@ -142,7 +142,7 @@ void tell_expectation(const Job& job, const Measured& measured, const std::vecto
   if (const double breaks = cost_of_breaks(foreseen); breaks > 0.0)
     fmt::print(
         "    breaks            {:.1f} s more for the first {:g} s of those foreseen, each copy as the one "
-        "tried\n",
+        "tried; what breaks later, by others or among pieces, comes on top\n",
         1e-3 * breaks, kAftermath);
 }
 

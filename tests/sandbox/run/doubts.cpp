@@ -33,6 +33,25 @@ TEST_CASE("a shell that is nearly as thick as wide is doubted") {
   CHECK(doubts_of(bowl + "0.003\n").empty());
 }
 
+TEST_CASE(
+    "a joint far from both whom it holds is doubted, and what waits for a break where nothing can break") {
+  const std::string crate = kCrate;
+  const std::string hook =
+      "[[body]]\nname = \"hook\"\nkind = \"sphere\"\nradius = 0.05\nposition = [0, 1, 0]\nmotion = "
+      "\"static\"\n";
+  const std::string joint =
+      "[[joint]]\nname = \"rope\"\nkind = \"point\"\nbetween = [\"crate\", \"hook\"]\nat = ";
+  CHECK(doubts_of(crate + hook + joint + "[0, 0.95, 0]\n").empty());
+  CHECK(doubts_of(crate + hook + joint + "[0, 0.6, 0]\n").empty());  // on an arm that is not seen
+  CHECK(has(doubts_of(crate + hook + joint + "[50, 0, 0]\n"),
+            "joint \"rope\" is far from both: 50 m from \"crate\" and 50 m from \"hook\""));
+  const std::string waits =
+      "[[event]]\nname = \"slow\"\nwhen = \"first break\"\ndo = \"speed\"\nfactor = 0.1\n";
+  CHECK(
+      has(doubts_of(crate + waits), "event \"slow\" waits for the first break, and nothing here can break"));
+  CHECK(doubts_of("[[body]]\nname = \"cup\"\nshape = \"bowl\"\n" + waits).empty());
+}
+
 TEST_CASE("the paper's criterion says that what yields gets neither dents nor holes") {
   const std::string slab =
       "[[body]]\nname = \"slab\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.2, 0.02]\n"
