@@ -86,7 +86,8 @@ void check_point(TableReader& reader, JointEntry& joint, const SceneDescription&
                        "add at = [0, 1, 0]: the point that both bodies share, where they stand at the start");
   auto& pivot = std::get<world::PivotDescription>(joint.form);
   pivot.point = reader.vector("at", coordinate()).value_or(pivot.point);
-  if (reader.value("between") == nullptr) return;
+  const TomlValue* between = reader.value("between");
+  if (between == nullptr || between->items.size() > joint.partners.size()) return;  // told already
   if (joint.partners.size() == 2 && is_one(joint.partners[0]) && is_one(joint.partners[1])) return;
   reader.add_problem_at("between", fmt::format("{} holds a point of two bodies", reader.what()),
                         "name two, a copy as in \"bead[2]\"; or one that has copies: each holds the next");

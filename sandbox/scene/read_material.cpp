@@ -38,7 +38,7 @@ MaterialEntry starting_point(TableReader& reader, const std::string& name, const
       entry.preset = *like;
       entry.material = *preset;
     } else {
-      reader.add_problem_at("like", fmt::format("there is no material \"{}\" to be like", *like),
+      reader.add_problem_at("like", fmt::format("there is no material \"{}\" above to be like", *like),
                             hint_for_name(*like, material_names(scene), "materials"));
     }
     return entry;
