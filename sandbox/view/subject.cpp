@@ -33,39 +33,36 @@ bool is_scenery(const scene::BodyEntry& body) {
   return body.motion == body::Motion::fixed && !body.path && !scene::can_break(body);
 }
 
-std::vector<Corners> find_scenery(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
-  std::vector<Corners> scenery;
+// A box in axes of which the second goes down.
+geometry::Box upright(const Corners& corners, const Vec3& down) {
+  const Vec3 aside = down.unitOrthogonal(), across = down.cross(aside);
+  geometry::Box box;
+  for (const Vec3& p : corners) box.include(Vec3(p.dot(aside), p.dot(down), p.dot(across)));
+  return box;
+}
+
+struct Scenery {
+  std::vector<Corners> corners;
+  std::vector<geometry::Box> upright;  // of each; none if nothing pulls
+};
+
+Scenery find_scenery(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
+  Scenery scenery;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodyEntry& body = scene.bodies[i];
     if (body.is_held_back || plan.bodies[i].bounding_radius <= 0.0 || !is_scenery(body)) continue;
     for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i))
-      scenery.push_back(corners_of(plan.bodies[i].box, pose));
+      scenery.corners.push_back(corners_of(plan.bodies[i].box, pose));
   }
+  if (scene.world.gravity.isZero(0.0)) return scenery;
+  for (const Corners& corners : scenery.corners)
+    scenery.upright.push_back(upright(corners, scene.world.gravity.normalized()));
   return scenery;
-}
-
-// How far `above` may go down before its box, upright, is on that of `below`; the most there is if it is not
-// above it.
-double room_above(const Corners& below, const Corners& above, const Vec3& down) {
-  constexpr double kNone = std::numeric_limits<double>::max();
-  const Vec3 aside = down.unitOrthogonal();
-  const auto upright = [&](const Corners& corners) {
-    geometry::Box box;
-    for (const Vec3& p : corners) box.include(Vec3(p.dot(aside), p.dot(down), p.dot(down.cross(aside))));
-    return box;
-  };
-  const geometry::Box from = upright(above), to = upright(below);
-  const double way = to.low.y() - from.high.y();
-  if (way < 0.0) return kNone;
-  geometry::Box passed = from;
-  passed.high.y() = to.low.y();
-  return geometry::overlaps(passed, to) ? way : kNone;
 }
 
 // The way that what has these corners would fall to the nearest plane below it that is at most `kSteepest`
 // steep, or to scenery; none if there is none, or if nothing pulls.
-Vec3 way_down(const scene::SceneDescription& scene, const std::vector<Corners>& scenery,
-              const Corners& corners) {
+Vec3 way_down(const scene::SceneDescription& scene, const Scenery& scenery, const Corners& corners) {
   constexpr double kSteepest = 0.7;  // cosine of the angle between gravity and the plane's normal
   const Vec3& gravity = scene.world.gravity;
   double nearest = std::numeric_limits<double>::max();
@@ -78,9 +75,14 @@ Vec3 way_down(const scene::SceneDescription& scene, const std::vector<Corners>& 
     for (const Vec3& corner : corners) way = std::min(way, normal.dot(corner - entry.position) / sinking);
     if (way > 0.0) nearest = std::min(nearest, way);
   }
-  const double pull = gravity.norm();
-  for (const Corners& below : scenery) {
-    if (pull > 0.0) nearest = std::min(nearest, room_above(below, corners, gravity / pull) / pull);
+  if (!scenery.upright.empty()) {
+    const geometry::Box from = upright(corners, gravity.normalized());
+    for (const geometry::Box& below : scenery.upright) {
+      const double way = below.low.y() - from.high.y();
+      geometry::Box passed = from;
+      passed.high.y() = below.low.y();
+      if (way >= 0.0 && geometry::overlaps(passed, below)) nearest = std::min(nearest, way / gravity.norm());
+    }
   }
   return nearest < std::numeric_limits<double>::max() ? Vec3(nearest * gravity) : Vec3(Vec3::Zero());
 }
@@ -115,16 +117,16 @@ void add(const Corners& corners, std::vector<Vec3>& all) {
 
 // Of scenery what is about the others, so that a cup on a long table is not lost on it; all of it if there
 // are no others.
-void add_scenery(const std::vector<Corners>& scenery, std::vector<Vec3>& points) {
+void add_scenery(const Scenery& scenery, std::vector<Vec3>& points) {
   if (points.empty()) {
-    for (const Corners& corners : scenery) add(corners, points);
+    for (const Corners& corners : scenery.corners) add(corners, points);
     return;
   }
   geometry::Box about;
   for (const Vec3& p : points) about.include(p);
   const Vec3 room = Vec3::Constant(kRoomForScenery * (about.high - about.low).maxCoeff());
   about = {about.low - room, about.high + room};
-  for (const Corners& corners : scenery) {
+  for (const Corners& corners : scenery.corners) {
     geometry::Box box;
     for (const Vec3& corner : corners) box.include(corner);
     if (!geometry::overlaps(box, about)) continue;
@@ -175,7 +177,7 @@ std::vector<char> find_hung(const scene::SceneDescription& scene) {
 // The fall of all that moves, if all that happens is that it falls and is thrown at: nothing follows a path,
 // or comes in later.
 std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene::ScenePlan& plan,
-                              const std::vector<Corners>& scenery, const std::vector<char>& is_hung) {
+                              const Scenery& scenery, const std::vector<char>& is_hung) {
   constexpr double kSideways = 0.5;  // m/s
   Fall fall;
   fall.acceleration = scene.world.gravity.norm();
@@ -214,7 +216,7 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
 Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
   Subject subject;
   const std::vector<char> is_hung = find_hung(scene);
-  const std::vector<Corners> scenery = find_scenery(scene, plan);
+  const Scenery scenery = find_scenery(scene, plan);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodyEntry& body = scene.bodies[i];
     const scene::BodyPlan& planned = plan.bodies[i];

@@ -141,6 +141,7 @@ TEST_CASE("a camera without a place sees of great scenery what is about the thin
                            "[[body]]\nname = \"pole\"\nkind = \"box\"\nsize = [1, 1, 1]\nposition = [9, 1, "
                            "0]\nmotion = \"static\"\n");
   CHECK(width(hit) == Approx(0.05));
+  CHECK(hit.subject.centre.y() == Approx(0.85));  // nothing is below it
   // What falls on it falls no further.
   const Look falls = look_at("[[body]]\nkind = \"plane\"\n" + cup +
                              "[[body]]\nname = \"table\"\nkind = \"box\"\nsize = [4, 0.05, 2]\n"
