@@ -1,6 +1,6 @@
 // What is seen at each sample: normal (octahedral), row of paint, place in the pattern and scalar, packed in 16 bytes.
 // As little work as can be: small triangles run this for whole blocks of pixels.
-// BEHIND draws the nearest face behind the nearest one.
+// BEHIND draws, of what lies behind the faces that were drawn before, the nearest.
 in vec3 normal_world;
 in vec4 pattern_scalar;
 flat in uint paint;

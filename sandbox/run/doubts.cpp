@@ -279,20 +279,25 @@ bool can_foretell(const scene::SceneDescription& scene) {
   });
 }
 
+/// Bodies by the number of their entry.
+using BodiesOf = std::map<int, std::vector<const Body*>>;
+
 /// How far a point is from the nearest of the bodies that a joint's partner means.
 struct Reach {
   double distance = 1e300;  // m, from its centre
   double radii = 1e300;     // the same, of the ball about it
 };
 
-Reach find_reach(const Vec3& point, const scene::JointPartner& partner, const scene::BuiltScene& built) {
+Reach find_reach(const Vec3& point, const scene::JointPartner& partner, const scene::BuiltScene& built,
+                 const BodiesOf& bodies_of) {
   Reach nearest;
-  for (const Body& body : built.world.bodies()) {
-    const scene::Origin& origin = built.origins.at(body.id);
-    if (origin.entry != partner.body || (partner.copy >= 0 && origin.copy != partner.copy)) continue;
-    if (body.shape->kind == ShapeKind::plane) return {0.0, 0.0};
-    const double distance = (body.pose.translation - point).norm();
-    const double radii = distance / body.shape->bounding_radius;
+  const auto bodies = bodies_of.find(partner.body);
+  if (bodies == bodies_of.end()) return nearest;  // they come in later
+  for (const Body* body : bodies->second) {
+    if (partner.copy >= 0 && built.origins.at(body->id).copy != partner.copy) continue;
+    if (body->shape->kind == ShapeKind::plane) return {0.0, 0.0};
+    const double distance = (body->pose.translation - point).norm();
+    const double radii = distance / body->shape->bounding_radius;
     if (radii < nearest.radii) nearest = {distance, radii};
   }
   return nearest;
@@ -301,11 +306,14 @@ Reach find_reach(const Vec3& point, const scene::JointPartner& partner, const sc
 void doubt_joints(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                   scene::Problems& doubts) {
   constexpr double kFar = 4.0;  // radii of either body
+  if (scene.joints.empty()) return;
+  BodiesOf bodies_of;
+  for (const Body& body : built.world.bodies()) bodies_of[built.origins.at(body.id).entry].push_back(&body);
   for (const scene::JointEntry& joint : scene.joints) {
     const auto* pivot = std::get_if<world::PivotDescription>(&joint.form);
     if (pivot == nullptr || joint.is_chain || joint.partners.size() != 2) continue;
-    const Reach first = find_reach(pivot->point, joint.partners[0], built),
-                second = find_reach(pivot->point, joint.partners[1], built);
+    const Reach first = find_reach(pivot->point, joint.partners[0], built, bodies_of),
+                second = find_reach(pivot->point, joint.partners[1], built, bodies_of);
     const double radii = std::min(first.radii, second.radii);
     if (radii <= kFar || radii >= 1e300) continue;
     const auto name = [&](std::size_t k) {

@@ -67,6 +67,9 @@ PainterSettings painter_settings(const RenderOptions& options, const recording::
   return settings;
 }
 
+constexpr const char* kOtherEye =
+    "for example --set camera.position=[1,1,3] --set camera.target=[0,0,0]; else run the scene again";
+
 /// An eye in place of the recorded one.
 struct Eye {
   glm::vec3 position, target, up;
@@ -84,9 +87,8 @@ std::optional<Eye> read_eye(const std::vector<std::string>& changes, scene::Prob
     if (change.rfind("camera.", 0) == 0)
       scene::apply_override(tree, change, problems);
     else
-      scene::book(
-          problems, scene::Place{"--set " + change, 0, 0}, "of a recording the camera alone can be another",
-          "for example --set camera.position=[1,1,3] --set camera.target=[0,0,0]; else run the scene again");
+      scene::book(problems, scene::Place{"--set " + change, 0, 0},
+                  "of a recording the camera alone can be another", kOtherEye);
   }
   const scene::TomlValue* table = tree.find("camera");
   if (table == nullptr || !problems.empty()) return std::nullopt;
@@ -100,7 +102,7 @@ std::optional<Eye> read_eye(const std::vector<std::string>& changes, scene::Prob
   const scene::CameraEntry& camera = scene.camera;
   if (problems.empty() && (!camera.position || !camera.target))
     scene::book(problems, table->entries.front().value.place, "another camera needs a position and a target",
-                "for example --set camera.position=[1,1,3] --set camera.target=[0,0,0]");
+                kOtherEye);
   if (!problems.empty()) return std::nullopt;
   Eye eye{view::to_glm(*camera.position), view::to_glm(*camera.target), view::to_glm(camera.up),
           std::nullopt};

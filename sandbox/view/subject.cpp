@@ -28,9 +28,9 @@ Corners corners_of(const geometry::Box& box, const Pose& pose) {
   return corners;
 }
 
-// What neither moves nor breaks.
+// What neither moves nor breaks, nor comes in later.
 bool is_scenery(const scene::BodyEntry& body) {
-  return body.motion == body::Motion::fixed && !body.path && !scene::can_break(body);
+  return body.motion == body::Motion::fixed && !body.is_held_back && !scene::can_break(body);
 }
 
 // A box in axes of which the second goes down.
@@ -50,7 +50,7 @@ Scenery find_scenery(const scene::SceneDescription& scene, const scene::ScenePla
   Scenery scenery;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodyEntry& body = scene.bodies[i];
-    if (body.is_held_back || plan.bodies[i].bounding_radius <= 0.0 || !is_scenery(body)) continue;
+    if (plan.bodies[i].bounding_radius <= 0.0 || !is_scenery(body)) continue;
     for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i))
       scenery.corners.push_back(corners_of(plan.bodies[i].box, pose));
   }
