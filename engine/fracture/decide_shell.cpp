@@ -10,6 +10,7 @@
 #include "engine/fracture/crushed_core.h"
 #include "engine/fracture/dice.h"
 #include "engine/fracture/impact_force.h"
+#include "engine/fracture/shell_dent.h"
 #include "engine/fracture/shell_subject.h"
 #include "engine/fracture/split_shell.h"
 #include "engine/material/tempering.h"
@@ -55,10 +56,13 @@ class Decider {
     verdict.duration = force_.duration();
     verdict.force = force_.hardest().first_force;
     mesh_ = subject_.mesh;
-    if (is_overloaded()) {
+    const bool is_over = is_overloaded();
+    note_struck();
+    if (is_over) {
       force_.complete(decision_);
       run_generations();
     }
+    take_dent();
     return std::move(decision_);
   }
 
@@ -96,6 +100,23 @@ class Decider {
     decision_.verdict.outcome = Outcome::held;
     decision_.tips = subject_.tips;
     return false;
+  }
+
+  /// What a dent comes of, before anything cracks.
+  void note_struck() {
+    if (!(subject_.material.yield > 0.0)) return;
+    struck_displacement_ = force_.struck_displacement(decision_);
+    struck_energy_ = {force_.struck_energy(), force_.lost_energy()};
+  }
+
+  /// What tears does not keep the shape in which it tore.
+  void take_dent() {
+    if (struck_displacement_.size() == 0) return;
+    if (decision_.verdict.outcome != Outcome::held) struck_energy_.most = 0.0;
+    ShellYieldFinding finding = find_yield(subject_, struck_displacement_, struck_energy_);
+    decision_.verdict.von_mises = finding.stress;
+    decision_.verdict.yield = subject_.material.yield;
+    decision_.dent = std::move(finding.dent);
   }
 
   /// Flaws under more stress than they bear; and, for the verdict, the worst of all.
@@ -303,7 +324,7 @@ class Decider {
     const auto start = Clock::now();
     if (const double die_area = material::die_area(subject_.material, subject_.thickness); die_area > 0.0)
       dice(die_area);
-    else if (settings_.core_spacing > 0.0)
+    else if (settings_.core_spacing > 0.0 && !(subject_.material.yield > 0.0))
       crush();
     if (subject_.grains && !subject_.grains->is_empty()) assign_grains();
     decision_.mesh = mesh_;
@@ -342,6 +363,8 @@ class Decider {
   std::vector<stress::CellStress> stresses_;         // their means
   std::vector<int> pieces_;                          // that its cells are in
   std::vector<Candidate> candidates_;
+  VecX struck_displacement_;  // |dof| of the uncracked mesh; of what yields
+  DentEnergy struck_energy_;
   int next_crack_ = 0;
 };
 

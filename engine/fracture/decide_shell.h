@@ -51,6 +51,8 @@ struct ShellSubject {
   std::uint64_t seed = 1;
 };
 
+struct ShellDent;
+
 /// One straight stretch of a crack in one cell.
 struct CrackSegment {
   int crack = 0;
@@ -65,6 +67,7 @@ struct Decision : DecisionFigures {
   std::vector<geometry::CellContact> contacts;      // of its cells
   std::vector<CrackTip> tips;                       // that stopped inside the material
   std::vector<CrackSegment> segments;
+  std::shared_ptr<const ShellDent> dent;  // of what holds; null: none
   int core_cells = 0;
   int dice = 0;            // into which stored stress broke it; what is stored is spent then
   double factor_ms = 0.0;  // wall time; enters no state

@@ -126,14 +126,15 @@ FlawField draw_flaws(const geometry::ShellElements& elements, const material::Ma
   const double per_area = std::min(kFlawsPerArea, kMostFlaws * material.flaw_area / rounded);
   const double exponent = 1.0 / material.weibull_modulus;
   FlawField field;
-  field.greatest_strength = material.strength * core::pow(per_area, exponent);
+  const double strength = material::failure_stress(material);
+  field.greatest_strength = strength * core::pow(per_area, exponent);
   const std::vector<SurfacePoint> points = scatter_on_surface(elements, per_area / material.flaw_area, seed);
   field.flaws.reserve(points.size());
   for (const SurfacePoint& point : points) {
     core::Random random(point.key, 2);
     const double level =
         (random.uniform() + 0x1.0p-54) * per_area;  // flaws to a flaw_area that are weaker than this one
-    field.flaws.push_back({point.element, point.barycentric, material.strength * core::pow(level, exponent)});
+    field.flaws.push_back({point.element, point.barycentric, strength * core::pow(level, exponent)});
   }
   field.first_of_element.assign(elements.mesh.triangles.size() + 1, 0);
   for (const Flaw& flaw : field.flaws) ++field.first_of_element[at(flaw.element) + 1];

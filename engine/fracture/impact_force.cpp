@@ -126,11 +126,13 @@ std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
                           stress::bending_bound(subject_.thickness, width, figures.reach, contact_force);
   const double energy = root_energy * root_energy;
   const double per_root_area = stress::stress_bound(properties_of(subject_), 1.0, energy);
+  // Of two stresses von Mises' is at most sqrt(3) times the greater.
+  const double flow = subject_.material.yield > 0.0 ? subject_.material.yield / core::sqrt(3.0) : 1e300;
   Bound worst;
   for (Size c = 0; c < subject_.mesh->cells.size(); ++c) {
     const double area = figures.stressed_areas[c];
     if (!(area > 0.0)) return std::nullopt;
-    const double strength = borne_by(c);
+    const double strength = std::min(borne_by(c), flow);
     const double stress = per_root_area / core::sqrt(area) + constant;
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
@@ -230,6 +232,43 @@ bool ImpactForce::solve_together(const geometry::ShellMesh& mesh, Decision& deci
   }
   decision.solve_ms += milliseconds_since(start);
   return is_solved;
+}
+
+VecX ImpactForce::struck_displacement(Decision& decision) {
+  const bool has_rest = std::any_of(presses_.begin(), presses_.end(),
+                                    [](const Press& press) { return press.load->is_resting; });
+  if (!has_rest && !is_spinning()) return displacement_;
+  const auto start = Clock::now();
+  VecX load = VecX::Zero(displacement_.size());
+  for (Size i = 0; i < presses_.size(); ++i)
+    if (!presses_[i].load->is_resting) load += presses_[i].force * answers_[i].load;
+  stress::ShellSolution solution;
+  std::string problem;
+  if (load.isZero(0.0) || !solve(load, solution, problem)) return VecX::Zero(displacement_.size());
+  decision.solve_ms += milliseconds_since(start);
+  return std::move(solution.displacement);
+}
+
+double ImpactForce::energy_of(Size i) const {
+  const Press& press = presses_[i];
+  if (press.load->is_resting) return 0.0;
+  return is_collision(*press.load) ? collision_energy(*press.load)
+                                   : 0.5 * press.force * press.force * answers_[i].elastic_compliance;
+}
+
+double ImpactForce::struck_energy() const {
+  double sum = 0.0;
+  for (Size i = 0; i < presses_.size(); ++i) sum += energy_of(i);
+  return sum;
+}
+
+double ImpactForce::lost_energy() const {
+  double sum = 0.0;
+  for (Size i = 0; i < presses_.size(); ++i) {
+    const double restitution = presses_[i].load->restitution;
+    sum += (1.0 - restitution * restitution) * energy_of(i);
+  }
+  return sum;
 }
 
 /// A ball on a held body feels the body's inertia in its way; for free bodies it is in the effective mass.

@@ -53,6 +53,13 @@ class ImpactForce {
   /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads and the spin together.
   const VecX& displacement() const { return displacement_; }
 
+  /// That part of it which the collisions cause; zero if there is no answer. Before settle_again.
+  VecX struck_displacement(Decision& decision);
+  /// J that the collisions bring. Of loads that are none (a blast): what they leave in the springs.
+  double struck_energy() const;
+  /// J of that which restitution does not give back. Before settle_again.
+  double lost_energy() const;
+
   const std::vector<Press>& presses() const { return presses_; }
   const Press& hardest() const { return presses_[hardest_]; }
   double duration() const { return duration_; }  // s
@@ -69,6 +76,7 @@ class ImpactForce {
   bool use(const System& system, std::string& problem);
   bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);
   bool can_wait(std::size_t i) const;
+  double energy_of(std::size_t i) const;
   template <class IsWanted>
   void answer(const IsWanted& is_wanted, Decision& decision);
   void answer_others(std::size_t lead, Decision& decision);

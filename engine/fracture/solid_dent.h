@@ -7,18 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "engine/fracture/dent.h"
 #include "engine/fracture/solid_model.h"
 #include "engine/material/material.h"
 
 namespace shatterbox::fracture {
 
-struct SolidDent {
+struct SolidDent : DentFigures {
   std::shared_ptr<const SolidModel> model;
   VecX displacement;        // |dof|, m, to first order; a free solid's without rigid motion
   std::vector<Vec3> moves;  // |vertices of the element mesh|, m: where it leaves them
-  double work = 0.0;        // J, of plastic flow
-  double flowed = 0.0;      // m3
-  bool is_cut = false;      // elements would have been crushed by all of it, or all have swollen
 };
 
 /// What dents of one solid have left of its elements so far. All of them are told from the shape before.
@@ -34,13 +32,6 @@ std::vector<Vec3> moves_of_share(const SolidDent& dent, double share, const Left
 
 /// Adds what `moves_of_share` gave.
 void leave(const SolidDent& dent, double share, const std::vector<Vec3>& moves, LeftDents& left);
-
-/// What an impact brings for it.
-struct DentEnergy {
-  double all = 0.0;   // J: what of it the linear stress at its peak does not hold (it is in the contact, and
-                      // in motion that is still to be stopped) flows in the same share, where the rest does
-  double most = 0.0;  // J, that is not given back; flow beyond is scaled down
-};
 
 /// What an impact's linear displacement at its peak (|dof|, m, of the collisions alone) means for the shape.
 struct YieldFinding {

@@ -179,9 +179,7 @@ std::vector<Preset> make_presets() {
   return {
       {aluminium,
        "Aluminium alloy EN AW-6082 T6: density, E, nu, tensile strength 290 MPa, proof strength 250 MPa and "
-       "elongation 8 % by [EN1999] (extruded, up to 5 mm); K_Ic near 29 MPa sqrt(m); shells of it break as "
-       "if "
-       "brittle"},
+       "elongation 8 % by [EN1999] (extruded, up to 5 mm); K_Ic near 29 MPa sqrt(m)"},
       {brick,
        "Fired clay brick: density 1600 to 2000 kg/m3, bending strength 3 to 6 MPa, E 5 to 20 GPa as commonly "
        "reported for clay bricks, here mid-range; K_Ic near 0.8 MPa sqrt(m); Weibull modulus and flaw_area "
@@ -229,7 +227,7 @@ std::vector<Preset> make_presets() {
        "Structural steel S235: density, E, nu, tensile strength 360 MPa and yield strength 235 MPa by "
        "[EN1993], "
        "elongation 26 % by [EN10025]; fracture energy of the order of what tearing of mild steel takes, 100 "
-       "to 300 kJ/m2; shells of it break as if brittle"},
+       "to 300 kJ/m2"},
       {tempered_glass,
        "Thermally toughened float glass: as glass; 100 MPa of compression at the faces: [C1048] asks for at "
        "least 69, the 120 MPa characteristic bending strength of [EN12150] over the 45 of annealed glass for "

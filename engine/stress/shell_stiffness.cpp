@@ -130,7 +130,8 @@ Vec3 centroid_weights(const geometry::ShellMesh& mesh, const geometry::ShellCell
 }
 
 std::shared_ptr<const ShellStiffness> make_shell_stiffness(
-    std::shared_ptr<const geometry::ShellElements> elements, const ShellProperties& properties) {
+    std::shared_ptr<const geometry::ShellElements> elements, const ShellProperties& properties,
+    std::vector<int> vertex_rank) {
   auto result = std::make_shared<ShellStiffness>();
   result->elements = std::move(elements);
   result->properties = properties;
@@ -141,7 +142,7 @@ std::shared_ptr<const ShellStiffness> make_shell_stiffness(
   core::parallel_for(source.mesh.triangles.size(), 256, [&](Size element) {
     result->matrices[element] = make_element(source, static_cast<int>(element), properties, result->length);
   });
-  result->vertex_rank = rank_vertices(source);
+  result->vertex_rank = vertex_rank.empty() ? rank_vertices(source) : std::move(vertex_rank);
   return result;
 }
 

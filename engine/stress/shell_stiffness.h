@@ -52,9 +52,11 @@ struct ShellStiffness {
 };
 
 /// Computes all matrices and the order of elimination. Elements must have area; those without get a matrix of
-/// zeros.
+/// zeros. `vertex_rank`: of elements that hang together in the same way, whose order is known; empty: none
+/// is.
 std::shared_ptr<const ShellStiffness> make_shell_stiffness(
-    std::shared_ptr<const geometry::ShellElements> elements, const ShellProperties& properties);
+    std::shared_ptr<const geometry::ShellElements> elements, const ShellProperties& properties,
+    std::vector<int> vertex_rank = {});
 
 /// Place of the x displacement of a virtual vertex in a vector of all degrees of freedom; y and z follow.
 inline int vertex_dof(int vertex) {

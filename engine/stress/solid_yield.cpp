@@ -18,14 +18,12 @@ PlasticFlow find_plastic_flow(const SolidStiffness& stiffness, const geometry::S
     const double linear = von_mises(stresses[c]);
     held += std::max(0.0, mesh.cells[c].volume) * linear * linear / (6.0 * shear);
   }
-  const double gain = held > 0.0 ? std::max(1.0, law.energy / held) : 1.0;
+  const double gain = flow_gain(law, held);
   for (std::size_t c = 0; c < stresses.size(); ++c) {
     const double linear = von_mises(stresses[c]);
     flow.greatest_stress = std::max(flow.greatest_stress, linear);
     if (!(linear > law.yield)) continue;
-    const double over = linear / law.yield;
-    const double equivalent =
-        std::min(law.most_strain, gain * 0.5 * (over * over - 1.0) * law.yield / (3.0 * shear));
+    const double equivalent = flow_strain(law, linear, shear, gain);
     SolidStress deviator = stresses[c];
     deviator.head<3>().array() -= stresses[c].head<3>().sum() / 3.0;
     flow.strains[c] = 1.5 * equivalent / linear * deviator;

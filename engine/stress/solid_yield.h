@@ -1,19 +1,13 @@
 // What of a solid flows under a linear stress, and the shape that the flow leaves it in. The plastic strain
-// goes along the deviator of the stress (von Mises); how far, says the energy: where the linear stress is q
-// times the yield strength, flow at that strength takes up what of the linear energy is above it [MG81].
+// goes along the deviator of the stress (von Mises); how far, says yield_law.h.
 #pragma once
 
 #include <vector>
 
 #include "engine/stress/solid_stress.h"
+#include "engine/stress/yield_law.h"
 
 namespace shatterbox::stress {
-
-struct YieldLaw {
-  double yield = 0.0;        // Pa, von Mises
-  double most_strain = 0.0;  // plastic strain beyond which it would tear
-  double energy = 0.0;       // J of the impact: if the linear stress holds less, as much more flows
-};
 
 struct PlasticFlow {
   /// Per cell: xx, yy, zz, yz, zx, xy of the plastic strain (tensor, not engineering), without a trace.

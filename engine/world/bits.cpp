@@ -13,7 +13,7 @@ void add_to_hash(const ImpactMemory& memory, core::Hash& hash) {
   hash.add(as_word(memory.generation));
   for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
   for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);
-  for (const ComingDent& coming : memory.dents) hash.add(coming.dent->work);
+  for (const ComingDent& coming : memory.dents) hash.add(coming.figures().work);
 }
 
 void add_to_hash(const JointMemories& memories, core::Hash& hash) {

@@ -5,10 +5,8 @@
 #include <optional>
 
 #include "engine/core/index.h"
-#include "engine/geometry/solid_deform.h"
 #include "engine/world/acts.h"
-#include "engine/world/dent_room.h"
-#include "engine/world/forms.h"
+#include "engine/world/dented.h"
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
@@ -16,142 +14,12 @@ namespace {
 
 using core::at;
 
-constexpr double kDentFlatness = 0.25;  // of a kerf: what of a given triangle bends by less stays one
-constexpr double kRoomShare = 0.5;      // of the gap that contact keeps, that a dent leaves to others
-constexpr int kMostRooms = 4;           // times that a dent is cut to what is free
-constexpr double kRoomSlack = 0.9;      // of what was found free, then: the cut dent goes slightly elsewhere
+constexpr double kRoomShare = 0.5;  // of the gap that contact keeps, that a dent leaves to others
+constexpr int kMostRooms = 4;       // times that a dent is cut to what is free
+constexpr double kRoomSlack = 0.9;  // of what was found free, then: the cut dent goes slightly elsewhere
 constexpr double kLeastDentShare = 0.01;  // of a dent; less is none
 
-/// Places in elements, after these have moved.
-class Carrier {
- public:
-  Carrier(const geometry::TetMesh& from, const geometry::TetMesh& to) : from_(from), to_(to) {}
-
-  Vec3 carry(int element, const Vec3& place) const {
-    const Vec3 local = edge_matrix(from_, element).inverse() * (place - first(from_, element));
-    return first(to_, element) + edge_matrix(to_, element) * local;
-  }
-
- private:
-  static const Vec3& first(const geometry::TetMesh& mesh, int element) {
-    return mesh.positions[at(mesh.tetrahedra[at(element)][0])];
-  }
-  const geometry::TetMesh& from_;
-  const geometry::TetMesh& to_;
-};
-
-/// In which of the elements with cells a place is.
-class ElementFinder {
- public:
-  explicit ElementFinder(const geometry::SolidComplex& piece) : mesh_(piece.elements->mesh) {
-    for (const geometry::SolidPart& cell : piece.cells) elements_.push_back(cell.element);
-    std::sort(elements_.begin(), elements_.end());
-    elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
-    inverses_.resize(mesh_.tetrahedra.size());
-    for (const int e : elements_) inverses_[at(e)] = edge_matrix(mesh_, e).inverse();
-  }
-
-  /// `guess`, if the place is in it, or else the one in which it is most, or least outside.
-  int find(const Vec3& place, int guess) const {
-    if (depth(guess, place) > -kInside) return guess;
-    double deepest = -1e300;
-    for (const int e : elements_) {
-      const double d = depth(e, place);
-      if (d <= deepest) continue;
-      deepest = d;
-      guess = e;
-    }
-    return guess;
-  }
-
- private:
-  static constexpr double kInside = 1e-9;
-
-  /// The least barycentric coordinate.
-  double depth(int element, const Vec3& place) const {
-    const Vec3 b = inverses_[at(element)] * (place - mesh_.positions[at(mesh_.tetrahedra[at(element)][0])]);
-    return std::min(b.minCoeff(), 1.0 - b.sum());
-  }
-
-  const geometry::TetMesh& mesh_;
-  std::vector<int> elements_;
-  std::vector<Mat3> inverses_;  // of their edges, by element
-};
-
-std::shared_ptr<const fracture::SolidFlawField> carry_flaws(const fracture::SolidFlawField& flaws,
-                                                            const geometry::SolidComplex& piece,
-                                                            const Carrier& carrier) {
-  std::vector<char> has_cells(piece.elements->mesh.tetrahedra.size(), 0);
-  for (const geometry::SolidPart& cell : piece.cells) has_cells[at(cell.element)] = 1;
-  auto carried = std::make_shared<fracture::SolidFlawField>(flaws);
-  for (fracture::SolidFlaw& flaw : carried->flaws)
-    if (has_cells[at(flaw.element)] != 0) flaw.place = carrier.carry(flaw.element, flaw.place);
-  return carried;
-}
-
-std::vector<std::uint8_t> parts_of_tags(const std::vector<std::uint8_t>& parts,
-                                        const std::vector<int>& tag_sources) {
-  if (parts.empty()) return {};
-  std::vector<std::uint8_t> out;
-  for (const int source : tag_sources) out.push_back(parts[at(source)]);
-  return out;
-}
-
-/// A body as a dent leaves it.
-struct Dented {
-  std::shared_ptr<const Fragile> fragile;
-  std::shared_ptr<const body::Shape> shape;
-  Pose pose;
-  std::vector<Vec3> moves;     // |vertices of the element mesh|, m
-  double share = 0.0;          // of the whole dent
-  double depth = 0.0;          // m, of the surface
-  double volume_change = 0.0;  // relative
-};
-
-/// The solid in its new shape; the mass is what it was.
-std::shared_ptr<Fragile> dent_fragile(const Fragile& whole, double mass, geometry::DeformedSolid deformed,
-                                      std::shared_ptr<geometry::SolidComplex>& complex) {
-  auto fragile = std::make_shared<Fragile>(whole);
-  auto& subject = std::get<fracture::SolidSubject>(fragile->subject);
-  const geometry::SolidComplex& before = *subject.complex;
-  complex = std::make_shared<geometry::SolidComplex>(std::move(deformed.complex));
-  const Carrier carrier(before.elements->mesh, complex->elements->mesh);
-  fragile->density = mass / total_volume(*complex);
-  fragile->parts = parts_of_tags(whole.parts, deformed.tag_sources);
-  subject.material.density = fragile->density;
-  subject.flaws = carry_flaws(*subject.flaws, before, carrier);
-  const material::Material& material = subject.material;
-  subject.stiffness =
-      stress::make_solid_stiffness(complex->elements, {material.young, material.poisson, material.density});
-  subject.complex = complex;
-  subject.model = nullptr;
-  subject.kept_model = std::make_shared<fracture::KeptSolidModel>();
-  return fragile;
-}
-
-/// Where the vertices of the dented surface come from and go to, in the world.
-MovingSurface find_way(const body::Body& body, const geometry::SolidComplex& before, const Dented& dented,
-                       const geometry::SolidComplex& after) {
-  MovingSurface way;
-  const body::Shape& shape = *dented.shape;
-  way.triangles = shape.surface.triangles;
-  const Carrier back(after.elements->mesh, before.elements->mesh);
-  // A triangle reaches over several elements where these have stayed flat, and tells one of them.
-  std::vector<int> element_of(shape.surface.positions.size(), -1);
-  for (std::size_t t = way.triangles.size(); t-- > 0;)
-    for (const int v : way.triangles[t]) element_of[at(v)] = shape.triangle_elements[t];
-  const ElementFinder finder(after);
-  for (std::size_t v = 0; v < element_of.size(); ++v) {
-    const Vec3& here = shape.surface.positions[v];
-    const Vec3 place = here + shape.material_from_body;
-    const Vec3 was = back.carry(finder.find(place, element_of[v]), place);
-    way.start.push_back(body.pose.apply(was - body.shape->material_from_body));
-    way.end.push_back(dented.pose.apply(here));
-  }
-  return way;
-}
-
-/// Share of its way that a dent can go before it meets anybody.
+/// Share of its way that a dent can go before it meets anybody, or a sheet itself.
 double find_free_share(const MovingState& moving, const dynamics::ContactSettings& contact,
                        const body::Body& body, const MovingSurface& way) {
   double share = 1.0;
@@ -165,6 +33,9 @@ double find_free_share(const MovingState& moving, const dynamics::ContactSetting
       if (one->is_dynamic()) radius = std::min(radius, one->shape->bounding_radius);
     share = std::min(share, free_share(way, other, kRoomShare * contact.kept_gap * 2.0 * radius));
   }
+  if (body.shape->kind == body::ShapeKind::shell)
+    share = std::min(share,
+                     own_free_share(way, kRoomShare * contact.kept_gap * 2.0 * body.shape->bounding_radius));
   return share;
 }
 
@@ -183,32 +54,22 @@ void replace_by(MovingState& moving, const body::Body& body, body::Body born, co
   moving.bodies.push_back(std::move(born));
 }
 
-/// Nothing if there is no room at all.
+/// m, of the surface.
+double depth_of(const MovingSurface& way) {
+  double depth = 0.0;
+  for (std::size_t v = 0; v < way.start.size(); ++v)
+    depth = std::max(depth, (way.end[v] - way.start[v]).norm());
+  return depth;
+}
+
+/// A dent with the whole share that there is room for; nothing if there is none at all. `make` of a share.
+template <class Make>
 std::optional<Dented> find_dented(const MovingState& moving, const dynamics::ContactSettings& contact,
-                                  const body::Body& body, const fracture::SolidDent& dent,
-                                  const fracture::LeftDents& left) {
-  const Fragile& whole = *moving.fragiles.at(body.id);
-  const geometry::SolidComplex& before = *std::get<fracture::SolidSubject>(whole.subject).complex;
-  const double volume = total_volume(before);
+                                  const body::Body& body, const Make& make) {
   double share = 1.0;
   for (int room = 0; room < kMostRooms && share > kLeastDentShare; ++room) {
-    Dented dented;
-    dented.share = share;
-    dented.moves = moves_of_share(dent, share, left);
-    std::shared_ptr<geometry::SolidComplex> complex;
-    dented.fragile = dent_fragile(whole, body.shape->mass,
-                                  deform(before, dented.moves, kDentFlatness * kKerf * whole.size), complex);
-    dented.shape = make_solid_shape(*complex, *dented.fragile);
-    dented.pose = body.pose;
-    // A free body's centre of mass stays where it is; what is held stays in its place.
-    if (!body.is_dynamic())
-      dented.pose.translation =
-          body.pose.apply(dented.shape->material_from_body - body.shape->material_from_body);
-    dented.volume_change = total_volume(*complex) / volume - 1.0;
-    const MovingSurface way = find_way(body, before, dented, *complex);
-    for (std::size_t v = 0; v < way.start.size(); ++v)
-      dented.depth = std::max(dented.depth, (way.end[v] - way.start[v]).norm());
-    const double free = find_free_share(moving, contact, body, way);
+    Dented dented = make(share);
+    const double free = find_free_share(moving, contact, body, dented.way);
     if (free >= 1.0) return dented;
     share *= kRoomSlack * free;
   }
@@ -240,28 +101,48 @@ body::BodyId put_dented(MovingState& moving, const body::Body& body, const Dente
   return id;
 }
 
-DentRow describe_dent(const body::Body& body, const fracture::SolidDent& dent, const Dented* dented,
-                      const Vec3& place_material, double von_mises, double yield, double time) {
+DentRow describe_dent(const body::Body& body, const ComingDent& coming, const Dented* dented, double time) {
   DentRow row;
   row.time = time;
   row.body = body.name;
   row.id = body.id;
-  row.von_mises = von_mises;
-  row.yield = yield;
-  row.flowed_volume = dent.flowed;
-  row.is_cut = dent.is_cut;
+  row.von_mises = coming.von_mises;
+  row.yield = coming.yield;
+  row.flowed_volume = coming.figures().flowed;
+  row.is_cut = coming.figures().is_cut;
   row.share = 0.0;
-  row.place = body.pose.apply(place_material - body.shape->material_from_body);
+  row.place = body.pose.apply(coming.place - body.shape->material_from_body);
   if (!dented) return row;
   row.share = dented->share;
-  row.depth = dented->depth;
-  row.energy = dent.work;
+  row.depth = depth_of(dented->way);
+  row.energy = coming.figures().work;
   row.volume_change = dented->volume_change;
   row.mass_error = std::abs(dented->shape->mass / body.shape->mass - 1.0);
   return row;
 }
 
 }  // namespace
+
+Pose dented_pose(const body::Body& body, const body::Shape& shape) {
+  Pose pose = body.pose;
+  if (!body.is_dynamic())
+    pose.translation = body.pose.apply(shape.material_from_body - body.shape->material_from_body);
+  return pose;
+}
+
+void set_way(const body::Body& body, const std::function<Vec3(int, const Vec3&)>& was_at, Dented& dented) {
+  const body::Shape& shape = *dented.shape;
+  dented.way.triangles = shape.surface.triangles;
+  std::vector<int> element_of(shape.surface.positions.size(), -1);
+  for (std::size_t t = shape.surface.triangles.size(); t-- > 0;)
+    for (const int v : shape.surface.triangles[t]) element_of[at(v)] = shape.triangle_elements[t];
+  for (std::size_t v = 0; v < element_of.size(); ++v) {
+    const Vec3& here = shape.surface.positions[v];
+    const Vec3 was = was_at(element_of[v], here + shape.material_from_body);
+    dented.way.start.push_back(body.pose.apply(was - body.shape->material_from_body));
+    dented.way.end.push_back(dented.pose.apply(here));
+  }
+}
 
 void World::dent_bodies(const MovingState& snapshot) {
   State& s = *state_;
@@ -284,12 +165,15 @@ void World::dent_bodies(const MovingState& snapshot) {
     fracture::LeftDents left;
     for (const ComingDent& coming : dents) {
       const body::Body body = *body::find_body(s.moving.bodies, id);
-      const std::optional<Dented> dented =
-          find_dented(s.moving, s.contact_settings, body, *coming.dent, left);
-      DentRow row = describe_dent(body, *coming.dent, dented ? &*dented : nullptr, coming.place,
-                                  coming.von_mises, coming.yield, end_time);
+      const Fragile& whole = *s.moving.fragiles.at(id);
+      const auto* solid = coming.solid();
+      const std::optional<Dented> dented = find_dented(s.moving, s.contact_settings, body, [&](double share) {
+        return solid ? make_dented(body, whole, *solid, left, share)
+                     : make_dented(body, whole, *coming.shell(), share);
+      });
+      DentRow row = describe_dent(body, coming, dented ? &*dented : nullptr, end_time);
       if (dented) {
-        leave(*coming.dent, dented->share, dented->moves, left);
+        if (solid) leave(*solid, dented->share, dented->moves, left);
         row.born = put_dented(s.moving, body, *dented, s.ancestry);
         regrip(s.hands, body, {row.born}, s.moving.bodies);
         rehang(s.moving.contact.joints, body, {row.born}, s.moving.bodies);

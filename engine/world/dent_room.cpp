@@ -26,34 +26,41 @@ std::array<double, 3 * Corners> pack(const std::vector<Vec3>& points,
   return out;
 }
 
+std::shared_ptr<const collision::Collider> collider_of(const MovingSurface& surface) {
+  body::Shape shape;
+  shape.kind = body::ShapeKind::shell;
+  shape.surface.positions = surface.start;
+  shape.surface.triangles = surface.triangles;
+  return collision::make_collider(shape);
+}
+
+/// A surface against one of a collider, whose vertices go straight too.
 class RoomSearch {
  public:
   RoomSearch(const MovingSurface& surface, const body::Body& other, double least_separation)
       : surface_(surface), least_(least_separation) {
-    body::Shape shape;
-    shape.kind = body::ShapeKind::shell;
-    shape.surface.positions = surface.start;
-    shape.surface.triangles = surface.triangles;
-    own_ = collision::make_collider(shape);
+    own_ = collider_of(surface);
     theirs_ = collision::make_collider(*other.shape);
-    for (const Vec3& p : theirs_->vertices) standing_.push_back(other.pose.apply(p));
+    for (const Vec3& p : theirs_->vertices) their_start_.push_back(other.pose.apply(p));
+    their_end_ = their_start_;
+  }
+
+  /// Against itself.
+  RoomSearch(const MovingSurface& surface, double least_separation)
+      : surface_(surface),
+        least_(least_separation),
+        their_start_(surface.start),
+        their_end_(surface.end),
+        is_itself_(true) {
+    own_ = theirs_ = collider_of(surface);
   }
 
   double find() {
     std::vector<geometry::Box> own_boxes, their_boxes;
-    const auto swept = [&](int v) {
-      geometry::Box box;
-      box.include(surface_.start[at(v)]);
-      box.include(surface_.end[at(v)]);
-      return box;
-    };
-    const auto still = [&](int v) {
-      geometry::Box box;
-      box.include(standing_[at(v)]);
-      return box;
-    };
-    refit(own_->tree, own_->triangles, swept, own_boxes);
-    refit(theirs_->tree, theirs_->triangles, still, their_boxes);
+    const auto own_box = [&](int v) { return swept_box(surface_.start, surface_.end, v); };
+    const auto their_box = [&](int v) { return swept_box(their_start_, their_end_, v); };
+    refit(own_->tree, own_->triangles, own_box, own_boxes);
+    refit(theirs_->tree, theirs_->triangles, their_box, their_boxes);
     const double margin = least_ + theirs_->radius;
     const auto box_of = [](const geometry::Triangle& t, const auto& vertex_box) {
       geometry::Box box;
@@ -66,8 +73,8 @@ class RoomSearch {
                          for (int i = a.begin; i < a.begin + a.count; ++i)
                            for (int k = b.begin; k < b.begin + b.count; ++k) {
                              const int s = own_->tree.order[at(i)], t = theirs_->tree.order[at(k)];
-                             if (overlaps(box_of(own_->triangles[at(s)], swept),
-                                          box_of(theirs_->triangles[at(t)], still), margin))
+                             if (overlaps(box_of(own_->triangles[at(s)], own_box),
+                                          box_of(theirs_->triangles[at(t)], their_box), margin))
                                test_triangles(s, t);
                            }
                        });
@@ -75,40 +82,57 @@ class RoomSearch {
   }
 
  private:
+  static geometry::Box swept_box(const std::vector<Vec3>& start, const std::vector<Vec3>& end, int vertex) {
+    geometry::Box box;
+    box.include(start[at(vertex)]);
+    box.include(end[at(vertex)]);
+    return box;
+  }
+
+  template <std::size_t First, std::size_t Second>
+  bool have_common_vertex(const std::array<int, First>& a, const std::array<int, Second>& b) const {
+    return is_itself_ && std::any_of(a.begin(), a.end(),
+                                     [&](int v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+  }
+
   void test_triangles(int own, int theirs) {
     for (int i = theirs_->owned_vertex_begin[at(theirs)]; i < theirs_->owned_vertex_begin[at(theirs) + 1];
          ++i)
-      test_standing_vertex(theirs_->owned_vertices[at(i)], own_->triangles[at(own)]);
+      test_their_vertex(theirs_->owned_vertices[at(i)], own_->triangles[at(own)]);
     if (theirs_->edges.empty()) return;  // a ball is one vertex
-    for (int i = own_->owned_vertex_begin[at(own)]; i < own_->owned_vertex_begin[at(own) + 1]; ++i)
-      test_moving_vertex(own_->owned_vertices[at(i)], theirs_->triangles[at(theirs)]);
+    if (!is_itself_)                     // the other way round is met as well
+      for (int i = own_->owned_vertex_begin[at(own)]; i < own_->owned_vertex_begin[at(own) + 1]; ++i)
+        test_own_vertex(own_->owned_vertices[at(i)], theirs_->triangles[at(theirs)]);
     for (int i = own_->owned_edge_begin[at(own)]; i < own_->owned_edge_begin[at(own) + 1]; ++i)
       for (int k = theirs_->owned_edge_begin[at(theirs)]; k < theirs_->owned_edge_begin[at(theirs) + 1]; ++k)
         test_edges(own_->edges[at(own_->owned_edges[at(i)])],
                    theirs_->edges[at(theirs_->owned_edges[at(k)])]);
   }
 
-  void test_standing_vertex(int vertex, const geometry::Triangle& triangle) {
-    const auto point = pack<1>(standing_, {vertex});
+  void test_their_vertex(int vertex, const geometry::Triangle& triangle) {
+    if (have_common_vertex(std::array<int, 1>{vertex}, triangle)) return;
+    const auto point = pack<1>(their_start_, {vertex}), point_end = pack<1>(their_end_, {vertex});
     const auto start = pack<3>(surface_.start, triangle), end = pack<3>(surface_.end, triangle);
     settle(theirs_->radius, [&](double least) {
-      return geometry::test_point_triangle(point.data(), start.data(), point.data(), end.data(), least);
+      return geometry::test_point_triangle(point.data(), start.data(), point_end.data(), end.data(), least);
     });
   }
 
-  void test_moving_vertex(int vertex, const geometry::Triangle& triangle) {
+  void test_own_vertex(int vertex, const geometry::Triangle& triangle) {
     const auto start = pack<1>(surface_.start, {vertex}), end = pack<1>(surface_.end, {vertex});
-    const auto still = pack<3>(standing_, triangle);
+    const auto their_start = pack<3>(their_start_, triangle), their_end = pack<3>(their_end_, triangle);
     settle(0.0, [&](double least) {
-      return geometry::test_point_triangle(start.data(), still.data(), end.data(), still.data(), least);
+      return geometry::test_point_triangle(start.data(), their_start.data(), end.data(), their_end.data(),
+                                           least);
     });
   }
 
   void test_edges(const std::array<int, 2>& own, const std::array<int, 2>& theirs) {
+    if (have_common_vertex(own, theirs)) return;
     const auto start = pack<2>(surface_.start, own), end = pack<2>(surface_.end, own);
-    const auto still = pack<2>(standing_, theirs);
+    const auto their_start = pack<2>(their_start_, theirs), their_end = pack<2>(their_end_, theirs);
     settle(0.0, [&](double least) {
-      return geometry::test_edge_edge(start.data(), still.data(), end.data(), still.data(), least);
+      return geometry::test_edge_edge(start.data(), their_start.data(), end.data(), their_end.data(), least);
     });
   }
 
@@ -127,7 +151,8 @@ class RoomSearch {
   const MovingSurface& surface_;
   double least_;
   std::shared_ptr<const collision::Collider> own_, theirs_;
-  std::vector<Vec3> standing_;
+  std::vector<Vec3> their_start_, their_end_;
+  bool is_itself_ = false;
   double share_ = 1.0;
 };
 
@@ -161,6 +186,10 @@ double free_share(const MovingSurface& surface, const body::Body& other, double 
     return free_share_of_plane(surface, other, least_separation);
   if (is_far(surface, other, least_separation)) return 1.0;
   return RoomSearch(surface, other, least_separation).find();
+}
+
+double own_free_share(const MovingSurface& surface, double least_separation) {
+  return RoomSearch(surface, least_separation).find();
 }
 
 }  // namespace shatterbox::world

@@ -1,5 +1,5 @@
-// How far a surface can change its shape before it meets somebody: its vertices go straight, all others
-// stand.
+// How far a surface can change its shape before it meets somebody, or itself: its vertices go straight, all
+// others stand.
 #pragma once
 
 #include <vector>
@@ -18,5 +18,8 @@ struct MovingSurface {
 /// Share of its way that a surface can go and stay farther than `least_separation` m from `other`; or, where
 /// it is nearer from the beginning, than half of what there is. No false negatives (continuous_tests.h).
 double free_share(const MovingSurface& surface, const body::Body& other, double least_separation);
+
+/// The same of a surface and itself; what has a vertex in common does not count.
+double own_free_share(const MovingSurface& surface, double least_separation);
 
 }  // namespace shatterbox::world

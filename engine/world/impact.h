@@ -5,10 +5,12 @@
 
 #include <functional>
 #include <memory>
+#include <variant>
 #include <vector>
 
 #include "engine/body/body.h"
 #include "engine/body/impulse_log.h"
+#include "engine/fracture/shell_dent.h"
 #include "engine/fracture/solid_dent.h"
 #include "engine/stress/contact_duration.h"
 
@@ -31,10 +33,24 @@ struct Load {
 
 /// What an impact leaves when it is over.
 struct ComingDent {
-  std::shared_ptr<const fracture::SolidDent> dent;
+  std::variant<std::shared_ptr<const fracture::SolidDent>, std::shared_ptr<const fracture::ShellDent>> dent;
   double von_mises = 0.0, yield = 0.0;  // Pa
   Vec3 place = Vec3::Zero();            // m, material space: of the hit
   double not_before = -1e9;             // s: until then who went through is in the hole; a step later
+
+  /// Null of the other kind.
+  const fracture::SolidDent* solid() const { return find<fracture::SolidDent>(); }
+  const fracture::ShellDent* shell() const { return find<fracture::ShellDent>(); }
+  const fracture::DentFigures& figures() const {
+    return std::visit([](const auto& d) -> const fracture::DentFigures& { return *d; }, dent);
+  }
+
+ private:
+  template <class Dent>
+  const Dent* find() const {
+    const auto* own = std::get_if<std::shared_ptr<const Dent>>(&dent);
+    return own ? own->get() : nullptr;
+  }
 };
 
 /// What a fragile body remembers of its impacts between steps. Part of the state.

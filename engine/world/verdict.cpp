@@ -193,10 +193,11 @@ void add_to_event(ImpactMemory& memory, const std::vector<Load>& hits, double ra
 void fill_candidate(const Judge& judge, const body::Body& body, double radius, double time, bool is_struck,
                     const ImpactMemory& memory, Candidate& candidate) {
   const bool is_paper = judge.settings.criterion == Criterion::paper;
+  const bool is_solid = std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject);
   const std::vector<Load> event = is_struck ? memory.event : std::vector<Load>{};
   for (const Load& load : event) {
     candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
-    if (judge.begin && !is_paper && load.time >= judge.begin->time &&
+    if (judge.begin && !is_paper && load.time >= judge.begin->time && is_solid &&
         candidate.fragile->material().yield > 0.0)
       candidate.impact.loads.back().striker = find_striker(*judge.begin, judge.log, body.id, load.other);
   }
@@ -303,14 +304,20 @@ void keep_verdict(double duration, double tested_growth, ImpactMemory& memory) {
 /// The dent of the event that is under way, in place of what it was when less of the event was known.
 void await_dent(const EvaluatedImpact& impact, const body::Body& body, ImpactMemory& memory) {
   if (memory.has_open_dent) memory.dents.pop_back();
-  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
+  memory.has_open_dent = false;
+  const fracture::Verdict& verdict = impact.figures().verdict;
+  const bool holds = verdict.outcome == fracture::Outcome::held || impact.is_cracked_only();
   // What tears does not keep the shape in which it tore.
   const bool is_over = memory.generation == 0 || impact.first_time > memory.charged_until;
-  memory.has_open_dent = solid && solid->dent && memory.keeps_dents && is_over &&
-                         (solid->verdict.outcome == fracture::Outcome::held || impact.is_cracked_only());
-  if (memory.has_open_dent)
-    memory.dents.push_back({solid->dent, solid->verdict.von_mises, solid->verdict.yield,
-                            impact.hardest.point_body + body.shape->material_from_body});
+  if (!holds || !memory.keeps_dents || !is_over) return;
+  std::visit(
+      [&](const auto& decision) {
+        if (!decision.dent) return;
+        memory.has_open_dent = true;
+        memory.dents.push_back({decision.dent, verdict.von_mises, verdict.yield,
+                                impact.hardest.point_body + body.shape->material_from_body});
+      },
+      impact.decision);
 }
 
 }  // namespace

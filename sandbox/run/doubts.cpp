@@ -75,7 +75,9 @@ void doubt_criterion(const scene::SceneDescription& scene, const scene::BuiltSce
     const scene::BodyEntry& body = scene.bodies[i];
     const material::Material& material = scene.materials[static_cast<std::size_t>(body.material)].material;
     const auto& form = built.plan.bodies[i].description.form;
-    if (!std::holds_alternative<world::SolidDescription>(form) || !(material.yield > 0.0)) continue;
+    const bool is_mesh = std::holds_alternative<world::SolidDescription>(form) ||
+                         std::holds_alternative<world::ShellDescription>(form);
+    if (!is_mesh || !(material.yield > 0.0)) continue;
     scene::book(
         doubts, body.place,
         fmt::format(

@@ -3,11 +3,10 @@
 
 #include <cmath>
 
-#include "engine/audit/audit.h"
 #include "engine/core/parallel.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
-#include "engine/world/world.h"
+#include "tests/engine/world/audited.h"
 #include "tests/support/sanitized.h"
 
 using namespace shatterbox;
@@ -64,22 +63,7 @@ SlabRun hit_slab(const SlabHit& hit, double seconds = 0.03) {
     crate.pose.translation = Vec3(0.0, 0.0, -0.06 - hit.gap);
     REQUIRE(w.add_body(crate).ok());
   }
-  w.keep_ways();
-  audit::Audit audit;
-  std::size_t dents = 0, breaks = 0;
-  while (w.time() < seconds) {
-    audit.begin_step(w.bodies());
-    w.step();
-    std::vector<audit::Birth> births;
-    for (; breaks < w.report().breaks.size(); ++breaks)
-      for (const body::BodyId id : w.report().breaks[breaks].born)
-        births.push_back({id, w.report().breaks[breaks].id});
-    for (; dents < w.report().dents.size(); ++dents)
-      if (w.report().dents[dents].born != 0)
-        births.push_back({w.report().dents[dents].born, w.report().dents[dents].id});
-    audit.end_step(w.bodies(), births, w.ways(), w.time());
-  }
-  run.audit = audit.report();
+  run.audit = test::run_audited(w, seconds);
   return run;
 }
 

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/audit/audit.h"
 #include "engine/core/parallel.h"
 #include "engine/fracture/perforation_law.h"
 #include "engine/geometry/generators.h"
-#include "engine/world/world.h"
+#include "tests/engine/world/audited.h"
 #include "tests/support/sanitized.h"
 
 using namespace shatterbox;
@@ -69,24 +68,9 @@ Range fire(const Shot& shot) {
   };
   range.bullet = throw_at(shot.aim, shot.speed, 0.4);
   if (shot.second > 0.0) throw_at(shot.aim + Vec3(shot.aside, 0, 0), shot.second, 0.4 + shot.behind);
-  w.keep_ways();
-  audit::Audit audit;
-  std::size_t dents = 0, breaks = 0;
   const double seconds =
       shot.unit * (shot.second > 0.0 ? (shot.behind + 1.4) / shot.second : (0.4 + shot.run) / shot.speed);
-  while (w.time() < seconds + 8.0 / settings.steps_per_second) {
-    audit.begin_step(w.bodies());
-    w.step();
-    std::vector<audit::Birth> births;
-    for (; breaks < w.report().breaks.size(); ++breaks)
-      for (const body::BodyId id : w.report().breaks[breaks].born)
-        births.push_back({id, w.report().breaks[breaks].id});
-    for (; dents < w.report().dents.size(); ++dents)
-      if (w.report().dents[dents].born != 0)
-        births.push_back({w.report().dents[dents].born, w.report().dents[dents].id});
-    audit.end_step(w.bodies(), births, w.ways(), w.time());
-  }
-  range.audit = audit.report();
+  range.audit = test::run_audited(w, seconds + 8.0 / settings.steps_per_second);
   return range;
 }
 

@@ -1,0 +1,125 @@
+// Dents of sheets: a pot that is hit keeps the shape of the hit, whatever the step, and meets nobody on its
+// way, itself neither.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "engine/core/parallel.h"
+#include "engine/geometry/generators.h"
+#include "engine/geometry/mass_properties.h"
+#include "tests/engine/world/audited.h"
+#include "tests/support/sanitized.h"
+
+using namespace shatterbox;
+
+namespace {
+
+struct PotHit {
+  double speed = 8.0;  // m/s, of a steel ball of 3 cm radius, against the pot's wall from the side
+  int rate = 240;
+  double gap = 0.0;  // m, behind the wall to a block in the pot that does not move; 0: none
+  const char* material = "steel";
+};
+
+struct PotRun {
+  world::World world;
+  audit::AuditReport audit;
+  double area = 0.0;  // m2, of the pot before
+};
+
+PotRun hit_pot(const PotHit& hit, double seconds = 0.1) {
+  world::WorldSettings settings;
+  settings.steps_per_second = hit.rate;
+  settings.gravity = Vec3::Zero();
+  PotRun run{world::World(settings), {}};
+  world::World& w = run.world;
+  const auto metal = w.add_material(*material::find_preset(hit.material));
+  REQUIRE(metal.ok());
+  world::ShellDescription shell;
+  shell.mesh =
+      geometry::make_bowl({0.12, 0.05, 0.006, 0.1}, {test::kIsSanitized ? 0.03 : 0.012, 0.3, 1}).value();
+  shell.thickness = 1e-3;
+  run.area = geometry::surface_area(shell.mesh);
+  world::BodyDescription pot, ball;
+  pot.name = "pot";
+  pot.form = shell;
+  REQUIRE(w.add_body(pot).ok());
+  ball.form = world::SphereDescription{0.03};
+  ball.pose.translation = Vec3(0.17 + 0.003 * hit.speed, 0.06, 0.0);
+  ball.velocity = Vec3(-hit.speed, 0.0, 0.0);
+  REQUIRE(w.add_body(ball).ok());
+  if (hit.gap > 0.0) {
+    world::BodyDescription block;
+    block.form = world::BoxDescription{Vec3(0.02, 0.02, 0.02)};
+    block.pose.translation = Vec3(0.105 - 0.02 - hit.gap, 0.065, 0.0);
+    block.motion = body::Motion::fixed;
+    REQUIRE(w.add_body(block).ok());
+  }
+  run.audit = test::run_audited(w, seconds);
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("shell dents: the deeper the harder, the same at any rate, and none where nothing yields") {
+  double last = 0.0;
+  for (const double speed : {3.0, 6.0, 12.0}) {
+    const PotRun run = hit_pot({speed});
+    CAPTURE(speed);
+    REQUIRE_FALSE(run.world.report().dents.empty());
+    const world::DentRow& dent = run.world.report().dents[0];
+    CHECK(dent.von_mises > dent.yield);
+    CHECK(dent.share == 1.0);
+    CHECK(dent.depth > 1.3 * last);
+    CHECK(dent.mass_error < 1e-12);
+    CHECK(std::abs(dent.volume_change) < 0.005);
+    CHECK(dent.energy < 0.5 * 0.89 * speed * speed);
+    CHECK(run.world.report().breaks.empty());
+    CHECK(run.world.report().conservation.momentum_error < 1e-9);
+    CHECK(run.audit.crossings + run.audit.passages == 0);
+    last = dent.depth;
+    if (test::kIsSanitized) return;
+  }
+  for (const int rate : {480, 960}) {
+    const PotRun run = hit_pot({12.0, rate});
+    REQUIRE_FALSE(run.world.report().dents.empty());
+    CHECK(run.world.report().dents[0].depth == Approx(last).epsilon(0.01));
+  }
+  const PotRun tap = hit_pot({0.05});
+  CHECK(tap.world.report().dents.empty());
+}
+
+TEST_CASE("shell dents: the pot keeps its mass, has another shape, and goes on with its momentum") {
+  const PotRun run = hit_pot({8.0});
+  for (const body::Body& body : run.world.bodies()) {
+    if (body.shape->kind != body::ShapeKind::shell) continue;
+    CHECK(body.shape->mass == Approx(run.area * 1e-3 * 7850.0).epsilon(1e-9));
+    CHECK(geometry::surface_area(body.shape->surface) == Approx(run.area).epsilon(0.005));
+    CHECK(body.velocity.x() < 0.0);
+    double dented = 0.0;
+    for (const Vec3& p : body.shape->surface.positions)
+      dented = std::max(dented, Vec2(p.x() + body.shape->material_from_body.x(), p.z()).norm() - 0.12);
+    CHECK(dented > 1e-3);  // its rim is no circle any more
+    CHECK(body.name == "pot");
+  }
+}
+
+TEST_CASE("shell dents: a dent goes as far as there is room behind it") {
+  if (test::kIsSanitized) return;
+  const PotRun run = hit_pot({12.0, 240, 0.004});
+  REQUIRE_FALSE(run.world.report().dents.empty());
+  CHECK(run.world.report().dents[0].share < 1.0);
+  CHECK(run.audit.crossings + run.audit.passages == 0);
+  CHECK(run.world.report().contact.crossing_pairs == 0);
+}
+
+TEST_CASE("shell dents: the same bits for any number of threads") {
+  if (test::kIsSanitized) return;
+  const auto hash = [](int threads) {
+    core::set_thread_count(threads);
+    const std::uint64_t bits = hit_pot({8.0}, 0.06).world.state_hash();
+    core::set_thread_count(0);
+    return bits;
+  };
+  CHECK(hash(1) == hash(3));
+}
