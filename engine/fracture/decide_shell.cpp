@@ -11,6 +11,7 @@
 #include "engine/fracture/dice.h"
 #include "engine/fracture/impact_force.h"
 #include "engine/fracture/shell_dent.h"
+#include "engine/fracture/shell_hole.h"
 #include "engine/fracture/shell_subject.h"
 #include "engine/fracture/split_shell.h"
 #include "engine/material/tempering.h"
@@ -37,7 +38,10 @@ using core::milliseconds_since;
 class Decider {
  public:
   Decider(const ShellSubject& subject, const ShellImpact& impact, const FractureSettings& settings)
-      : subject_(prepared(subject)), settings_(settings), force_(subject_, impact, settings) {}
+      : subject_(prepared(subject)),
+        impact_(impact),
+        settings_(settings),
+        force_(subject_, impact, settings) {}
 
   Decision decide() {
     Verdict& verdict = decision_.verdict;
@@ -58,7 +62,7 @@ class Decider {
     mesh_ = subject_.mesh;
     const bool is_over = is_overloaded();
     note_struck();
-    if (is_over) {
+    if (!take_hole() && is_over && !leave_to_dent()) {
       force_.complete(decision_);
       run_generations();
     }
@@ -109,14 +113,56 @@ class Decider {
     struck_energy_ = {force_.struck_energy(), force_.lost_energy()};
   }
 
-  /// What tears does not keep the shape in which it tore.
+  /// Whether the one who strikes hardest goes through: then his hole is all that breaks.
+  bool take_hole() {
+    const Striker* hardest = hardest_striker(force_.presses());
+    if (!hardest || !(subject_.material.yield > 0.0)) return false;
+    std::optional<ShellHole> found =
+        find_perforation(subject_, *hardest, settings_.least_width, first_crack());
+    if (!found) return false;
+    decision_.perforation = std::make_shared<const Perforation>(*found);
+    if (!found->is_through()) return false;
+    decision_.verdict.outcome = Outcome::broke;
+    decision_.mesh = std::move(found->mesh);
+    decision_.contacts = std::move(found->contacts);
+    decision_.segments = std::move(found->segments);
+    decision_.tips = subject_.tips;
+    decision_.cracks = 1;
+    decision_.new_area = found->wall_area;
+    decision_.fracture_energy = found->needed;
+    decision_.elastic_energy = found->there;
+    return true;
+  }
+
+  /// As of solids: under a striker who does not go through metal flows, and no crack starts.
+  bool leave_to_dent() {
+    if (!decision_.perforation && !was_asked(impact_)) return false;
+    decision_.verdict.outcome = Outcome::held;
+    decision_.verdict.reason = "it is dented, and not gone through";
+    decision_.tips = subject_.tips;
+    return true;
+  }
+
+  /// What tears does not keep the shape in which it tore; what is gone through is dished as by a hit that it
+  /// holds and that gives it as much momentum.
   void take_dent() {
     if (struck_displacement_.size() == 0) return;
-    if (decision_.verdict.outcome != Outcome::held) struck_energy_.most = 0.0;
-    ShellYieldFinding finding = find_yield(subject_, struck_displacement_, struck_energy_);
-    decision_.verdict.von_mises = finding.stress;
+    const bool is_holed = decision_.perforation && decision_.perforation->is_through();
+    const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
+    const double energy = share * share;
+    const bool keeps = is_holed || decision_.verdict.outcome == Outcome::held;
+    ShellYieldFinding finding =
+        find_yield(subject_, share * struck_displacement_,
+                   {energy * struck_energy_.all, keeps ? energy * struck_energy_.most : 0.0});
+    decision_.verdict.von_mises = finding.stress / share;
     decision_.verdict.yield = subject_.material.yield;
     decision_.dent = std::move(finding.dent);
+  }
+
+  int first_crack() const {
+    int first = 0;
+    for (const CrackTip& tip : subject_.tips) first = std::max(first, tip.crack + 1);
+    return first;
   }
 
   /// Flaws under more stress than they bear; and, for the verdict, the worst of all.
@@ -209,7 +255,7 @@ class Decider {
     for (const Press& press : force_.presses())
       centres_.push_back({press.contact.point, press.contact.radius, bending_length(press.contact)});
     noise_.emplace(kWaveLength * size(), settings_.waviness, subject_.seed);
-    for (const CrackTip& tip : subject_.tips) next_crack_ = std::max(next_crack_, tip.crack + 1);
+    next_crack_ = first_crack();
     std::vector<CrackTip> tips = subject_.tips;
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
@@ -351,6 +397,7 @@ class Decider {
   }
 
   const ShellSubject subject_;
+  const ShellImpact& impact_;
   const FractureSettings& settings_;
   ImpactForce force_;
   Decision decision_;

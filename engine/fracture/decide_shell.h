@@ -51,6 +51,7 @@ struct ShellSubject {
   std::uint64_t seed = 1;
 };
 
+struct Perforation;
 struct ShellDent;
 
 /// One straight stretch of a crack in one cell.
@@ -67,7 +68,9 @@ struct Decision : DecisionFigures {
   std::vector<geometry::CellContact> contacts;      // of its cells
   std::vector<CrackTip> tips;                       // that stopped inside the material
   std::vector<CrackSegment> segments;
-  std::shared_ptr<const ShellDent> dent;  // of what holds; null: none
+  std::shared_ptr<const ShellDent> dent;  // of what holds, or has a hole; null: none
+  /// Of what yields; if the striker goes through, its hole is the break. Null: nobody comes near that.
+  std::shared_ptr<const Perforation> perforation;
   int core_cells = 0;
   int dice = 0;            // into which stored stress broke it; what is stored is spent then
   double factor_ms = 0.0;  // wall time; enters no state

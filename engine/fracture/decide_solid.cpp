@@ -10,6 +10,7 @@
 #include "engine/core/parallel.h"
 #include "engine/fracture/solid_bridges.h"
 #include "engine/fracture/solid_force.h"
+#include "engine/fracture/solid_hole.h"
 #include "engine/fracture/solid_tracer.h"
 
 namespace shatterbox::fracture {
@@ -30,7 +31,10 @@ constexpr double kSolidTriedAgain = 1.25;
 class SolidDecider {
  public:
   SolidDecider(const SolidSubject& subject, const Impact& impact, const FractureSettings& settings)
-      : subject_(prepared(subject)), settings_(settings), force_(subject_, impact, settings) {}
+      : subject_(prepared(subject)),
+        impact_(impact),
+        settings_(settings),
+        force_(subject_, impact, settings) {}
 
   SolidDecision decide() {
     Verdict& verdict = decision_.verdict;
@@ -158,35 +162,27 @@ class SolidDecider {
 
   /// Whether the one who strikes hardest goes through: then his hole is all that breaks.
   bool take_hole() {
-    const Striker* hardest = nullptr;
-    for (const SolidPress& press : force_.presses()) {
-      const Striker* striker = press.load->striker.get();
-      if (striker && (!hardest || striker->mass * striker->speed * striker->speed >
-                                      hardest->mass * hardest->speed * hardest->speed))
-        hardest = striker;
-    }
+    const Striker* hardest = hardest_striker(force_.presses());
     if (!hardest || !(subject_.material.yield > 0.0)) return false;
-    std::optional<Perforation> found = find_perforation(*subject_.complex, subject_.material, *hardest,
-                                                        settings_.least_width, subject_.first_cut_id);
+    const std::optional<SolidHole> found = find_perforation(*subject_.complex, subject_.material, *hardest,
+                                                            settings_.least_width, subject_.first_cut_id);
     if (!found) return false;
-    const bool is_through = found->is_through();
-    decision_.perforation = std::make_shared<const Perforation>(std::move(*found));
-    if (!is_through) return false;
-    const Perforation& hole = *decision_.perforation;
+    decision_.perforation = std::make_shared<const Perforation>(*found);
+    if (!found->is_through()) return false;
     decision_.verdict.outcome = Outcome::broke;
-    decision_.complex = hole.complex;
-    decision_.part_count = hole.part_count;
+    decision_.complex = found->complex;
+    decision_.part_count = found->part_count;
     decision_.cracks = 1;
-    decision_.new_area = hole.wall_area;
-    decision_.fracture_energy = hole.needed;
-    decision_.elastic_energy = hole.there;
+    decision_.new_area = found->wall_area;
+    decision_.fracture_energy = found->needed;
+    decision_.elastic_energy = found->there;
     return true;
   }
 
   /// Under a striker who does not go through metal flows: he has been asked for his energy, and the linear
   /// stress, which nothing bounds there, starts no cracks.
   void leave_to_dent(std::vector<SolidCandidate>& candidates) {
-    if (!decision_.perforation || candidates.empty()) return;
+    if ((!decision_.perforation && !was_asked(impact_)) || candidates.empty()) return;
     candidates.clear();
     decision_.verdict.reason = "it is dented, and not gone through";
   }
@@ -299,6 +295,7 @@ class SolidDecider {
   }
 
   const SolidSubject subject_;
+  const Impact& impact_;
   const FractureSettings& settings_;
   SolidForce force_;
   SolidDecision decision_;

@@ -32,6 +32,7 @@ struct ImpactLoad {
   bool is_resting = false;          // contact that goes on: it dents nothing
   stress::Snapshots snapshots;      // of a collision's force; none: its peak counts
   std::shared_ptr<const Striker> striker;  // null: nobody who could go through
+  bool was_asked = false;                  // whether he goes through, earlier in the event: he does not
 };
 
 struct Impact {
@@ -59,6 +60,11 @@ struct Verdict {
 
 inline bool is_collision(const ImpactLoad& load) {
   return load.closing_speed > 0.0 && load.effective_mass > 0.0;
+}
+
+inline bool was_asked(const Impact& impact) {
+  return std::any_of(impact.loads.begin(), impact.loads.end(),
+                     [](const ImpactLoad& load) { return load.was_asked; });
 }
 
 /// Peak force of a collision, N: all kinetic energy in a spring of `compliance` (m/N), contact and body in

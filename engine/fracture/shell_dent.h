@@ -1,23 +1,30 @@
-// Dents of shells: as of solids (solid_dent.h), by strains of the sheet and of its bending.
+// Dents of shells: as of solids (solid_dent.h), by strains of the sheet and of its bending. What flows is
+// told with every verdict; the shape, which takes a hundred times as long, of the last one alone.
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "engine/fracture/decide_shell.h"
 #include "engine/fracture/dent.h"
+#include "engine/fracture/shell_shape.h"
+#include "engine/stress/shell_yield.h"
 
 namespace shatterbox::fracture {
 
+/// `work` is what there is for it.
 struct ShellDent : DentFigures {
-  std::vector<Vec3> moves;  // |vertices of the element mesh|, m: where it leaves them
+  ShellSubject subject;
+  stress::SheetFlow flow;  // in these proportions
 };
+
+/// Where the dent leaves the shell; without moves if that cannot be seen.
+ShellShape find_dent_shape(const ShellDent& dent);
 
 /// What an impact's linear displacement at its peak (|dof|, m and rad, of the collisions alone) means for the
 /// shape.
 struct ShellYieldFinding {
   double stress = 0.0;                    // Pa, von Mises, greatest
-  std::shared_ptr<const ShellDent> dent;  // null: nothing flows, or its shape cannot be told
+  std::shared_ptr<const ShellDent> dent;  // null: nothing flows
 };
 
 ShellYieldFinding find_yield(const ShellSubject& subject, const VecX& displacement, const DentEnergy& energy);

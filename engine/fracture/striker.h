@@ -34,6 +34,19 @@ struct StrikerSection {
 };
 StrikerSection section_of(const Striker& striker);
 
+/// Who of the loads' strikers brings most; null: nobody strikes. Of presses, each with a load.
+template <class Presses>
+const Striker* hardest_striker(const Presses& presses) {
+  const Striker* hardest = nullptr;
+  for (const auto& press : presses) {
+    const Striker* striker = press.load->striker.get();
+    if (striker && (!hardest || striker->mass * striker->speed * striker->speed >
+                                    hardest->mass * hardest->speed * hardest->speed))
+      hardest = striker;
+  }
+  return hardest;
+}
+
 /// Corners of the convex hull, counter-clockwise from the one farthest left; those on a straight line left
 /// out.
 std::vector<Vec2> convex_hull(std::vector<Vec2> points);

@@ -4,6 +4,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
+#include "engine/geometry/sheet_columns.h"
 #include "engine/geometry/solid_columns.h"
 
 namespace shatterbox::fracture {
@@ -11,12 +12,11 @@ namespace {
 
 using core::at;
 
-constexpr double kPlugClearance = 0.02;  // of the section's diameter: by which the hole is wider, all around
-constexpr int kPunchSides = 24;          // of a round hole; at most so many of any
-constexpr double kLeastTurn = 1e-5;      // rad, between two sides
-constexpr double kLeastSection = 1e-9;   // of the square of its reach: what is less is a line
-constexpr int kSectionRings = 8;         // of places over a section, all of one area
-constexpr int kRimPlaces = 96;           // about, along its rim, and on each ring
+constexpr int kPunchSides = 24;         // of a round hole; at most so many of any
+constexpr double kLeastTurn = 1e-5;     // rad, between two sides
+constexpr double kLeastSection = 1e-9;  // of the square of its reach: what is less is a line
+constexpr int kSectionRings = 8;        // of places over a section, all of one area
+constexpr int kRimPlaces = 96;          // about, along its rim, and on each ring
 
 Vec2 normal_at(double angle) {
   const core::SinCos turned = core::sin_cos(angle);
@@ -145,50 +145,36 @@ SharedPlaces places_over(const std::vector<Vec2>& corners) {
   return out;
 }
 
-/// What of the section the cells can be in; corners from the striker's centre.
-std::vector<Vec2> clip_to_cells(std::vector<Vec2> corners, const geometry::SolidComplex& complex,
-                                const std::vector<int>& cells, const Striker& striker) {
-  const geometry::TetMesh& mesh = complex.elements->mesh;
+/// What of the section corners of elements reach around; all from the striker's centre.
+std::vector<Vec2> clip_to_points(std::vector<Vec2> corners, const std::vector<Vec3>& points,
+                                 const Striker& striker) {
   for (const Vec2& normal : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
     const Vec3 across = normal.x() * striker.first + normal.y() * striker.second;
     double most = -1e300;
-    for (const int c : cells)
-      for (const int v : mesh.tetrahedra[at(complex.cells[at(c)].element)])
-        most = std::max(most, across.dot(mesh.positions[at(v)] - striker.centre));
+    for (const Vec3& point : points) most = std::max(most, across.dot(point - striker.centre));
     corners = clip(corners, normal, most);
   }
   return corners;
 }
 
-}  // namespace
-
-std::vector<geometry::PunchSide> sides_of_way(const Striker& striker, double front, double taper) {
-  const double clearance = kPlugClearance * section_of(striker).diameter;
-  std::vector<geometry::PunchSide> sides;
-  for (const Vec2& normal : side_normals(striker)) {
-    const Vec3 across = normal.x() * striker.first + normal.y() * striker.second;
-    const double reach = across.dot(striker.centre) + support_of_core(striker, normal) + clearance;
-    sides.push_back({across - taper * striker.direction, reach - taper * front});
-  }
-  return sides;
-}
-
-WayMaterial find_way_material(const geometry::SolidComplex& complex, const std::vector<int>& cells,
-                              const Striker& striker) {
-  const geometry::ColumnAxes axes{striker.first, striker.second, striker.direction};
+/// `points`: corners of elements that hold all of the material. `columns_at`: of places from the axes'
+/// origin.
+template <class ColumnsAt>
+WayMaterial measure_way(const Striker& striker, double clearance, const std::vector<Vec3>& points,
+                        const ColumnsAt& columns_at_origin) {
   const Vec2 centre(striker.first.dot(striker.centre), striker.second.dot(striker.centre));
   const auto columns_at = [&](std::vector<Vec2> places) {
     for (Vec2& place : places) place += centre;
-    return find_columns(complex, cells, axes, places);
+    return columns_at_origin(places);
   };
   const std::vector<Vec2> section = corners_of_section(striker, 0.0);
-  const std::vector<Vec2> reached = clip_to_cells(section, complex, cells, striker);
+  const std::vector<Vec2> reached = clip_to_points(section, points, striker);
   const double reached_share = area_of(reached) / area_of(section);
   const SharedPlaces inner = places_over(reached), rim = places_along(section);
   WayMaterial way;
   way.front = 1e300;
   double met = 0.0;  // of the section
-  const std::vector<geometry::SolidColumn> columns = columns_at(inner.places);
+  const std::vector<geometry::Column> columns = columns_at(inner.places);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const double share = reached_share * inner.shares[i];
     way.section.push_back({columns[i].length, share});
@@ -199,14 +185,52 @@ WayMaterial find_way_material(const geometry::SolidComplex& complex, const std::
     met += share;
   }
   if (met > 0.0) way.squareness /= met;
-  const std::vector<geometry::SolidColumn> wall = columns_at(rim.places);
+  const std::vector<geometry::Column> wall = columns_at(rim.places);
   for (std::size_t i = 0; i < wall.size(); ++i) way.rim.push_back({wall[i].length, rim.shares[i]});
   // The clearance is cut, too.
-  const double clearance = kPlugClearance * section_of(striker).diameter;
-  for (const geometry::SolidColumn& column :
+  for (const geometry::Column& column :
        columns_at(places_along(corners_of_section(striker, clearance)).places))
     if (column.length > 0.0) way.front = std::min(way.front, column.begin);
   return way;
+}
+
+}  // namespace
+
+std::vector<geometry::PunchSide> sides_of_way(const Striker& striker, double clearance, double taper,
+                                              double front) {
+  std::vector<geometry::PunchSide> sides;
+  for (const Vec2& normal : side_normals(striker)) {
+    const Vec3 across = normal.x() * striker.first + normal.y() * striker.second;
+    const double reach = across.dot(striker.centre) + support_of_core(striker, normal) + clearance;
+    sides.push_back({across - taper * striker.direction, reach - taper * front});
+  }
+  return sides;
+}
+
+WayMaterial find_way_material(const geometry::SolidComplex& complex, const std::vector<int>& cells,
+                              const Striker& striker, double clearance) {
+  const geometry::TetMesh& mesh = complex.elements->mesh;
+  std::vector<Vec3> points;
+  for (const int c : cells)
+    for (const int v : mesh.tetrahedra[at(complex.cells[at(c)].element)])
+      points.push_back(mesh.positions[at(v)]);
+  const geometry::ColumnAxes axes{striker.first, striker.second, striker.direction};
+  return measure_way(striker, clearance, points, [&](const std::vector<Vec2>& places) {
+    return geometry::find_columns(complex, cells, axes, places);
+  });
+}
+
+WayMaterial find_way_material(const geometry::ShellMesh& mesh, double thickness,
+                              const std::vector<int>& cells, const Striker& striker, double clearance) {
+  const geometry::TriangleMesh& elements = mesh.elements->mesh;
+  std::vector<Vec3> points;
+  for (const int c : cells)
+    for (const int v : elements.triangles[at(mesh.cells[at(c)].element)])
+      points.push_back(elements.positions[at(v)]);
+  const geometry::ColumnAxes axes{striker.first, striker.second, striker.direction};
+  return measure_way(striker, clearance, points, [&](const std::vector<Vec2>& places) {
+    return geometry::find_columns(mesh, thickness, cells, axes, places);
+  });
 }
 
 }  // namespace shatterbox::fracture

@@ -89,13 +89,13 @@ double depth_at(const FacetShade& shade, const Vec2& place) {
 
 }  // namespace
 
-std::vector<SolidColumn> find_columns(const SolidComplex& complex, const std::vector<int>& cells,
-                                      const ColumnAxes& axes, const std::vector<Vec2>& places) {
+std::vector<Column> find_columns(const SolidComplex& complex, const std::vector<int>& cells,
+                                 const ColumnAxes& axes, const std::vector<Vec2>& places) {
   const std::vector<FacetShade> border = find_border(complex, cells, axes);
-  std::vector<SolidColumn> columns;
+  std::vector<Column> columns;
   columns.reserve(places.size());
   for (const Vec2& place : places) {
-    SolidColumn column;
+    Column column;
     column.begin = 1e300;
     column.end = -1e300;
     for (const FacetShade& shade : border) {
@@ -112,7 +112,7 @@ std::vector<SolidColumn> find_columns(const SolidComplex& complex, const std::ve
         column.square_out = square;
       }
     }
-    columns.push_back(column.length > 0.0 && column.begin < column.end ? column : SolidColumn{});
+    columns.push_back(column.length > 0.0 && column.begin < column.end ? column : Column{});
   }
   return columns;
 }

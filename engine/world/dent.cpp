@@ -101,21 +101,22 @@ body::BodyId put_dented(MovingState& moving, const body::Body& body, const Dente
   return id;
 }
 
-DentRow describe_dent(const body::Body& body, const ComingDent& coming, const Dented* dented, double time) {
+DentRow describe_dent(const body::Body& body, const ComingDent& coming, const fracture::DentFigures& figures,
+                      const Dented* dented, double time) {
   DentRow row;
   row.time = time;
   row.body = body.name;
   row.id = body.id;
   row.von_mises = coming.von_mises;
   row.yield = coming.yield;
-  row.flowed_volume = coming.figures().flowed;
-  row.is_cut = coming.figures().is_cut;
+  row.flowed_volume = figures.flowed;
+  row.is_cut = figures.is_cut;
   row.share = 0.0;
   row.place = body.pose.apply(coming.place - body.shape->material_from_body);
   if (!dented) return row;
   row.share = dented->share;
   row.depth = depth_of(dented->way);
-  row.energy = coming.figures().work;
+  row.energy = figures.work;
   row.volume_change = dented->volume_change;
   row.mass_error = std::abs(dented->shape->mass / body.shape->mass - 1.0);
   return row;
@@ -167,11 +168,19 @@ void World::dent_bodies(const MovingState& snapshot) {
       const body::Body body = *body::find_body(s.moving.bodies, id);
       const Fragile& whole = *s.moving.fragiles.at(id);
       const auto* solid = coming.solid();
+      fracture::DentFigures figures = coming.figures();
+      fracture::ShellShape shape;
+      if (!solid) {
+        shape = find_dent_shape(*coming.shell());
+        figures.work = shape.work;
+        figures.is_cut = shape.is_cut;
+        if (shape.moves.empty()) continue;
+      }
       const std::optional<Dented> dented = find_dented(s.moving, s.contact_settings, body, [&](double share) {
         return solid ? make_dented(body, whole, *solid, left, share)
-                     : make_dented(body, whole, *coming.shell(), share);
+                     : make_dented(body, whole, shape.moves, share);
       });
-      DentRow row = describe_dent(body, coming, dented ? &*dented : nullptr, end_time);
+      DentRow row = describe_dent(body, coming, figures, dented ? &*dented : nullptr, end_time);
       if (dented) {
         if (solid) leave(*solid, dented->share, dented->moves, left);
         row.born = put_dented(s.moving, body, *dented, s.ancestry);

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "engine/body/body.h"
-#include "engine/fracture/shell_dent.h"
 #include "engine/fracture/solid_dent.h"
 #include "engine/world/dent_room.h"
 #include "engine/world/fragile.h"
@@ -26,7 +25,8 @@ struct Dented {
 /// `left`: what other dents of the same hit have done to the solid.
 Dented make_dented(const body::Body& body, const Fragile& whole, const fracture::SolidDent& dent,
                    const fracture::LeftDents& left, double share);
-Dented make_dented(const body::Body& body, const Fragile& whole, const fracture::ShellDent& dent,
+/// `moves`: |vertices of the elements|, m.
+Dented make_dented(const body::Body& body, const Fragile& whole, const std::vector<Vec3>& moves,
                    double share);
 
 /// Sets the way of a dented surface, of which `was_at` tells where a place of the material (m) was before;

@@ -57,10 +57,10 @@ std::shared_ptr<Fragile> dent_fragile(const Fragile& whole, double mass,
 
 }  // namespace
 
-Dented make_dented(const body::Body& body, const Fragile& whole, const fracture::ShellDent& dent,
+Dented make_dented(const body::Body& body, const Fragile& whole, const std::vector<Vec3>& moves,
                    double share) {
   const auto& subject = std::get<fracture::ShellSubject>(whole.subject);
-  const auto mesh = deform(*subject.mesh, dent.moves, share);
+  const auto mesh = deform(*subject.mesh, moves, share);
   Dented dented;
   dented.share = share;
   dented.fragile = dent_fragile(whole, body.shape->mass, mesh);

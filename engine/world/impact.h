@@ -29,6 +29,7 @@ struct Load {
   double time = 0.0;                  // s, of the last one
   double duration = 0.0;              // s, of a blast; 0: that of the impact
   double spread = 0.0;                // m, radius of the disc over which a blast came
+  bool was_asked = false;             // whether the other goes through: he does not
 };
 
 /// What an impact leaves when it is over.

@@ -53,11 +53,11 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
       break;
   }
   if (verdict.von_mises > 0.0) row.verdict += ", " + format_yield(verdict);
-  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
-  if (!solid || !solid->perforation || !solid->perforation->is_near()) return row;
-  row.perforation_energy = solid->perforation->needed;
-  row.perforation_ratio = solid->perforation->ratio();
-  if (!find_hole(impact)) row.verdict += ", " + describe_perforation(*solid->perforation);
+  const fracture::Perforation* asked = find_perforation(impact);
+  if (!asked || !asked->is_near()) return row;
+  row.perforation_energy = asked->needed;
+  row.perforation_ratio = asked->ratio();
+  if (!find_hole(impact)) row.verdict += ", " + describe_perforation(*asked);
   return row;
 }
 

@@ -12,16 +12,13 @@ constexpr double kSurelyBefore = 0.002;  // and at least, so that rounding does 
 constexpr int kMostHoleParts = 4096;     // of one step
 constexpr double kHoleLengths = 3.0;     // of its own, and of the hole, that a striker goes until he is out
 constexpr double kLongestWay = 30.0;     // times as long as at his first speed, that this takes at most
-constexpr double kPlugTolerance =
-    0.01;  // of the section's diameter: a plug's sharp corner, which stands back, may stand out so far
 
 /// A plug is inside of all the hole's sides.
 bool is_plug(const body::Shape& shape, const fracture::Perforation& hole) {
-  const double slack = kPlugTolerance * section_of(hole.striker).diameter;
   return std::all_of(shape.surface.positions.begin(), shape.surface.positions.end(), [&](const Vec3& p) {
     const Vec3 place = p + shape.material_from_body;
     return std::all_of(hole.sides.begin(), hole.sides.end(), [&](const geometry::PunchSide& side) {
-      return side.normal.dot(place) <= side.offset + slack;
+      return side.normal.dot(place) <= side.offset + hole.slack;
     });
   });
 }
@@ -38,10 +35,13 @@ void log_push(const body::Body& pushed, const body::Body& striker, const Vec3& p
 
 }  // namespace
 
+const fracture::Perforation* find_perforation(const EvaluatedImpact& impact) {
+  return std::visit([](const auto& decision) { return decision.perforation.get(); }, impact.decision);
+}
+
 const fracture::Perforation* find_hole(const EvaluatedImpact& impact) {
-  const auto* solid = std::get_if<fracture::SolidDecision>(&impact.decision);
-  const bool is_through = solid && solid->perforation && solid->perforation->is_through();
-  return is_through ? solid->perforation.get() : nullptr;
+  const fracture::Perforation* asked = find_perforation(impact);
+  return asked && asked->is_through() ? asked : nullptr;
 }
 
 bool waits_for_striker(const EvaluatedImpact& impact, std::span<const EvaluatedImpact> impacts) {
@@ -136,18 +136,23 @@ void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const B
 }
 
 void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row, bool keeps_dents) {
-  const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
-  const fracture::Perforation& hole = *decision.perforation;
+  const fracture::Perforation& hole = *find_hole(impact);
   const double way = kHoleLengths * (section_of(hole.striker).diameter + hole.thickness);
   const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
                       (hole.striker.mass + hole.plug_mass);
   const double speed = std::max(left, hole.striker.speed / kLongestWay);
-  ComingDent coming{decision.dent, decision.verdict.von_mises, decision.verdict.yield, hole.striker.place,
-                    hole.striker.time + way / speed};
   for (const body::BodyId id : row.born) {
     if (is_plug(*body::find_body(moving.bodies, id)->shape, hole)) continue;
     moving.memories[id].keeps_dents = keeps_dents;
-    if (keeps_dents && decision.dent) moving.memories[id].dents.push_back(coming);
+    if (!keeps_dents) continue;
+    std::visit(
+        [&](const auto& decision) {
+          if (decision.dent)
+            moving.memories[id].dents.push_back({decision.dent, decision.verdict.von_mises,
+                                                 decision.verdict.yield, hole.striker.place,
+                                                 hole.striker.time + way / speed});
+        },
+        impact.decision);
   }
 }
 

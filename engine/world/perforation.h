@@ -1,4 +1,4 @@
-// A solid that is gone through: what its hole takes from the striker, how a plug comes along, and what is
+// A body that is gone through: what its hole takes from the striker, how a plug comes along, and what is
 // left [RI63].
 #pragma once
 
@@ -10,6 +10,9 @@
 #include "engine/world/replace.h"
 
 namespace shatterbox::world {
+
+/// What was asked of the impact's striker; null: nobody comes near to going through.
+const fracture::Perforation* find_perforation(const EvaluatedImpact& impact);
 
 /// The hole through which the impact's striker goes, or null.
 const fracture::Perforation* find_hole(const EvaluatedImpact& impact);

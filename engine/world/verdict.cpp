@@ -7,6 +7,7 @@
 #include "engine/material/tempering.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/stress_bound.h"
+#include "engine/world/perforation.h"
 
 namespace shatterbox::world {
 namespace {
@@ -193,11 +194,11 @@ void add_to_event(ImpactMemory& memory, const std::vector<Load>& hits, double ra
 void fill_candidate(const Judge& judge, const body::Body& body, double radius, double time, bool is_struck,
                     const ImpactMemory& memory, Candidate& candidate) {
   const bool is_paper = judge.settings.criterion == Criterion::paper;
-  const bool is_solid = std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject);
   const std::vector<Load> event = is_struck ? memory.event : std::vector<Load>{};
   for (const Load& load : event) {
     candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
-    if (judge.begin && !is_paper && load.time >= judge.begin->time && is_solid &&
+    candidate.impact.loads.back().was_asked = load.was_asked;
+    if (judge.begin && !is_paper && load.time >= judge.begin->time &&
         candidate.fragile->material().yield > 0.0)
       candidate.impact.loads.back().striker = find_striker(*judge.begin, judge.log, body.id, load.other);
   }
@@ -303,10 +304,10 @@ void keep_verdict(double duration, double tested_growth, ImpactMemory& memory) {
 
 /// The dent of the event that is under way, in place of what it was when less of the event was known.
 void await_dent(const EvaluatedImpact& impact, const body::Body& body, ImpactMemory& memory) {
-  if (memory.has_open_dent) memory.dents.pop_back();
-  memory.has_open_dent = false;
   const fracture::Verdict& verdict = impact.figures().verdict;
   const bool holds = verdict.outcome == fracture::Outcome::held || impact.is_cracked_only();
+  if (memory.has_open_dent) memory.dents.pop_back();
+  memory.has_open_dent = false;
   // What tears does not keep the shape in which it tore.
   const bool is_over = memory.generation == 0 || impact.first_time > memory.charged_until;
   if (!holds || !memory.keeps_dents || !is_over) return;
@@ -396,6 +397,8 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
                           tested_growth, false};
     ImpactMemory& memory = memories[impact.id];
     if (impact.is_struck) await_dent(impact, *candidates[i].body, memory);
+    if (const fracture::Perforation* asked = find_perforation(impact); asked && !asked->is_through())
+      for (Load& load : memory.event) load.was_asked = true;
     keep_verdict(duration, tested_growth, memory);
     figures.solves += decision.generations;
     figures.factorisations += decision.factorisations;

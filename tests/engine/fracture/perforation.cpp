@@ -1,5 +1,5 @@
 // The law of holes through what yields, and the plug that is cut: whatever the elements, it has room.
-#include "engine/fracture/perforation.h"
+#include "engine/fracture/solid_hole.h"
 
 #include <catch2/catch.hpp>
 
@@ -71,7 +71,7 @@ double distance_from_core(const Vec2& point, const std::vector<Vec2>& core) {
 }
 
 /// Least room between the wall and the striker's section, m; looked for along all edges of the wall.
-double least_room(const Perforation& hole, int tag) {
+double least_room(const SolidHole& hole, int tag) {
   double room = 1e300;
   const geometry::SolidComplex& complex = *hole.complex;
   for (const geometry::SolidFacet& facet : complex.facets) {
@@ -224,7 +224,7 @@ TEST_CASE("perforation: a way that is half open beside an edge costs half of the
 namespace {
 
 /// What is left when the plug is gone.
-geometry::SolidComplex take_plug_out(const Perforation& hole) {
+geometry::SolidComplex take_plug_out(const SolidHole& hole) {
   const geometry::SolidComplex& cut = *hole.complex;
   std::vector<int> kept;
   for (std::size_t c = 0; c < cut.cells.size(); ++c) {
@@ -362,7 +362,7 @@ TEST_CASE("a stamp whose side lies in the side of a plate has nothing of it in i
     for (int digits = -63; digits <= 63; digits += 3) {
       striker.centre = Vec3((0.2 + half) * (1.0 + 1e-16 * digits), across, 0.0);
       INFO(across << ", " << digits);
-      const WayMaterial way = find_way_material(plate, cells, striker);
+      const WayMaterial way = find_way_material(plate, cells, striker, 0.02 * section_of(striker).diameter);
       CHECK(std::abs(way.thickness) < 1e-12);
       double sum = 0.0, least = 0.0;
       for (const ThicknessShare& share : way.section) {

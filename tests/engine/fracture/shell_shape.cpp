@@ -8,8 +8,7 @@
 
 #include "engine/core/index.h"
 #include "engine/geometry/mass_properties.h"
-#include "engine/material/material.h"
-#include "tests/engine/fracture/shapes.h"
+#include "tests/engine/fracture/steel_sheet.h"
 
 using namespace shatterbox;
 using namespace shatterbox::fracture;
@@ -17,17 +16,6 @@ using namespace shatterbox::fracture;
 namespace {
 
 constexpr double kThickness = 1e-3;  // m
-
-ShellSubject steel_sheet(std::shared_ptr<const geometry::ShellElements> elements,
-                         std::vector<int> clamped = {}) {
-  ShellSubject subject;
-  subject.clamped_vertices = std::move(clamped);
-  subject.mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
-  subject.material = *material::find_preset("steel");
-  subject.thickness = kThickness;
-  prepare_subject(subject);
-  return subject;
-}
 
 /// One curvature (1/m) in all elements for which `is_in` (of their middles).
 template <class IsIn>
@@ -61,8 +49,8 @@ double depth_of(const ShellShape& shape) {
 
 TEST_CASE("shell shape: a strip that is bent by two radians is an arc of its length and its area") {
   constexpr double kBend = 4.0, kLength = 0.5;  // 1/m, m
-  const ShellSubject subject =
-      steel_sheet(test::make_elements(geometry::make_pane(kLength, 0.1, {0.02, 0.3, 1}).value()));
+  const ShellSubject subject = test::steel_sheet(
+      test::make_elements(geometry::make_pane(kLength, 0.1, {0.02, 0.3, 1}).value()), kThickness);
   Mat2 curvature = Mat2::Zero();
   curvature(0, 0) = kBend;
   const stress::SheetFlow flow = flow_of(subject, curvature, [](const Vec3&) { return true; });
@@ -90,7 +78,7 @@ TEST_CASE("shell shape: a dish in a held plate stretches it, and what that takes
   for (std::size_t v = 0; v < elements->mesh.positions.size(); ++v)
     if (elements->mesh.positions[v].cwiseAbs().maxCoeff() > 0.15 - 1e-9)
       border.push_back(static_cast<int>(v));
-  const ShellSubject subject = steel_sheet(elements, border);
+  const ShellSubject subject = test::steel_sheet(elements, kThickness, border);
   const stress::SheetFlow flow =
       flow_of(subject, 4.0 * Mat2::Identity(), [](const Vec3& middle) { return middle.norm() < 0.04; });
   double last = 0.0;
@@ -107,7 +95,7 @@ TEST_CASE("shell shape: a dish in a held plate stretches it, and what that takes
 }
 
 TEST_CASE("shell shape: without energy there is no dent, and never more than the sheet can bear") {
-  const ShellSubject subject = steel_sheet(test::make_pane(0.3, 0.02));
+  const ShellSubject subject = test::steel_sheet(test::make_pane(0.3, 0.02), kThickness);
   const stress::SheetFlow flow =
       flow_of(subject, 4.0 * Mat2::Identity(), [](const Vec3& middle) { return middle.norm() < 0.06; });
   CHECK(depth_of(find_shell_shape(subject, flow, 0.0)) == 0.0);

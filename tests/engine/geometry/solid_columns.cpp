@@ -35,9 +35,9 @@ TEST_CASE("columns of a plate are as long as it is thick over the cosine and say
     // Multiples of the elements' size among them: lines in faces and along edges.
     for (int i = -4; i <= 4; ++i)
       for (int k = -6; k <= 6; ++k) places.emplace_back(0.01 * i, 0.02 * k + 0.003 * (i % 2));
-    const std::vector<SolidColumn> columns = find_columns(plate, test::all_cells(plate), axes, places);
+    const std::vector<Column> columns = find_columns(plate, test::all_cells(plate), axes, places);
     REQUIRE(columns.size() == places.size());
-    for (const SolidColumn& column : columns) {
+    for (const Column& column : columns) {
       CHECK(column.length == Approx(0.02 / std::cos(turn)).epsilon(1e-12));
       CHECK(column.square_in == Approx(std::cos(turn)));
       CHECK(column.square_out == Approx(std::cos(turn)));
@@ -64,9 +64,9 @@ TEST_CASE("columns add up to the volume of what they go through and of what is l
     for (int k = 0; k < kSide; ++k)
       places.emplace_back(0.1 * (i + 0.5) / kSide - 0.05, 0.1 * (k + 0.5) / kSide - 0.05);
   const double area = 0.01 / (kSide * kSide);
-  const auto volume_of = [&](const std::vector<SolidColumn>& columns) {
+  const auto volume_of = [&](const std::vector<Column>& columns) {
     double volume = 0.0;
-    for (const SolidColumn& column : columns) volume += area * column.length;
+    for (const Column& column : columns) volume += area * column.length;
     return volume;
   };
   const auto within = find_columns(block, inside, {}, places),

@@ -123,3 +123,73 @@ TEST_CASE("shell dents: the same bits for any number of threads") {
   };
   CHECK(hash(1) == hash(3));
 }
+
+namespace {
+
+/// A ball of 3 cm radius and 0.89 kg at a sheet of steel in its frame, 1.5 mm thick.
+PotRun shoot_sheet(double speed, int rate) {
+  world::WorldSettings settings;
+  settings.steps_per_second = rate;
+  settings.gravity = Vec3::Zero();
+  PotRun run{world::World(settings), {}};
+  world::World& w = run.world;
+  REQUIRE(w.add_material(*material::find_preset("steel")).ok());
+  world::ShellDescription shell;
+  shell.mesh = geometry::make_pane(0.5, 0.5, {test::kIsSanitized ? 0.05 : 0.02, 0.3, 1}).value();
+  shell.thickness = 1.5e-3;
+  for (std::size_t v = 0; v < shell.mesh.positions.size(); ++v)
+    if (shell.mesh.positions[v].cwiseAbs().maxCoeff() > 0.25 - 1e-9)
+      shell.clamped.push_back(static_cast<int>(v));
+  run.area = geometry::surface_area(shell.mesh);
+  world::BodyDescription sheet, ball;
+  sheet.name = "sheet";
+  sheet.form = shell;
+  REQUIRE(w.add_body(sheet).ok());
+  ball.name = "ball";
+  ball.form = world::SphereDescription{0.03};
+  ball.pose.translation = Vec3(0.013, -0.021, 0.3);
+  ball.velocity = Vec3(0.0, 0.0, -speed);
+  REQUIRE(w.add_body(ball).ok());
+  run.audit = test::run_audited(w, 1.2 / speed);
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "shell dents: who brings enough goes through a sheet, as fast as the law says, and leaves it dished") {
+  double last = 0.0;
+  for (const int rate : {240, 960}) {
+    const PotRun run = shoot_sheet(80.0, rate);
+    const world::WorldReport& report = run.world.report();
+    CAPTURE(rate);
+    REQUIRE(report.breaks.size() == 1);
+    CHECK(report.breaks[0].pieces == 2);
+    CHECK(report.breaks[0].mass_error < 1e-10);
+    CHECK(report.breaks[0].momentum_error < 1e-10);
+    CHECK(run.audit.crossings + run.audit.passages == 0);
+    double speed = 0.0, mass = 0.0, plug = 0.0;
+    for (const body::Body& body : run.world.bodies()) {
+      if (body.name == "ball") {
+        speed = -body.velocity.z();
+        mass = body.shape->mass;
+      }
+      if (body.name == "sheet/1") plug = body.shape->mass;
+    }
+    // m / (m + m_plug) sqrt(v^2 - v_limit^2) [RI63].
+    const double needed = report.breaks[0].fracture_energy;
+    CHECK(plug > 0.03);
+    CHECK(speed ==
+          Approx(mass / (mass + plug) * std::sqrt(80.0 * 80.0 - 2.0 * needed / mass)).epsilon(0.002));
+    REQUIRE(report.dents.size() == 1);
+    CHECK(report.dents[0].depth > 1e-3);
+    if (last > 0.0) CHECK(report.dents[0].depth == Approx(last).epsilon(0.02));
+    last = report.dents[0].depth;
+    if (test::kIsSanitized) return;
+  }
+  const PotRun held = shoot_sheet(40.0, 240);
+  CHECK(held.world.report().breaks.empty());
+  REQUIRE(held.world.report().impacts.size() >= 1);
+  CHECK(held.world.report().impacts[0].perforation_ratio < 1.0);
+  CHECK(held.world.report().impacts[0].perforation_ratio > 0.3);
+}
