@@ -111,6 +111,7 @@ class Decider {
     if (!(subject_.material.yield > 0.0)) return;
     struck_displacement_ = force_.struck_displacement(decision_);
     struck_energy_ = {force_.struck_energy(), force_.lost_energy()};
+    yield_ = find_yield(subject_, struck_displacement_, struck_energy_);
   }
 
   /// Whether the one who strikes hardest goes through: then his hole is all that breaks.
@@ -134,11 +135,12 @@ class Decider {
     return true;
   }
 
-  /// As of solids: under a striker who does not go through metal flows, and no crack starts.
+  /// As of solids: under a striker who does not go through metal flows, and no crack starts; nor where flow
+  /// takes up all of the energy, whoever brings it.
   bool leave_to_dent() {
-    if (!decision_.perforation && !was_asked(impact_)) return false;
+    if (!decision_.perforation && !was_asked(impact_) && !yield_.takes_all) return false;
     decision_.verdict.outcome = Outcome::held;
-    decision_.verdict.reason = "it is dented, and not gone through";
+    decision_.verdict.reason = yield_.takes_all ? "metal flows before it cracks" : "it is not gone through";
     decision_.tips = subject_.tips;
     return true;
   }
@@ -147,16 +149,14 @@ class Decider {
   /// holds and that gives it as much momentum.
   void take_dent() {
     if (struck_displacement_.size() == 0) return;
-    const bool is_holed = decision_.perforation && decision_.perforation->is_through();
-    const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
-    const double energy = share * share;
-    const bool keeps = is_holed || decision_.verdict.outcome == Outcome::held;
-    ShellYieldFinding finding =
-        find_yield(subject_, share * struck_displacement_,
-                   {energy * struck_energy_.all, keeps ? energy * struck_energy_.most : 0.0});
-    decision_.verdict.von_mises = finding.stress / share;
+    decision_.verdict.von_mises = yield_.stress;
     decision_.verdict.yield = subject_.material.yield;
-    decision_.dent = std::move(finding.dent);
+    if (decision_.verdict.outcome == Outcome::held) decision_.dent = std::move(yield_.dent);
+    if (!decision_.perforation || !decision_.perforation->is_through()) return;
+    const double share = decision_.perforation->momentum_share(), energy = share * share;
+    decision_.dent = find_yield(subject_, share * struck_displacement_,
+                                {energy * struck_energy_.all, energy * struck_energy_.most})
+                         .dent;
   }
 
   int first_crack() const {
@@ -412,6 +412,7 @@ class Decider {
   std::vector<Candidate> candidates_;
   VecX struck_displacement_;  // |dof| of the uncracked mesh; of what yields
   DentEnergy struck_energy_;
+  ShellYieldFinding yield_;  // under these
   int next_crack_ = 0;
 };
 

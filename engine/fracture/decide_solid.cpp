@@ -184,7 +184,7 @@ class SolidDecider {
   void leave_to_dent(std::vector<SolidCandidate>& candidates) {
     if ((!decision_.perforation && !was_asked(impact_)) || candidates.empty()) return;
     candidates.clear();
-    decision_.verdict.reason = "it is dented, and not gone through";
+    decision_.verdict.reason = "it is not gone through";
   }
 
   SolidTracerSetup tracer_setup() {

@@ -11,13 +11,12 @@ constexpr double kLeastDepth = 0.05;  // of the thickness: what moves by less ca
 }  // namespace
 
 ShellShape find_dent_shape(const ShellDent& dent) {
-  ShellShape shape = find_shell_shape(dent.subject, dent.flow, dent.work);
+  const double plasticity = dent.subject.material.plasticity;
+  ShellShape shape = find_shell_shape(dent.subject, dent.flow, plasticity * dent.work);
+  shape.work /= plasticity;
   double depth = 0.0;
-  for (Vec3& move : shape.moves) {
-    move *= dent.subject.material.plasticity;
-    depth = std::max(depth, move.norm());
-  }
-  if (!(depth > kLeastDepth * dent.subject.thickness)) shape.moves.clear();
+  for (const Vec3& move : moves_at(shape, 1.0)) depth = std::max(depth, move.norm());
+  if (!(depth > kLeastDepth * dent.subject.thickness)) shape.way.clear();
   return shape;
 }
 
@@ -32,6 +31,7 @@ ShellYieldFinding find_yield(const ShellSubject& subject, const VecX& displaceme
   stress::SheetFlow flow = stress::find_plastic_flow(stiffness, *subject.mesh, stresses,
                                                      {material.yield, material.elongation, energy.all});
   finding.stress = flow.greatest_stress;
+  finding.takes_all = energy.most > 0.0 && flow.work >= energy.most;
   const double work = std::min(flow.work, energy.most);
   if (!(work > 0.0) || !(material.plasticity > 0.0)) return finding;
   auto dent = std::make_shared<ShellDent>();

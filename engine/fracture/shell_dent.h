@@ -17,7 +17,8 @@ struct ShellDent : DentFigures {
   stress::SheetFlow flow;  // in these proportions
 };
 
-/// Where the dent leaves the shell; without moves if that cannot be seen.
+/// Where the dent leaves the shell, and by which way; without one if it cannot be seen. A `plasticity` other
+/// than 1 gives it so many times the energy.
 ShellShape find_dent_shape(const ShellDent& dent);
 
 /// What an impact's linear displacement at its peak (|dof|, m and rad, of the collisions alone) means for the
@@ -25,6 +26,7 @@ ShellShape find_dent_shape(const ShellDent& dent);
 struct ShellYieldFinding {
   double stress = 0.0;                    // Pa, von Mises, greatest
   std::shared_ptr<const ShellDent> dent;  // null: nothing flows
+  bool takes_all = false;                 // flow, short of tearing, takes up all that is not given back
 };
 
 ShellYieldFinding find_yield(const ShellSubject& subject, const VecX& displacement, const DentEnergy& energy);

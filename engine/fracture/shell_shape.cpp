@@ -27,6 +27,8 @@ constexpr int kMostMends = 4;             // of a step
 constexpr int kMostHalvings = 5;          // of one
 constexpr double kMendIsDone = 0.1;       // of the step: a mend that is smaller is the last
 constexpr double kShapeTolerance = 1e-4;  // of a solve: the next one mends what it leaves
+constexpr int kMostTears = 5;             // that a step is made smaller for
+constexpr double kTornCut = 0.3;          // of it, each time
 constexpr double kLeastAreaShare = 0.3;   // of an element's, that a dent leaves it
 
 using Angles = std::vector<std::array<double, 3>>;  // |T|, one for each edge of an element
@@ -104,7 +106,7 @@ class ShapeFinder {
 
   ShellShape find(double energy) {
     double share = 0.0, step = 0.0, work = 0.0;
-    int cuts = 0;
+    int cuts = 0, tears = 0;
     ShellShape shape;
     for (int number = 0; number < kMostSteps && work < kSpent * energy; ++number) {
       core::stop_if_asked();
@@ -115,9 +117,11 @@ class ShapeFinder {
       share += step;
       keep_stretch(share);
       if (is_torn()) {
-        now_ = before;
-        shape.is_cut = true;
-        break;
+        now_ = before;  // again, in a smaller step, or this is how far it goes
+        share -= step;
+        if (++tears == kMostTears) break;
+        step *= kTornCut;
+        continue;
       }
       work = find_work(share);
       if (const double left = energy - work_before;
@@ -132,13 +136,13 @@ class ShapeFinder {
         go_back(before, (energy - work_before) / (work - work_before));
         work = energy;
       }
+      shape.way.push_back(moves());
       const double rate = (work - work_before) / step;
       step *= std::clamp(kTurn / std::max(turn, 1e-300), 0.5, 2.0);
       if (rate > 0.0) step = std::min(step, (energy - work) / rate);
     }
     shape.work = work;
-    for (Size v = 0; v < rest_.mesh.positions.size(); ++v)
-      shape.moves.push_back(now_.elements->mesh.positions[v] - rest_.mesh.positions[v]);
+    shape.is_cut = tears == kMostTears;
     return shape;
   }
 
@@ -313,6 +317,12 @@ class ShapeFinder {
     return false;
   }
 
+  std::vector<Vec3> moves() const {
+    std::vector<Vec3> moves = now_.elements->mesh.positions;
+    for (Size v = 0; v < moves.size(); ++v) moves[v] -= rest_.mesh.positions[v];
+    return moves;
+  }
+
   /// To a share of the way from `before`.
   void go_back(const ShellState& before, double share) {
     auto moved = std::make_shared<geometry::ShellElements>(*now_.elements);
@@ -333,6 +343,19 @@ class ShapeFinder {
 };
 
 }  // namespace
+
+std::vector<Vec3> moves_at(const ShellShape& shape, double share) {
+  if (shape.way.empty()) return {};
+  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(shape.way.size());
+  const Size before = std::min(static_cast<Size>(place), shape.way.size() - 1);
+  const double further = place - static_cast<double>(before);
+  std::vector<Vec3> moves = shape.way[before];
+  for (Size v = 0; v < moves.size(); ++v) {
+    const Vec3 from = before > 0 ? shape.way[before - 1][v] : Vec3(Vec3::Zero());
+    moves[v] = from + further * (moves[v] - from);
+  }
+  return moves;
+}
 
 ShellShape find_shell_shape(const ShellSubject& subject, const stress::SheetFlow& flow, double energy) {
   return ShapeFinder(subject, flow).find(energy);

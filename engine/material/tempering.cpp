@@ -37,7 +37,7 @@ double between(double x, double x0, double x1, double y0, double y1) {
 }  // namespace
 
 double borne_tension(const Material& material) {
-  return material.strength + material.surface_compression;
+  return failure_stress(material) + material.surface_compression;
 }
 
 double stored_energy(const Material& material, double thickness) {

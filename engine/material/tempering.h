@@ -9,8 +9,8 @@
 
 namespace shatterbox::material {
 
-/// The tension (Pa) by loads that the weakest usual flaw of a face bears: the strength, and the compression
-/// that loads must first undo.
+/// The tension (Pa) by loads of a linear solve that the weakest usual flaw of a face bears: at which the
+/// material fails, and the compression that loads must first undo.
 double borne_tension(const Material& material);
 
 /// Elastic energy stored in a square metre of a sheet `thickness` m thick, J/m2: (1 - nu) s^2 t / (5 E).

@@ -14,29 +14,38 @@ namespace {
 
 using core::at;
 
-constexpr double kRoomShare = 0.5;  // of the gap that contact keeps, that a dent leaves to others
-constexpr int kMostRooms = 4;       // times that a dent is cut to what is free
-constexpr double kRoomSlack = 0.9;  // of what was found free, then: the cut dent goes slightly elsewhere
+constexpr double kRoomShare = 0.5;   // of the gap that contact keeps, that a dent leaves to others
+constexpr int kMostRooms = 4;        // times that a dent is cut to what is free
+constexpr int kMostPushes = 4;       // by others, that set a dented body aside
+constexpr double kPushSlack = 1.05;  // times as far as it takes
+constexpr double kRoomSlack = 0.9;   // of what was found free, then: the cut dent goes slightly elsewhere
+// Durations of a hit after its last impulse, until its dent is there. A sheet's hit lasts for several
+// pictures, and its dent is made in the first half; what comes later in it is a hit of its own then.
+constexpr double kSolidWait = 2.0, kSheetWait = 0.5;
 constexpr double kLeastDentShare = 0.01;  // of a dent; less is none
 
-/// Share of its way that a dent can go before it meets anybody, or a sheet itself.
-double find_free_share(const MovingState& moving, const dynamics::ContactSettings& contact,
-                       const body::Body& body, const MovingSurface& way) {
-  double share = 1.0;
+/// How far a dent can go before it meets anybody, or a sheet itself.
+Room find_least_room(const MovingState& moving, const dynamics::ContactSettings& contact,
+                     const body::Body& body, const MovingSurface& way) {
+  Room least;
   for (const body::Body& other : moving.bodies) {
     if (other.id == body.id || !body.collides_with(other)) continue;
-    if (!body.is_dynamic() && !other.is_dynamic()) continue;
+    const bool are_held = !body.is_dynamic() && !other.is_dynamic();
     const auto* pair = moving.contact.find_pair(std::min(body.id, other.id), std::max(body.id, other.id));
     if (pair && pair->is_exempt) continue;
     double radius = 1e300;
     for (const body::Body* one : {&body, &other})
       if (one->is_dynamic()) radius = std::min(radius, one->shape->bounding_radius);
-    share = std::min(share, free_share(way, other, kRoomShare * contact.kept_gap * 2.0 * radius));
+    if (are_held) radius = body.shape->bounding_radius;
+    const Room room = find_room(way, other, kRoomShare * contact.kept_gap * 2.0 * radius);
+    if (are_held && !(room.share > 0.0)) continue;  // it is in what holds it
+    if (room.share < least.share) least = room;
   }
-  if (body.shape->kind == body::ShapeKind::shell)
-    share = std::min(share,
-                     own_free_share(way, kRoomShare * contact.kept_gap * 2.0 * body.shape->bounding_radius));
-  return share;
+  if (body.shape->kind == body::ShapeKind::shell) {
+    const double own = own_free_share(way, kRoomShare * contact.kept_gap * 2.0 * body.shape->bounding_radius);
+    if (own < least.share) least = {own, Vec3::Zero(), 0.0};
+  }
+  return least;
 }
 
 void replace_by(MovingState& moving, const body::Body& body, body::Body born, const Dented& dented,
@@ -44,6 +53,10 @@ void replace_by(MovingState& moving, const body::Body& body, body::Body born, co
   ImpactMemory memory = moving.memories[body.id];
   memory.dents.clear();
   memory.has_open_dent = false;
+  if (body.shape->kind == body::ShapeKind::shell) {
+    memory.event.clear();
+    memory.event_duration = 0.0;
+  }
   moving.memories.erase(body.id);
   moving.memories[born.id] = std::move(memory);
   moving.fragiles.erase(body.id);
@@ -62,14 +75,37 @@ double depth_of(const MovingSurface& way) {
   return depth;
 }
 
+void set_aside(const Vec3& shift, Dented& dented) {
+  dented.pose.translation += shift;
+  for (Vec3& end : dented.way.end) end += shift;
+}
+
+/// A free body that is dented where it lies is pushed aside by whom it would meet: what is squeezed flat
+/// comes down on its top, and not half through the floor. Nothing if it fits nowhere so.
+template <class Make>
+std::optional<Dented> find_aside(const MovingState& moving, const dynamics::ContactSettings& contact,
+                                 const body::Body& body, const Make& make) {
+  Vec3 shift = Vec3::Zero();
+  for (int push = 0; push <= kMostPushes; ++push) {
+    Dented dented = make(1.0);
+    set_aside(shift, dented);
+    const Room room = find_least_room(moving, contact, body, dented.way);
+    if (room.share >= 1.0) return dented;
+    if (!body.is_dynamic() || !(room.approach > 0.0)) break;
+    shift += kPushSlack * (1.0 - room.share) * room.approach * room.normal;
+  }
+  return std::nullopt;
+}
+
 /// A dent with the whole share that there is room for; nothing if there is none at all. `make` of a share.
 template <class Make>
 std::optional<Dented> find_dented(const MovingState& moving, const dynamics::ContactSettings& contact,
                                   const body::Body& body, const Make& make) {
+  if (std::optional<Dented> aside = find_aside(moving, contact, body, make)) return aside;
   double share = 1.0;
-  for (int room = 0; room < kMostRooms && share > kLeastDentShare; ++room) {
+  for (int number = 0; number < kMostRooms && share > kLeastDentShare; ++number) {
     Dented dented = make(share);
-    const double free = find_free_share(moving, contact, body, dented.way);
+    const double free = find_least_room(moving, contact, body, dented.way).share;
     if (free >= 1.0) return dented;
     share *= kRoomSlack * free;
   }
@@ -145,7 +181,7 @@ void set_way(const body::Body& body, const std::function<Vec3(int, const Vec3&)>
   }
 }
 
-void World::dent_bodies(const MovingState& snapshot) {
+std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
   State& s = *state_;
   const double end_time = static_cast<double>(s.steps + 1) / s.settings.steps_per_second;
   std::vector<body::BodyId> due;
@@ -154,12 +190,22 @@ void World::dent_bodies(const MovingState& snapshot) {
     if (std::any_of(memory.dents.begin(), memory.dents.end(),
                     [&](const ComingDent& coming) { return coming.not_before > time(); }))
       continue;
-    double last = -1e9;
-    for (const Load& load : memory.event) last = std::max(last, load.time);
-    if (!memory.has_open_dent || end_time - last > 2.0 * memory.event_duration) due.push_back(id);
+    double last = -1e9, first = 1e9;
+    for (const Load& load : memory.event) {
+      first = std::min(first, load.first_time);
+      last = std::max(last, load.time);
+    }
+    const bool is_sheet = memory.dents.back().shell() != nullptr;
+    const double wait = is_sheet ? kSheetWait : kSolidWait;
+    if (!memory.has_open_dent || end_time - last > wait * memory.event_duration ||
+        (is_sheet && end_time - first > memory.event_duration))
+      due.push_back(id);
   }
+  std::vector<BreakRow> reshaped;
   for (body::BodyId id : due) {
     keep_begin(snapshot);
+    BreakRow change;
+    change.id = id;
     std::vector<ComingDent> dents = std::move(s.moving.memories[id].dents);
     s.moving.memories[id].dents.clear();
     s.moving.memories[id].has_open_dent = false;
@@ -174,11 +220,11 @@ void World::dent_bodies(const MovingState& snapshot) {
         shape = find_dent_shape(*coming.shell());
         figures.work = shape.work;
         figures.is_cut = shape.is_cut;
-        if (shape.moves.empty()) continue;
+        if (shape.way.empty()) continue;
       }
       const std::optional<Dented> dented = find_dented(s.moving, s.contact_settings, body, [&](double share) {
         return solid ? make_dented(body, whole, *solid, left, share)
-                     : make_dented(body, whole, shape.moves, share);
+                     : make_dented(body, whole, moves_at(shape, share), share);
       });
       DentRow row = describe_dent(body, coming, figures, dented ? &*dented : nullptr, end_time);
       if (dented) {
@@ -192,7 +238,11 @@ void World::dent_bodies(const MovingState& snapshot) {
       }
       s.report.dents.push_back(std::move(row));
     }
+    if (id == change.id) continue;
+    change.born = {id};
+    reshaped.push_back(std::move(change));
   }
+  return reshaped;
 }
 
 }  // namespace shatterbox::world

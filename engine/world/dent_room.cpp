@@ -55,7 +55,7 @@ class RoomSearch {
     own_ = theirs_ = collider_of(surface);
   }
 
-  double find() {
+  Room find() {
     std::vector<geometry::Box> own_boxes, their_boxes;
     const auto own_box = [&](int v) { return swept_box(surface_.start, surface_.end, v); };
     const auto their_box = [&](int v) { return swept_box(their_start_, their_end_, v); };
@@ -78,7 +78,7 @@ class RoomSearch {
                                test_triangles(s, t);
                            }
                        });
-    return share_;
+    return room_;
   }
 
  private:
@@ -113,7 +113,7 @@ class RoomSearch {
     if (have_common_vertex(std::array<int, 1>{vertex}, triangle)) return;
     const auto point = pack<1>(their_start_, {vertex}), point_end = pack<1>(their_end_, {vertex});
     const auto start = pack<3>(surface_.start, triangle), end = pack<3>(surface_.end, triangle);
-    settle(theirs_->radius, [&](double least) {
+    settle(theirs_->radius, -1.0, triangle, [&](double least) {
       return geometry::test_point_triangle(point.data(), start.data(), point_end.data(), end.data(), least);
     });
   }
@@ -121,7 +121,7 @@ class RoomSearch {
   void test_own_vertex(int vertex, const geometry::Triangle& triangle) {
     const auto start = pack<1>(surface_.start, {vertex}), end = pack<1>(surface_.end, {vertex});
     const auto their_start = pack<3>(their_start_, triangle), their_end = pack<3>(their_end_, triangle);
-    settle(0.0, [&](double least) {
+    settle(0.0, 1.0, std::array<int, 1>{vertex}, [&](double least) {
       return geometry::test_point_triangle(start.data(), their_start.data(), end.data(), their_end.data(),
                                            least);
     });
@@ -131,13 +131,14 @@ class RoomSearch {
     if (have_common_vertex(own, theirs)) return;
     const auto start = pack<2>(surface_.start, own), end = pack<2>(surface_.end, own);
     const auto their_start = pack<2>(their_start_, theirs), their_end = pack<2>(their_end_, theirs);
-    settle(0.0, [&](double least) {
+    settle(0.0, 1.0, own, [&](double least) {
       return geometry::test_edge_edge(start.data(), their_start.data(), end.data(), their_end.data(), least);
     });
   }
 
-  template <class Test>
-  void settle(double radius, const Test& test) {
+  /// `sign`: of the test's normal, to point to the surface. `corners`: of it, that meet.
+  template <std::size_t Count, class Test>
+  void settle(double radius, double sign, const std::array<int, Count>& corners, const Test& test) {
     geometry::ContinuousResult result = test(radius + least_);
     if (!result.hit) return;
     if (result.time_of_impact <= 0.0) {
@@ -145,7 +146,13 @@ class RoomSearch {
       result = test(radius + kNearestShare * std::max(0.0, gap));
       if (!result.hit) return;
     }
-    share_ = std::min(share_, result.time_of_impact);
+    if (result.time_of_impact >= room_.share) return;
+    room_.share = result.time_of_impact;
+    room_.normal = sign * Vec3(result.normal[0], result.normal[1], result.normal[2]);
+    room_.approach = 0.0;
+    for (const int v : corners)
+      room_.approach =
+          std::max(room_.approach, -room_.normal.dot(surface_.end[at(v)] - surface_.start[at(v)]));
   }
 
   const MovingSurface& surface_;
@@ -153,7 +160,7 @@ class RoomSearch {
   std::shared_ptr<const collision::Collider> own_, theirs_;
   std::vector<Vec3> their_start_, their_end_;
   bool is_itself_ = false;
-  double share_ = 1.0;
+  Room room_;
 };
 
 /// Whether no point of the surface comes that near to a body on its way.
@@ -166,30 +173,31 @@ bool is_far(const MovingSurface& surface, const body::Body& other, double least)
   return (centre.cwiseMax(box.low).cwiseMin(box.high) - centre).norm() > reach;
 }
 
-double free_share_of_plane(const MovingSurface& surface, const body::Body& plane, double least) {
+Room room_before_plane(const MovingSurface& surface, const body::Body& plane, double least) {
+  Room room;
   const Vec3 normal = plane.pose.rotation * Vec3::UnitY();
-  double share = 1.0;
   for (std::size_t v = 0; v < surface.start.size(); ++v) {
     const double before = normal.dot(surface.start[v] - plane.pose.translation);
     const double after = normal.dot(surface.end[v] - plane.pose.translation);
     const double wanted = std::min(least, kNearestShare * before);
     if (after >= wanted || after >= before) continue;
-    share = std::min(share, std::max(0.0, before - wanted) / (before - after));
+    room.share = std::min(room.share, std::max(0.0, before - wanted) / (before - after));
+    room.normal = normal;
+    room.approach = std::max(room.approach, before - after);
   }
-  return share;
+  return room;
 }
 
 }  // namespace
 
-double free_share(const MovingSurface& surface, const body::Body& other, double least_separation) {
-  if (other.shape->kind == body::ShapeKind::plane)
-    return free_share_of_plane(surface, other, least_separation);
-  if (is_far(surface, other, least_separation)) return 1.0;
+Room find_room(const MovingSurface& surface, const body::Body& other, double least_separation) {
+  if (other.shape->kind == body::ShapeKind::plane) return room_before_plane(surface, other, least_separation);
+  if (is_far(surface, other, least_separation)) return {};
   return RoomSearch(surface, other, least_separation).find();
 }
 
 double own_free_share(const MovingSurface& surface, double least_separation) {
-  return RoomSearch(surface, least_separation).find();
+  return RoomSearch(surface, least_separation).find().share;
 }
 
 }  // namespace shatterbox::world

@@ -28,9 +28,9 @@ Vec3 carry(const geometry::ShellElements& from, const geometry::ShellElements& t
 }
 
 std::shared_ptr<const geometry::ShellMesh> deform(const geometry::ShellMesh& before,
-                                                  const std::vector<Vec3>& moves, double share) {
+                                                  const std::vector<Vec3>& moves) {
   auto elements = std::make_shared<geometry::ShellElements>(*before.elements);
-  for (std::size_t v = 0; v < moves.size(); ++v) elements->mesh.positions[v] += share * moves[v];
+  for (std::size_t v = 0; v < moves.size(); ++v) elements->mesh.positions[v] += moves[v];
   auto mesh = std::make_shared<geometry::ShellMesh>(before);
   mesh->elements = elements;
   for (geometry::ShellCell& cell : mesh->cells)
@@ -60,7 +60,7 @@ std::shared_ptr<Fragile> dent_fragile(const Fragile& whole, double mass,
 Dented make_dented(const body::Body& body, const Fragile& whole, const std::vector<Vec3>& moves,
                    double share) {
   const auto& subject = std::get<fracture::ShellSubject>(whole.subject);
-  const auto mesh = deform(*subject.mesh, moves, share);
+  const auto mesh = deform(*subject.mesh, moves);
   Dented dented;
   dented.share = share;
   dented.fragile = dent_fragile(whole, body.shape->mass, mesh);

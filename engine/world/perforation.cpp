@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/world/dent_room.h"
+
 namespace shatterbox::world {
 namespace {
 
@@ -11,6 +13,8 @@ constexpr double kBeforeHit = 0.06;      // of the striker's diameter: how far f
 constexpr double kSurelyBefore = 0.002;  // and at least, so that rounding does not put the hit a part earlier
 constexpr int kMostHoleParts = 4096;     // of one step
 constexpr double kHoleLengths = 3.0;     // of its own, and of the hole, that a striker goes until he is out
+constexpr double kPlugAhead = 0.1;       // of the striker's diameter, that a sheet's plug begins ahead
+constexpr double kPlugRoom = 1e-6;       // of it, that it keeps from others there
 constexpr double kLongestWay = 30.0;     // times as long as at his first speed, that this takes at most
 
 /// A plug is inside of all the hole's sides.
@@ -33,6 +37,27 @@ void log_push(const body::Body& pushed, const body::Body& striker, const Vec3& p
   log.push_back(entry);
 }
 
+/// Where a sheet is not square to the way, its plug's rim would lie beside the hole's as it begins to move,
+/// and contact, which tells two edges by one plane, would hold it there: it begins a little ahead, as far as
+/// is free.
+void set_ahead(const MovingState& moving, const fracture::Perforation& hole, const Vec3& direction,
+               body::Body& plug) {
+  if (plug.shape->kind != body::ShapeKind::shell) return;
+  const double diameter = section_of(hole.striker).diameter;
+  const Vec3 shift = kPlugAhead * diameter * direction;
+  MovingSurface way;
+  way.triangles = plug.shape->surface.triangles;
+  for (const Vec3& p : plug.shape->surface.positions) {
+    way.start.push_back(plug.pose.apply(p));
+    way.end.push_back(way.start.back() + shift);
+  }
+  double share = 1.0;
+  for (const body::Body& other : moving.bodies)
+    if (other.id != plug.id && other.id != hole.striker.number && plug.collides_with(other))
+      share = std::min(share, find_room(way, other, kPlugRoom * diameter).share);
+  plug.pose.translation += share * shift;
+}
+
 }  // namespace
 
 const fracture::Perforation* find_perforation(const EvaluatedImpact& impact) {
@@ -42,6 +67,13 @@ const fracture::Perforation* find_perforation(const EvaluatedImpact& impact) {
 const fracture::Perforation* find_hole(const EvaluatedImpact& impact) {
   const fracture::Perforation* asked = find_perforation(impact);
   return asked && asked->is_through() ? asked : nullptr;
+}
+
+double time_behind(const fracture::Perforation& hole) {
+  const double way = kHoleLengths * (section_of(hole.striker).diameter + hole.thickness);
+  const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
+                      (hole.striker.mass + hole.plug_mass);
+  return hole.striker.time + way / std::max(left, hole.striker.speed / kLongestWay);
 }
 
 bool waits_for_striker(const EvaluatedImpact& impact, std::span<const EvaluatedImpact> impacts) {
@@ -132,15 +164,12 @@ void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const B
     striker->velocity -= striker->inverse_mass * impulse;
     log_push(*plug, *striker, point, impulse, closing, 1.0 / (plug->inverse_mass + striker->inverse_mass),
              log);
+    set_ahead(moving, hole, direction, *plug);
   }
 }
 
 void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakRow& row, bool keeps_dents) {
   const fracture::Perforation& hole = *find_hole(impact);
-  const double way = kHoleLengths * (section_of(hole.striker).diameter + hole.thickness);
-  const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
-                      (hole.striker.mass + hole.plug_mass);
-  const double speed = std::max(left, hole.striker.speed / kLongestWay);
   for (const body::BodyId id : row.born) {
     if (is_plug(*body::find_body(moving.bodies, id)->shape, hole)) continue;
     moving.memories[id].keeps_dents = keeps_dents;
@@ -150,7 +179,7 @@ void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakR
           if (decision.dent)
             moving.memories[id].dents.push_back({decision.dent, decision.verdict.von_mises,
                                                  decision.verdict.yield, hole.striker.place,
-                                                 hole.striker.time + way / speed});
+                                                 time_behind(hole)});
         },
         impact.decision);
   }

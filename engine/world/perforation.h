@@ -17,6 +17,9 @@ const fracture::Perforation* find_perforation(const EvaluatedImpact& impact);
 /// The hole through which the impact's striker goes, or null.
 const fracture::Perforation* find_hole(const EvaluatedImpact& impact);
 
+/// s: when striker and plug are out of the hole, and what they meet is another hit.
+double time_behind(const fracture::Perforation& hole);
+
 /// Whether the break of this impact waits for the next pass: its striker breaks itself in this one, or goes
 /// through another body first.
 bool waits_for_striker(const EvaluatedImpact& impact, std::span<const EvaluatedImpact> impacts);

@@ -4,6 +4,7 @@
 
 #include "engine/geometry/crossings.h"
 #include "engine/world/clashes.h"
+#include "engine/world/perforation.h"
 #include "engine/world/pieces.h"
 
 namespace shatterbox::world {
@@ -168,9 +169,12 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);
   measure_errors(parent, born, row);
   for (body::Body& body : born) body.velocity = body.locked.let_move(body.velocity);
-  insert_pieces(moving, parent, memory, pieces, std::move(born), time,
-                impact.first_time + 2.0 * impact.figures().verdict.duration, impact.hardest.other, ancestry,
-                row);
+  // Who went through meets what is behind as if for the first time.
+  double charged_until = impact.first_time + 2.0 * impact.figures().verdict.duration;
+  if (const fracture::Perforation* hole = find_hole(impact))
+    charged_until = std::min(charged_until, time_behind(*hole));
+  insert_pieces(moving, parent, memory, pieces, std::move(born), time, charged_until, impact.hardest.other,
+                ancestry, row);
   return row;
 }
 

@@ -268,7 +268,15 @@ void World::finish_parts(int count, const MovingState& snapshot, dynamics::Conta
   const bool may_break = !s.moving.fragiles.empty() || !s.moving.contact.joints.empty();
   const bool may_yield = may_break && std::any_of(s.materials.begin(), s.materials.end(),
                                                   [](const material::Material& m) { return m.yield > 0.0; });
-  if (may_yield) s.report.stages.time("dents", [&] { dent_bodies(snapshot); });
+  if (may_yield)
+    s.report.stages.time("dents", [&] {
+      const std::vector<body::Body> before =
+          s.contact_settings.has_ways ? s.moving.bodies : std::vector<body::Body>{};
+      const std::vector<BreakRow> reshaped = dent_bodies(snapshot);
+      // They went through the step in the shape that they had.
+      if (s.contact_settings.has_ways)
+        divide_ways(before, reshaped, s.moving.bodies, 1.0, contact.ways, s.ended_ways);
+    });
   if (may_yield) tell_watcher("dents", {count - 1, count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
     dynamics::end_step(s.contact_settings, contact, count, s.moving.contact);

@@ -175,7 +175,8 @@ class World {
   /// Stage "fracture": goes back and puts pieces in place. True if the part must be taken again.
   bool break_bodies(std::span<const EvaluatedImpact* const> broken, MovingState& snapshot);
   /// Stage "dents": what impacts that are over have left.
-  void dent_bodies(const MovingState& snapshot);
+  /// Returns who has become whom by it.
+  std::vector<BreakRow> dent_bodies(const MovingState& snapshot);
   /// Stage "joints", of the impulses of one part.
   std::vector<JointVerdict> judge_joints(const dynamics::StepPart& part, const body::ImpulseLog& log);
   /// Opens those that are overloaded most. True if the part must be taken again.

@@ -67,6 +67,28 @@ std::string break_lines(const RunRecord& record) {
   return text;
 }
 
+/// The deepest.
+std::string dent_lines(const RunRecord& record) {
+  std::vector<const world::DentRow*> rows;
+  for (const world::DentRow& row : record.world.dents) rows.push_back(&row);
+  if (rows.empty()) return {};
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto* a, const auto* b) { return a->depth > b->depth; });
+  std::string text = fmt::format("{}{}\n", counted(static_cast<long>(rows.size()), "dent", "dents"),
+                                 rows.size() > kMostRows ? ", the deepest:" : ":");
+  if (rows.size() > kMostRows) rows.resize(kMostRows);
+  std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) { return a->time < b->time; });
+  for (const world::DentRow* row : rows)
+    text += row->share > 0.0
+                ? fmt::format("  {:7.3f} s  {:<16} {:.3g} mm deep, {:.3g} J of flow{}\n", row->time,
+                              row->body, 1e3 * row->depth, row->energy,
+                              row->share < 1.0 ? fmt::format(", {:.0f} % of it, as far as there was room",
+                                                             100.0 * row->share)
+                                               : "")
+                : fmt::format("  {:7.3f} s  {:<16} none: there was no room for it\n", row->time, row->body);
+  return text;
+}
+
 std::string joint_line(const RunRecord& record) {
   const auto& joints = record.world.joints;
   if (joints.empty()) return {};
@@ -208,9 +230,9 @@ std::string make_summary(const RunRecord& record) {
     text += fmt::format("interrupted at {:.2f} of {:g} s; with --resume it goes on\n",
                         record.simulated_seconds, record.asked_seconds);
   }
-  text += bodies_line(record) + impact_lines(record) + break_lines(record) + joint_line(record) +
-          time_lines(record) + crossing_line(record) + parted_line(record) + behind_lines(record) +
-          error_line(record) + audit_line(record);
+  text += bodies_line(record) + impact_lines(record) + break_lines(record) + dent_lines(record) +
+          joint_line(record) + time_lines(record) + crossing_line(record) + parted_line(record) +
+          behind_lines(record) + error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   const std::string pace =

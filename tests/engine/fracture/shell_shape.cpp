@@ -33,15 +33,16 @@ stress::SheetFlow flow_of(const ShellSubject& subject, const Mat2& curvature, co
   return flow;
 }
 
-double area_after(const ShellSubject& subject, const ShellShape& shape) {
+double area_after(const ShellSubject& subject, const ShellShape& shape, double share = 1.0) {
   geometry::TriangleMesh mesh = subject.mesh->elements->mesh;
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.positions[v] += shape.moves[v];
+  const std::vector<Vec3> moves = moves_at(shape, share);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.positions[v] += moves[v];
   return geometry::surface_area(mesh) / geometry::surface_area(subject.mesh->elements->mesh);
 }
 
 double depth_of(const ShellShape& shape) {
   double depth = 0.0;
-  for (const Vec3& move : shape.moves) depth = std::max(depth, move.norm());
+  for (const Vec3& move : moves_at(shape, 1.0)) depth = std::max(depth, move.norm());
   return depth;
 }
 
@@ -57,14 +58,16 @@ TEST_CASE("shell shape: a strip that is bent by two radians is an arc of its len
   const ShellShape shape = find_shell_shape(subject, flow, flow.work);
   CHECK_FALSE(shape.is_cut);
   CHECK(shape.work == Approx(flow.work).epsilon(0.03));
-  CHECK(area_after(subject, shape) == Approx(1.0).margin(0.005));
+  for (const double share : {0.1, 0.37, 0.5, 0.9, 1.0})
+    CHECK(area_after(subject, shape, share) == Approx(1.0).margin(0.005));
+  const std::vector<Vec3> moves = moves_at(shape, 1.0);
   const auto& positions = subject.mesh->elements->mesh.positions;
   Vec3 ends[2] = {Vec3::Zero(), Vec3::Zero()};
   int counts[2] = {0, 0};
   for (std::size_t v = 0; v < positions.size(); ++v)
     for (int side = 0; side < 2; ++side)
       if (std::abs(positions[v].x() - (side - 0.5) * kLength) < 1e-9) {
-        ends[side] += positions[v] + shape.moves[v];
+        ends[side] += positions[v] + moves[v];
         ++counts[side];
       }
   const double bend = kBend * shape.work / flow.work;
