@@ -126,8 +126,14 @@ TEST_CASE("shell dents: the same bits for any number of threads") {
 
 namespace {
 
-/// A ball of 3 cm radius and 0.89 kg at a sheet of steel in its frame, 1.5 mm thick.
-PotRun shoot_sheet(double speed, int rate) {
+struct SheetShots {
+  std::vector<double> speeds;  // m/s, of balls of 3 cm radius and 0.89 kg, one after the other
+  double apart = 0.0;          // m, between the places that they hit
+  double gap = 0.0;            // m, behind the sheet to a wall that stands; 0: none
+};
+
+/// At a sheet of steel in its frame, 1.5 mm thick.
+PotRun shoot_sheet(const SheetShots& shots, int rate) {
   world::WorldSettings settings;
   settings.steps_per_second = rate;
   settings.gravity = Vec3::Zero();
@@ -147,10 +153,24 @@ PotRun shoot_sheet(double speed, int rate) {
   REQUIRE(w.add_body(sheet).ok());
   ball.name = "ball";
   ball.form = world::SphereDescription{0.03};
-  ball.pose.translation = Vec3(0.013, -0.021, 0.3);
-  ball.velocity = Vec3(0.0, 0.0, -speed);
-  REQUIRE(w.add_body(ball).ok());
-  run.audit = test::run_audited(w, 1.2 / speed);
+  double until = 0.0;
+  for (std::size_t i = 0; i < shots.speeds.size(); ++i) {
+    const double place = 0.013 + shots.apart * static_cast<double>(i);
+    // The next one arrives 20 ms after.
+    until = i == 0 ? 0.3 / shots.speeds[0] : until + 0.02;
+    ball.pose.translation = Vec3(place, -0.021, shots.speeds[i] * until);
+    ball.velocity = Vec3(0.0, 0.0, -shots.speeds[i]);
+    REQUIRE(w.add_body(ball).ok());
+  }
+  if (shots.gap > 0.0) {
+    world::BodyDescription wall;
+    wall.form = world::BoxDescription{Vec3(0.2, 0.2, 0.02)};
+    wall.pose.translation = Vec3(0.0, 0.0, -0.02 - shots.gap);
+    wall.motion = body::Motion::fixed;
+    REQUIRE(w.add_body(wall).ok());
+  }
+  run.audit =
+      test::run_audited(w, until + std::max(0.9 / shots.speeds.back(), shots.speeds.size() > 1 ? 0.05 : 0.0));
   return run;
 }
 
@@ -160,7 +180,7 @@ TEST_CASE(
     "shell dents: who brings enough goes through a sheet, as fast as the law says, and leaves it dished") {
   double last = 0.0;
   for (const int rate : {240, 960}) {
-    const PotRun run = shoot_sheet(80.0, rate);
+    const PotRun run = shoot_sheet({{80.0}}, rate);
     const world::WorldReport& report = run.world.report();
     CAPTURE(rate);
     REQUIRE(report.breaks.size() == 1);
@@ -187,9 +207,33 @@ TEST_CASE(
     last = report.dents[0].depth;
     if (test::kIsSanitized) return;
   }
-  const PotRun held = shoot_sheet(40.0, 240);
+  const PotRun held = shoot_sheet({{40.0}}, 240);
   CHECK(held.world.report().breaks.empty());
   REQUIRE(held.world.report().impacts.size() >= 1);
   CHECK(held.world.report().impacts[0].perforation_ratio < 1.0);
   CHECK(held.world.report().impacts[0].perforation_ratio > 0.3);
+}
+
+TEST_CASE("shell dents: hits after a hole, one soon after the other, have each a dent of its own") {
+  if (test::kIsSanitized) return;
+  const PotRun run = shoot_sheet({{80.0, 30.0, 30.0, 30.0}, -0.08}, 480);
+  REQUIRE(run.world.report().breaks.size() == 1);
+  REQUIRE(run.world.report().dents.size() == 4);
+  for (const world::DentRow& dent : run.world.report().dents) CHECK(dent.depth > 2e-3);
+  CHECK(run.audit.crossings + run.audit.passages == 0);
+}
+
+TEST_CASE("shell dents: a held sheet keeps out of a wall that stands behind it") {
+  if (test::kIsSanitized) return;
+  const PotRun run = shoot_sheet({{40.0}, 0.0, 0.004}, 240);
+  REQUIRE(run.world.report().dents.size() >= 1);
+  for (const world::DentRow& dent : run.world.report().dents) {
+    CHECK(dent.share < 1.0);
+    CHECK(dent.depth < 0.01);
+  }
+  for (const body::Body& body : run.world.bodies()) {
+    if (body.name != "sheet") continue;
+    for (const Vec3& p : body.shape->surface.positions)
+      if (const Vec3 x = body.pose.apply(p); x.head<2>().cwiseAbs().maxCoeff() < 0.19) CHECK(x.z() > -0.004);
+  }
 }
