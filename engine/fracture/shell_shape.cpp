@@ -196,6 +196,7 @@ class ShapeFinder {
       }
       strains[c].curvature(2) *= 0.5;
       const int e = mesh_.cells[c].element;
+      if (!(geometry::element_area(rest_, e) > 0.0)) continue;
       const Mat2 gradient = find_sides(*now_.elements, e) * find_sides(rest_, e).inverse();
       const Mat2 green = 0.5 * (gradient.transpose() * gradient - Mat2::Identity());
       strains[c].membrane = Vec3(green(0, 0), green(1, 1), green(0, 1));
@@ -259,8 +260,11 @@ class ShapeFinder {
     const std::vector<double> turns = mean_of_copies(mesh_.edge_source, now_.normals.size(), 0.0, [&](int e) {
       return change(stress::edge_dof(mesh_, e));
     });
-    for (Size e = 0; e < turns.size(); ++e)
-      now_.normals[e] = Eigen::AngleAxisd(turns[e], edge_direction(*now_.elements, e)) * now_.normals[e];
+    for (Size e = 0; e < turns.size(); ++e) {
+      const core::SinCos turn = core::sin_cos(turns[e]);
+      Vec3& normal = now_.normals[e];
+      normal = turn.cos * normal + turn.sin * edge_direction(*now_.elements, e).cross(normal);
+    }
     auto moved = std::make_shared<geometry::ShellElements>(*now_.elements);
     for (Size v = 0; v < steps.size(); ++v) moved->mesh.positions[v] += steps[v];
     now_.elements = std::move(moved);

@@ -3,8 +3,10 @@
 // free. The body keeps its mass and momenta; copies that shared its shape keep theirs.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/world/acts.h"
 #include "engine/world/dented.h"
 #include "engine/world/state.h"
@@ -158,6 +160,29 @@ DentRow describe_dent(const body::Body& body, const ComingDent& coming, const fr
   return row;
 }
 
+/// The dents of one body, and the shapes of those that are of a sheet.
+struct ShapedDents {
+  std::vector<ComingDent> dents;
+  std::vector<fracture::ShellShape> shapes;
+};
+
+std::vector<ShapedDents> find_shapes(const std::map<body::BodyId, ImpactMemory>& memories,
+                                     const std::vector<body::BodyId>& due) {
+  std::vector<ShapedDents> all(due.size());
+  std::vector<std::pair<std::size_t, std::size_t>> sheets;
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    all[i].dents = memories.at(due[i]).dents;
+    all[i].shapes.resize(all[i].dents.size());
+    for (std::size_t k = 0; k < all[i].dents.size(); ++k)
+      if (all[i].dents[k].shell()) sheets.emplace_back(i, k);
+  }
+  core::parallel_for(sheets.size(), 1, [&](std::size_t n) {
+    const auto [i, k] = sheets[n];
+    all[i].shapes[k] = find_dent_shape(*all[i].dents[k].shell());
+  });
+  return all;
+}
+
 }  // namespace
 
 Pose dented_pose(const body::Body& body, const body::Shape& shape) {
@@ -201,23 +226,24 @@ std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
         (is_sheet && end_time - first > memory.event_duration))
       due.push_back(id);
   }
+  const std::vector<ShapedDents> all = find_shapes(s.moving.memories, due);
   std::vector<BreakRow> reshaped;
-  for (body::BodyId id : due) {
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    body::BodyId id = due[i];
     keep_begin(snapshot);
     BreakRow change;
     change.id = id;
-    std::vector<ComingDent> dents = std::move(s.moving.memories[id].dents);
     s.moving.memories[id].dents.clear();
     s.moving.memories[id].has_open_dent = false;
     fracture::LeftDents left;
-    for (const ComingDent& coming : dents) {
+    for (std::size_t k = 0; k < all[i].dents.size(); ++k) {
+      const ComingDent& coming = all[i].dents[k];
+      const fracture::ShellShape& shape = all[i].shapes[k];
       const body::Body body = *body::find_body(s.moving.bodies, id);
       const Fragile& whole = *s.moving.fragiles.at(id);
       const auto* solid = coming.solid();
       fracture::DentFigures figures = coming.figures();
-      fracture::ShellShape shape;
       if (!solid) {
-        shape = find_dent_shape(*coming.shell());
         figures.work = shape.work;
         figures.is_cut = shape.is_cut;
         if (shape.way.empty()) continue;

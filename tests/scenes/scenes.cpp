@@ -136,6 +136,34 @@ TEST_CASE("slab: one ball dents it one goes through and what stands is one piece
   CHECK(held["dents"].size() == 2);
 }
 
+TEST_CASE("panel: three balls dent a sheet and the last goes through with a plug, at any rate") {
+  const Folder folder;
+  for (const char* rate : {"240", "960"}) {
+    const auto report =
+        play(folder, std::string("panel --audit --seconds 1.8 --set scene.steps_per_second=") + rate);
+    check_breaks(report);
+    REQUIRE(report["dents"].size() == 4);
+    for (const auto& dent : report["dents"]) CHECK(dent["depth_m"].get<double>() > 0.004);
+    REQUIRE(report["breaks"].size() == 1);
+    CHECK(report["breaks"][0]["pieces"] == 2);
+    CHECK(report["audit"]["crossings"] == 0);
+    CHECK(report["audit"]["passages"] == 0);
+  }
+}
+
+TEST_CASE("pots: stoneware breaks, steel and aluminium are dented") {
+  const Folder folder;
+  const auto report = play(folder, "pots --audit --seconds 1");
+  check_breaks(report);
+  for (const auto& row : report["breaks"]) CHECK(row["body"].get<std::string>().starts_with("stoneware"));
+  CHECK(report["breaks"].size() > 3);
+  std::vector<std::string> dented;
+  for (const auto& dent : report["dents"]) dented.push_back(dent["body"].get<std::string>());
+  CHECK(std::count(dented.begin(), dented.end(), "steel") >= 1);
+  CHECK(std::count(dented.begin(), dented.end(), "aluminium") >= 1);
+  CHECK(report["audit"]["passages"] == 0);
+}
+
 TEST_CASE("egg: shatters on a worktop, and from a finger's breadth it only cracks into few") {
   const Folder folder;
   const auto high = play(folder, "egg --seconds 0.3");

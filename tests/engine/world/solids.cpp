@@ -175,7 +175,7 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
 
 TEST_CASE("a solid whose elements are larger inside tells an impact as one of even ones, and breaks whole") {
   const auto drop_block = [](int grading, double height) {
-    return drop({Vec3(0.2, 0.17, 0.18), test::kIsSanitized ? 0.045 : 0.022, grading}, height, 0.0, 0.01);
+    return drop({Vec3(0.2, 0.17, 0.18), test::kIsSanitized ? 0.03 : 0.022, grading}, height, 0.0, 0.01);
   };
   const auto tetrahedra_of = [](const world::World& w) {
     for (const world::PartCount& part : w.inventory())
@@ -327,7 +327,7 @@ TEST_CASE("a solid on its foot keeps what holds on to it when it is hit") {
   world::BodyDescription wall = make_slab(Vec3(0.4, 0.3, 0.03), Vec3::Zero());
   auto& solid = std::get<world::SolidDescription>(wall.form);
   solid.is_breakable = true;
-  solid.element_size = test::kIsSanitized ? 0.08 : 0.05;
+  solid.element_size = 0.05;
   solid.held = {{Vec3::UnitY(), -0.28}};
   REQUIRE(w.add_body(wall).ok());
   REQUIRE_FALSE(w.bodies()[0].is_dynamic());
