@@ -20,6 +20,9 @@ namespace {
 /// Share of its size that a solid goes while what breaks it is followed.
 constexpr double kWayOfHit = 0.2;
 
+/// Share of a step in which its dents are made: what ends within it ends before 1.
+constexpr double kDentTime = 1.0 - 1e-9;
+
 /// How long the quickest solid of what broke takes for that, s. Its pieces, face on face, would come upon all
 /// that is in their way at once, and bear together what comes one after the other: most would break again.
 double time_of_hit(const std::vector<const EvaluatedImpact*>& broken, const std::vector<body::Body>& before) {
@@ -275,7 +278,7 @@ void World::finish_parts(int count, const MovingState& snapshot, dynamics::Conta
       const std::vector<BreakRow> reshaped = dent_bodies(snapshot);
       // They went through the step in the shape that they had.
       if (s.contact_settings.has_ways)
-        divide_ways(before, reshaped, s.moving.bodies, 1.0, contact.ways, s.ended_ways);
+        divide_ways(before, reshaped, s.moving.bodies, kDentTime, contact.ways, s.ended_ways);
     });
   if (may_yield) tell_watcher("dents", {count - 1, count}, 0);
   if (s.settings.contact == ContactScheme::standard) {

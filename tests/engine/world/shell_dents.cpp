@@ -77,6 +77,7 @@ TEST_CASE("shell dents: the deeper the harder, the same at any rate, and none wh
     CHECK(run.world.report().breaks.empty());
     CHECK(run.world.report().conservation.momentum_error < 1e-9);
     CHECK(run.audit.crossings + run.audit.passages == 0);
+    CHECK(run.audit.exempt_pairs == 0);
     last = dent.depth;
     if (test::kIsSanitized) return;
   }
