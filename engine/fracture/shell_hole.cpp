@@ -20,7 +20,7 @@ constexpr double kAlongTheWay =
     0.2;  // cosine: where a sheet is nearly along the way another side of it begins
 
 /// Cells (ascending) that may reach into the way and hang together there, none along it, with the one nearest
-/// to `place`.
+/// to where he touched.
 std::vector<int> find_way_cells(const geometry::ShellMesh& mesh,
                                 const std::vector<geometry::CellContact>& contacts,
                                 const std::vector<geometry::PunchSide>& sides, const Striker& striker) {
