@@ -110,14 +110,15 @@ class Decider {
   void note_struck() {
     if (!(subject_.material.yield > 0.0)) return;
     struck_displacement_ = force_.struck_displacement(decision_);
-    struck_energy_ = {force_.struck_energy(), force_.lost_energy()};
+    struck_energy_ = force_.struck_energy();
     yield_ = find_yield(subject_, struck_displacement_, struck_energy_);
   }
 
   /// Whether the one who strikes hardest goes through: then his hole is all that breaks.
   bool take_hole() {
+    if (!(subject_.material.yield > 0.0)) return false;
     const Striker* hardest = hardest_striker(force_.presses());
-    if (!hardest || !(subject_.material.yield > 0.0)) return false;
+    if (!hardest) return false;
     std::optional<ShellHole> found =
         find_perforation(subject_, *hardest, settings_.least_width, first_crack());
     if (!found) return false;

@@ -153,8 +153,9 @@ class SolidDecider {
     if (!(material.yield > 0.0)) return;
     const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
     const double energy = share * share;
+    const DentEnergy struck = force_.struck_energy();
     YieldFinding finding = find_yield(subject_.model, material, share * force_.struck_displacement(),
-                                      {energy * force_.struck_energy(), energy * force_.lost_energy()});
+                                      {energy * struck.all, energy * struck.most});
     decision_.verdict.von_mises = finding.stress / share;
     decision_.verdict.yield = material.yield;
     decision_.dent = std::move(finding.dent);

@@ -11,6 +11,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/vec.h"
+#include "engine/fracture/dent.h"
 #include "engine/fracture/striker.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/stress/contact_duration.h"
@@ -82,6 +83,16 @@ inline bool are_snapshots(const Impact& impact) {
 /// J; 0 of what is no collision.
 inline double collision_energy(const ImpactLoad& load) {
   return 0.5 * load.effective_mass * load.closing_speed * load.closing_speed;
+}
+
+/// Adds what a load brings for a dent, J. Of one that is no collision (a blast): what it leaves in the
+/// springs, under its `force` (N) with the body's `elastic_compliance` (m/N).
+inline void add_energy(const ImpactLoad& load, double force, double elastic_compliance, DentEnergy& sum) {
+  if (load.is_resting) return;
+  const double energy =
+      is_collision(load) ? collision_energy(load) : 0.5 * force * force * elastic_compliance;
+  sum.all += energy;
+  sum.most += (1.0 - load.restitution * load.restitution) * energy;
 }
 
 /// Share of a load's energy (J) that cracks which took `spent` J have left.

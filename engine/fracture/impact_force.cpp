@@ -249,25 +249,10 @@ VecX ImpactForce::struck_displacement(Decision& decision) {
   return std::move(solution.displacement);
 }
 
-double ImpactForce::energy_of(Size i) const {
-  const Press& press = presses_[i];
-  if (press.load->is_resting) return 0.0;
-  return is_collision(*press.load) ? collision_energy(*press.load)
-                                   : 0.5 * press.force * press.force * answers_[i].elastic_compliance;
-}
-
-double ImpactForce::struck_energy() const {
-  double sum = 0.0;
-  for (Size i = 0; i < presses_.size(); ++i) sum += energy_of(i);
-  return sum;
-}
-
-double ImpactForce::lost_energy() const {
-  double sum = 0.0;
-  for (Size i = 0; i < presses_.size(); ++i) {
-    const double restitution = presses_[i].load->restitution;
-    sum += (1.0 - restitution * restitution) * energy_of(i);
-  }
+DentEnergy ImpactForce::struck_energy() const {
+  DentEnergy sum;
+  for (Size i = 0; i < presses_.size(); ++i)
+    add_energy(*presses_[i].load, presses_[i].force, answers_[i].elastic_compliance, sum);
   return sum;
 }
 

@@ -55,10 +55,8 @@ class ImpactForce {
 
   /// That part of it which the collisions cause; zero if there is no answer. Before settle_again.
   VecX struck_displacement(Decision& decision);
-  /// J that the collisions bring. Of loads that are none (a blast): what they leave in the springs.
-  double struck_energy() const;
-  /// J of that which restitution does not give back. Before settle_again.
-  double lost_energy() const;
+  /// What the collisions bring for a dent. Before settle_again.
+  DentEnergy struck_energy() const;
 
   const std::vector<Press>& presses() const { return presses_; }
   const Press& hardest() const { return presses_[hardest_]; }
@@ -76,7 +74,6 @@ class ImpactForce {
   bool use(const System& system, std::string& problem);
   bool answer_lead(std::size_t lead, Decision& decision, std::string& problem);
   bool can_wait(std::size_t i) const;
-  double energy_of(std::size_t i) const;
   template <class IsWanted>
   void answer(const IsWanted& is_wanted, Decision& decision);
   void answer_others(std::size_t lead, Decision& decision);

@@ -231,10 +231,7 @@ class ShapeFinder {
   }
 
   bool solve(double share, VecX& change) const {
-    geometry::ShellMesh mesh = mesh_;
-    mesh.elements = now_.elements;
-    for (geometry::ShellCell& cell : mesh.cells)
-      cell.area = geometry::area_fraction(mesh, cell) * geometry::element_area(*mesh.elements, cell.element);
+    const geometry::ShellMesh mesh = geometry::on_elements(mesh_, now_.elements);
     const auto stiffness = stress::make_shell_stiffness(now_.elements, properties_of(subject_),
                                                         subject_.systems->stiffness().vertex_rank);
     const auto system = stress::ShellSystem::make(stiffness, mesh, 0.0, support_);
@@ -282,9 +279,7 @@ class ShapeFinder {
     const std::vector<stress::SheetStrain> missing = find_missing(share);
     for (Size c = 0; c < missing.size(); ++c) {
       const Vec3 elastic = -missing[c].membrane;
-      const stress::PlaneStress stress(modulus * (elastic(0) + nu * elastic(1)),
-                                       modulus * (elastic(1) + nu * elastic(0)),
-                                       modulus * (1.0 - nu) * elastic(2));
+      const stress::PlaneStress stress = stress::plane_stress(elastic, modulus, nu);
       const double linear = stress::von_mises(stress);
       if (!(linear > material.yield)) continue;
       const Vec3 stays = (1.0 - material.yield / linear) * elastic;

@@ -317,26 +317,10 @@ VecX SolidForce::struck_displacement() const {
   return sum;
 }
 
-namespace {
-
-double energy_of(const SolidPress& press) {
-  if (press.load->is_resting) return 0.0;
-  return is_collision(*press.load) ? collision_energy(*press.load)
-                                   : 0.5 * press.force * press.force * press.elastic_compliance;
-}
-
-}  // namespace
-
-double SolidForce::struck_energy() const {
-  double sum = 0.0;
-  for (const SolidPress& press : presses_) sum += energy_of(press);
-  return sum;
-}
-
-double SolidForce::lost_energy() const {
-  double sum = 0.0;
+DentEnergy SolidForce::struck_energy() const {
+  DentEnergy sum;
   for (const SolidPress& press : presses_)
-    sum += (1.0 - press.load->restitution * press.load->restitution) * energy_of(press);
+    add_energy(*press.load, press.force, press.elastic_compliance, sum);
   return sum;
 }
 

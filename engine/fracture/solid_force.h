@@ -86,10 +86,8 @@ class SolidForce {
   const VecX& displacement() const { return displacement_; }
   /// That part of it which the collisions cause, of the mesh first solved. Before settle_again.
   VecX struck_displacement() const;
-  /// J that the collisions bring. Of loads that are none (a blast): what they leave in the springs.
-  double struck_energy() const;
-  /// J of that which restitution does not give back. Before settle_again.
-  double lost_energy() const;
+  /// What the collisions bring for a dent. Before settle_again.
+  DentEnergy struck_energy() const;
   const std::vector<SolidPress>& presses() const { return presses_; }
   const SolidPress& hardest() const { return presses_[hardest_]; }
   double duration() const { return duration_; }  // s

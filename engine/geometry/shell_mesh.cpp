@@ -197,6 +197,14 @@ double area_fraction(const ShellMesh& mesh, const ShellCell& cell) {
   return twice;  // the reference triangle has the area one half
 }
 
+ShellMesh on_elements(const ShellMesh& mesh, std::shared_ptr<const ShellElements> elements) {
+  ShellMesh moved = mesh;
+  moved.elements = std::move(elements);
+  for (ShellCell& cell : moved.cells)
+    cell.area = area_fraction(moved, cell) * element_area(*moved.elements, cell.element);
+  return moved;
+}
+
 double total_area(const ShellMesh& mesh) {
   double area = 0.0;
   for (const ShellCell& cell : mesh.cells) area += cell.area;

@@ -92,6 +92,9 @@ double round_edge_parameter(double parameter);
 /// Area of a cell's polygon as a share of its element's.
 double area_fraction(const ShellMesh& mesh, const ShellCell& cell);
 
+/// The same cells on elements of the same numbers that lie elsewhere.
+ShellMesh on_elements(const ShellMesh& mesh, std::shared_ptr<const ShellElements> elements);
+
 /// Sum of the cells' areas, m2.
 double total_area(const ShellMesh& mesh);
 

@@ -79,16 +79,13 @@ VecX eigenstrain_load(const ShellStiffness& stiffness, const geometry::ShellMesh
   const double nu = stiffness.properties.poisson_ratio;
   const double thickness = stiffness.relative_thickness;
   // As make_element, of a strain instead of a displacement.
-  const auto resultant = [&](const Vec3& e, double factor) {
-    return Vec3(factor * (e(0) + nu * e(1)), factor * (e(1) + nu * e(0)), factor * (1.0 - nu) * e(2));
-  };
   for (std::size_t c = 0; c < strains.size(); ++c) {
     const geometry::ShellCell& cell = mesh.cells[c];
     const double area = geometry::element_area(*stiffness.elements, cell.element);
     const double membrane = area / (stiffness.length * stiffness.length * (1.0 - nu * nu));
     Eigen::Matrix<double, 6, 1> stress;
-    stress << resultant(strains[c].membrane, membrane),
-        resultant(stiffness.length * strains[c].curvature, membrane * thickness * thickness / 12.0);
+    stress << plane_stress(strains[c].membrane, membrane, nu),
+        plane_stress(stiffness.length * strains[c].curvature, membrane * thickness * thickness / 12.0, nu);
     const Eigen::Matrix<double, kElementDofs, 1> force =
         stiffness.matrices[at(cell.element)].strain.transpose() * stress;
     const double factor = stiffness.force_unit() * stiffness_fraction(*stiffness.elements, cell);

@@ -32,6 +32,11 @@ SheetFlow find_plastic_flow(const ShellStiffness& stiffness, const geometry::She
 /// keeps its volume: 2/sqrt(3) sqrt(xx^2 + yy^2 + xx yy + xy^2).
 double equivalent_strain(const Vec3& membrane);
 
+/// The stress of a strain (xx, yy, xy, tensor); `modulus`: Young's over 1 - nu^2.
+inline PlaneStress plane_stress(const Vec3& e, double modulus, double nu) {
+  return {modulus * (e(0) + nu * e(1)), modulus * (e(1) + nu * e(0)), modulus * (1.0 - nu) * e(2)};
+}
+
 /// The load (|dof|, N and N m) whose answer is the shape of an unloaded shell in which these strains have
 /// stayed (|cells|).
 VecX eigenstrain_load(const ShellStiffness& stiffness, const geometry::ShellMesh& mesh,

@@ -83,15 +83,17 @@ void set_aside(const Vec3& shift, Dented& dented) {
 }
 
 /// A free body that is dented where it lies is pushed aside by whom it would meet: what is squeezed flat
-/// comes down on its top, and not half through the floor. Nothing if it fits nowhere so.
+/// comes down on its top, and not half through the floor. Nothing if it fits nowhere so; `free`: the share of
+/// the dent that there is room for where the body lies.
 template <class Make>
 std::optional<Dented> find_aside(const MovingState& moving, const dynamics::ContactSettings& contact,
-                                 const body::Body& body, const Make& make) {
+                                 const body::Body& body, const Make& make, double& free) {
   Vec3 shift = Vec3::Zero();
   for (int push = 0; push <= kMostPushes; ++push) {
     Dented dented = make(1.0);
     set_aside(shift, dented);
     const Room room = find_least_room(moving, contact, body, dented.way);
+    if (push == 0) free = room.share;
     if (room.share >= 1.0) return dented;
     if (!body.is_dynamic() || !(room.approach > 0.0)) break;
     shift += kPushSlack * (1.0 - room.share) * room.approach * room.normal;
@@ -103,11 +105,12 @@ std::optional<Dented> find_aside(const MovingState& moving, const dynamics::Cont
 template <class Make>
 std::optional<Dented> find_dented(const MovingState& moving, const dynamics::ContactSettings& contact,
                                   const body::Body& body, const Make& make) {
-  if (std::optional<Dented> aside = find_aside(moving, contact, body, make)) return aside;
-  double share = 1.0;
-  for (int number = 0; number < kMostRooms && share > kLeastDentShare; ++number) {
+  double free = 0.0;  // of it, where it lies
+  if (std::optional<Dented> aside = find_aside(moving, contact, body, make, free)) return aside;
+  double share = kRoomSlack * free;
+  for (int number = 1; number < kMostRooms && share > kLeastDentShare; ++number) {
     Dented dented = make(share);
-    const double free = find_least_room(moving, contact, body, dented.way).share;
+    free = find_least_room(moving, contact, body, dented.way).share;
     if (free >= 1.0) return dented;
     share *= kRoomSlack * free;
   }

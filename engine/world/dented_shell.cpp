@@ -31,11 +31,7 @@ std::shared_ptr<const geometry::ShellMesh> deform(const geometry::ShellMesh& bef
                                                   const std::vector<Vec3>& moves) {
   auto elements = std::make_shared<geometry::ShellElements>(*before.elements);
   for (std::size_t v = 0; v < moves.size(); ++v) elements->mesh.positions[v] += moves[v];
-  auto mesh = std::make_shared<geometry::ShellMesh>(before);
-  mesh->elements = elements;
-  for (geometry::ShellCell& cell : mesh->cells)
-    cell.area = geometry::area_fraction(*mesh, cell) * geometry::element_area(*elements, cell.element);
-  return mesh;
+  return std::make_shared<const geometry::ShellMesh>(on_elements(before, std::move(elements)));
 }
 
 /// The shell in its new shape. Flaws and grains lie in elements, and go along.
