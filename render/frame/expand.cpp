@@ -54,7 +54,8 @@ std::vector<glm::vec3> crease_normals(const Mesh& mesh, const Fans& fans, const 
       float least = 1.0F;
       for (const Corner other : fan) {
         const glm::vec3 n = faces.unit[other / 3];
-        const float cosine = glm::dot(n, own);
+        const bool is_lip = is_crack_face(mesh, other / 3) != is_crack_face(mesh, fan[k] / 3);
+        const float cosine = is_lip ? -1.0F : glm::dot(n, own);
         least = std::min(least, cosine);
         if (cosine >= least_cosine) sum += n * faces.weight[other];
       }
@@ -170,8 +171,7 @@ void find_bounds(DrawnMesh& out) {
 void add_face(const Mesh& mesh, Face face, const std::vector<glm::vec3>& normals,
               const std::vector<glm::vec3>& offsets, float shift, Builder& builder) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const bool is_crack =
-        mesh.surface == Surface::solid && !mesh.cracks.empty() && (mesh.cracks[t] & kCrackFace) != 0;
+    const bool is_crack = is_crack_face(mesh, t);
     const std::uint8_t part = mesh.parts.empty() ? std::uint8_t{0} : mesh.parts[t];
     std::uint32_t v[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -212,6 +212,10 @@ void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::
 }
 
 }  // namespace
+
+bool is_crack_face(const Mesh& mesh, std::size_t triangle) {
+  return mesh.surface == Surface::solid && !mesh.cracks.empty() && (mesh.cracks[triangle] & kCrackFace) != 0;
+}
 
 FaceNormals find_face_normals(const Mesh& mesh) {
   FaceNormals out{std::vector<glm::vec3>(mesh.triangles.size()),

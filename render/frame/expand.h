@@ -36,6 +36,9 @@ struct DrawnMesh {
   glm::vec3 box_least{0.0F}, box_most{0.0F};
 };
 
+// Whether a solid's triangle is one: sharp against what is none, at any angle.
+bool is_crack_face(const Mesh& mesh, std::size_t triangle);
+
 // The triangle's unit normal, and its say at each corner: the area over the squares of the two edges there
 // (Max 1999), which gives a sphere's normal where all corners lie on one.
 struct FaceNormals {
@@ -45,7 +48,7 @@ struct FaceNormals {
 FaceNormals find_face_normals(const Mesh& mesh);
 
 // Corner normals (3|T|, unit): the weighted mean over the triangles about a vertex that meet this one at less
-// than the crease angle. Degenerate triangles get +y and weigh nothing.
+// than the crease angle; a crack's lip is sharp at any angle. Degenerate triangles get +y and weigh nothing.
 std::vector<glm::vec3> find_corner_normals(const Mesh& mesh);
 
 // Throws std::invalid_argument when an index is out of range or an array has a length its comment does not

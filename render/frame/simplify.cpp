@@ -110,12 +110,14 @@ bool Simplifier::find_places() {
 // As find_corner_normals does: one for all corners where there is no crease, which it tells.
 bool Simplifier::find_normals(std::uint32_t v, const Fan& fan) {
   for (std::size_t k = 0; k < fan.count; ++k) {
-    const glm::vec3 own = units_[CornerTable::triangle(fan.corners[k])];
+    const std::uint32_t own_triangle = CornerTable::triangle(fan.corners[k]);
+    const glm::vec3 own = units_[own_triangle];
     glm::vec3 sum(0.0F);
     float least = 1.0F;
     for (std::size_t i = 0; i < fan.count; ++i) {
       const std::uint32_t t = CornerTable::triangle(fan.corners[i]);
-      const float cosine = glm::dot(units_[t], own);
+      const bool is_lip = is_crack_face(*mesh_, t) != is_crack_face(*mesh_, own_triangle);
+      const float cosine = is_lip ? -1.0F : glm::dot(units_[t], own);
       least = std::min(least, cosine);
       if (cosine >= crease_cosine_) sum += units_[t] * weights_[3 * t + (fan.corners[i] & 3U)];
     }

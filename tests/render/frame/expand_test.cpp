@@ -89,6 +89,19 @@ TEST_CASE("corner normals stay sharp beyond the crease angle and smooth below it
   CHECK(smooth[0].y == Approx(1.0).epsilon(1e-4));
 }
 
+TEST_CASE("a crack's lip is sharp however flat it is: the outer face keeps its own light") {
+  Mesh chip;
+  chip.surface = Surface::solid;
+  chip.positions = {{0, 0, 0}, {0, 0, 1}, {1, -0.1F, 0}, {-1, 0, 0}};
+  chip.triangles = {{0, 1, 2}, {1, 0, 3}};
+  chip.cracks = {kCrackFace, 0};
+  const auto normals = find_corner_normals(chip);
+  for (const std::size_t corner : {0U, 1U, 2U}) CHECK(normals[corner].x == Approx(0.0995).epsilon(1e-3));
+  for (const std::size_t corner : {3U, 4U, 5U}) CHECK(normals[corner].x == Approx(0.0).margin(1e-7));
+  chip.cracks = {kCrackFace, kCrackFace};
+  CHECK(find_corner_normals(chip)[3].x > 0.02F);
+}
+
 TEST_CASE("analytic bodies are closed and hold the volume they should") {
   const DrawnMesh box = expand(*make_box(1, {1, 2, 3}));
   CHECK(is_closed(box));

@@ -185,6 +185,25 @@ TEST_CASE("a solid stays closed, with its edges sharp and its crack's face where
   }
 }
 
+TEST_CASE("a crack's lip is as sharp of what is simplified, however flat it is") {
+  Mesh ball = *make_sphere(4, 0.5F, 64);
+  ball.normals.clear();
+  ball.cracks.assign(ball.triangles.size(), 0);
+  for (std::size_t t = 0; t < ball.triangles.size(); ++t)
+    if (ball.positions[ball.triangles[t].x].x > 0.45F) ball.cracks[t] = kCrackFace;
+  const Mesh after = simplify(ball, 1e-7F);
+  REQUIRE(after.triangles.size() == ball.triangles.size());
+  const std::vector<glm::vec3> expected = find_corner_normals(ball);
+  ball.cracks.clear();
+  const std::vector<glm::vec3> smooth = find_corner_normals(ball);
+  int sharp = 0;
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    CHECK(glm::distance(after.normals[c], expected[c]) < 1e-6F);
+    sharp += glm::distance(smooth[c], expected[c]) > 1e-2F ? 1 : 0;
+  }
+  CHECK(sharp > 50);
+}
+
 TEST_CASE("simplifying is the same each time, makes up no position, and leaves what cannot be simpler") {
   const Mesh before = make_arch(20);
   const Mesh one = simplify(before, 3e-3F), two = simplify(before, 3e-3F);
