@@ -71,7 +71,6 @@ struct Decision : DecisionFigures {
   std::shared_ptr<const ShellDent> dent;  // of what holds, or has a hole; null: none
   /// Of what yields; if the striker goes through, its hole is the break. Null: nobody comes near that.
   std::shared_ptr<const Perforation> perforation;
-  int core_cells = 0;
   int dice = 0;            // into which stored stress broke it; what is stored is spent then
   double factor_ms = 0.0;  // wall time; enters no state
 };

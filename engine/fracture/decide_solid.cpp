@@ -6,9 +6,11 @@
 
 #include "engine/core/clock.h"
 #include "engine/core/disjoint_sets.h"
+#include "engine/core/hash.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/fracture/solid_bridges.h"
+#include "engine/fracture/solid_core.h"
 #include "engine/fracture/solid_force.h"
 #include "engine/fracture/solid_hole.h"
 #include "engine/fracture/solid_tracer.h"
@@ -23,7 +25,8 @@ constexpr double kToldSize = 1.5;  // of the elements, is the least that they ca
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
 
-constexpr double kLeastLump = 0.5;  // of the cube of that, is what parts from bridges
+constexpr double kLeastLump = 0.5;    // of the cube of that, is what parts from bridges
+constexpr double kLeastCrumb = 1.0;  // of the elements, is a cell of a crushed core: planes do not mind them
 
 // Where a crack came to nothing, none is begun again before the stress is so many times as great.
 constexpr double kSolidTriedAgain = 1.25;
@@ -202,9 +205,7 @@ class SolidDecider {
     for (const SolidPress& press : force_.presses())
       setup.centres.push_back({press.contact.point, press.contact.radius});
     setup.least_size = kToldSize * model().mean_edge_length;
-    setup.energy_budget = settings_.has_energy_guard
-                              ? std::max(0.0, decision_.elastic_energy - decision_.fracture_energy)
-                              : -1.0;
+    setup.energy_budget = settings_.has_energy_guard ? energy_left() : -1.0;
     setup.first_id = subject_.first_cut_id + decision_.cracks;
     return setup;
   }
@@ -254,19 +255,52 @@ class SolidDecider {
     decision_.generations = generations;
     if (!is_known) return false;
     const double size = kToldSize * model().mean_edge_length;
-    const double cost = subject_.material.fracture_energy;
-    const double left = std::max(0.0, decision_.elastic_energy - decision_.fracture_energy);
-    const double area =
-        part_bridges(*complex_, {.contacts = &force_.contacts(),
-                                 .tensions = &tensions_,
-                                 .strength = subject_.flaws->greatest_strength,
-                                 .least_volume = kLeastLump * size * size * size,
-                                 .most_area = settings_.has_energy_guard && cost > 0.0 ? left / cost : 1e300,
-                                 .id = subject_.first_cut_id + decision_.cracks});
+    const double area = part_bridges(*complex_, {.contacts = &force_.contacts(),
+                                                 .tensions = &tensions_,
+                                                 .strength = subject_.flaws->greatest_strength,
+                                                 .least_volume = kLeastLump * size * size * size,
+                                                 .most_area = most_area(),
+                                                 .id = subject_.first_cut_id + decision_.cracks});
     if (!(area > 0.0)) return false;
     ++decision_.cracks;
     decision_.new_area += area;
-    decision_.fracture_energy += cost * area;
+    decision_.fracture_energy += subject_.material.fracture_energy * area;
+    return true;
+  }
+
+  /// J of the event that cracks may still spend.
+  double energy_left() const { return std::max(0.0, decision_.elastic_energy - decision_.fracture_energy); }
+
+  /// Area that the energy left allows, m2.
+  double most_area() const {
+    const double cost = subject_.material.fracture_energy;
+    return settings_.has_energy_guard && cost > 0.0 ? energy_left() / cost : 1e300;
+  }
+
+  /// What is pressed by more than it bears is crushed, where the elements can tell of that. False if nothing
+  /// is.
+  bool crush_cores() {
+    if (!(settings_.core_spacing > 0.0) || subject_.material.yield > 0.0) return false;
+    const auto start = core::Clock::now();
+    SolidCoreSetup setup;
+    for (const SolidPress& press : force_.presses()) {
+      if (!is_collision(*press.load)) continue;
+      const double radius = crushed_disc_radius(press.first_force, subject_.material.strength);
+      if (radius >= kToldSize * model().mean_edge_length)
+        setup.cores.push_back({press.contact.point, radius});
+    }
+    setup.least_size = kLeastCrumb * model().mean_edge_length;
+    setup.most_area = most_area();
+    setup.seed = core::mix(subject_.seed + 0x636f7265);
+    setup.id = subject_.first_cut_id + decision_.cracks;
+    const CrushedSolid crushed = crush(*complex_, setup);
+    decision_.trace_ms += core::milliseconds_since(start);
+    decision_.energy_guard_active = decision_.energy_guard_active || crushed.is_out_of_energy;
+    if (!(crushed.area > 0.0)) return false;
+    ++decision_.cracks;
+    decision_.core_cells = crushed.cells;
+    decision_.new_area += crushed.area;
+    decision_.fracture_energy += subject_.material.fracture_energy * crushed.area;
     return true;
   }
 
@@ -290,6 +324,7 @@ class SolidDecider {
           decision_.energy_guard_active ? "no energy for a crack" : "no crack could start";
       return;
     }
+    if (crush_cores()) parts = count_parts(*complex_);
     decision_.verdict.outcome = Outcome::broke;
     decision_.part_count = parts;
     decision_.complex = std::move(complex_);

@@ -12,6 +12,7 @@ struct DecisionFigures {
   std::vector<double>
       element_stress;  // |T| of the element mesh: greatest principal stress at the peak, first solve, Pa
   int cracks = 0;
+  int core_cells = 0;            // crushed, about hits
   double new_area = 0.0;         // m2, of the cracks (one face)
   double grain_area = 0.0;       // m2 of it, along grain boundaries
   double fracture_energy = 0.0;  // J, used

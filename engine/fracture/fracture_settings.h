@@ -6,7 +6,7 @@ namespace shatterbox::fracture {
 struct FractureSettings {
   int most_generations = 4;   // solves of the cracking body; 2 for speed
   double waviness = 0.06;     // rad, of crack paths
-  double core_spacing = 4.0;  // crushed core: size of its cells at the hit, in thicknesses; 0: no core
+  double core_spacing = 4.0;  // crushed core: size of a shell's cells at the hit, in thicknesses; 0: no core
   double least_width = 0.0;   // m, what contact can resolve; cracks keep wider pieces than that
   bool has_energy_guard = true;
   double solve_residual = 2e-3;  // relative, that conjugate gradients go down to

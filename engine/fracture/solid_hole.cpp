@@ -22,21 +22,24 @@ std::optional<SolidHole> find_perforation(const geometry::SolidComplex& complex,
   SolidHole out{std::move(*begun), nullptr};
   // What is straight in his way tells how thick it is and where it begins; the plug is a cone from there.
   const double clearance = kPlugClearance * section_of(striker).diameter;
-  std::vector<int> cells = find_punch_cells(complex, sides_of_way(striker, clearance), striker.place);
+  const std::vector<int> cells = find_punch_cells(complex, sides_of_way(striker, clearance), striker.place);
   const WayMaterial way = find_way_material(complex, cells, striker, clearance);
   if (!ask_for_hole(material, way, out)) return out;
   const std::vector<geometry::PunchSide> sides = sides_of_way(striker, clearance, kPlugTaper, way.front);
-  cells = find_punch_cells(complex, sides, striker.place);
+  std::vector<int> groups(complex.cells.size(), -1);
+  for (const int cell : find_punch_cells(complex, sides, striker.place))
+    groups[static_cast<std::size_t>(cell)] = 0;
   auto cut = std::make_shared<geometry::SolidComplex>(complex);
-  const geometry::Punched punched = punch_out(*cut, sides, std::move(cells), tag);
+  const geometry::Punched punched = punch_out(*cut, {{sides, 0}}, std::move(groups), tag);
+  const double volume = punched.volumes.front();
   const int part_count = count_parts(*cut);
   if (part_count <= count_parts(complex)) return std::nullopt;
-  if (!(punched.volume > least_width * punched.wall_area)) return out;
-  if (punched.volume > kMostPlug * total_volume(complex)) return std::nullopt;
+  if (!(volume > least_width * punched.wall_area)) return out;
+  if (volume > kMostPlug * total_volume(complex)) return std::nullopt;
   out.complex = std::move(cut);
   out.sides = sides;
   out.slack = kPlugTolerance * section_of(striker).diameter;
-  take_plug(punched.volume, material.density, punched.wall_area, part_count, out);
+  take_plug(volume, material.density, punched.wall_area, part_count, out);
   return out;
 }
 

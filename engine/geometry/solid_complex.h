@@ -42,6 +42,7 @@ struct SolidFacet {
   FacetKind kind = FacetKind::element_face;
   int tag = -1;                      // outer: number of the given triangle; crack, grain: of the cut
   std::array<int, 2> parts{-1, -1};  // facets it was divided into, or -1
+  int plane = -1;                    // crack: those of one tag and number here lie in one plane; -1: alone
 };
 
 struct SolidPart {

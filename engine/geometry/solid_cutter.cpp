@@ -372,6 +372,7 @@ int SolidCutter::add_facet(const std::vector<int>& sides, const SolidCut& cut) {
   facet.side_count = static_cast<int>(sides.size());
   facet.kind = cut.kind;
   facet.tag = cut.id;
+  facet.plane = cut.plane;
   complex_.sides.insert(complex_.sides.end(), sides.begin(), sides.end());
   complex_.facets.push_back(facet);
   facet_marks_.push_back({stamp_, 0, 0.0});
@@ -597,6 +598,7 @@ void SolidCutter::open_facets_in_surface(const SolidCut& cut) {
     if (side_of(facet.cells[0]) * side_of(facet.cells[1]) >= 0) continue;
     facet.kind = cut.kind;
     facet.tag = cut.id;
+    facet.plane = cut.plane;
   }
 }
 

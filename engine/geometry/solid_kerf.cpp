@@ -20,6 +20,7 @@ using core::at;
 
 constexpr double kShareOfWidth = 0.25;  // of the material's width: the most that a vertex retreats
 constexpr double kFarthest = 8.0;       // kerfs: from where a piece's vertex would be to its whole's surface
+constexpr double kFlatWall = 1e-6;      // of its extent: by which corners of a wall may be off its plane
 constexpr int kHalvings = 24;           // rounds in which a kerf that is still too wide is halved
 
 /// Triangles, with boxes about them for one state of their vertices. The positions must outlive it.
@@ -259,6 +260,49 @@ void take_places(const SurfaceDistance& whole, SolidSurface& surface, double ker
   }
 }
 
+/// Walls that are planes where they have stood back to stay such; others are of separate facets from now on.
+void keep_planes(SolidComplex& piece, const SolidSurface& surface) {
+  struct Wall {
+    std::vector<int> triangles;
+    std::optional<Vec3> normal;
+    double area = 0.0;
+  };
+  std::map<std::array<int, 2>, Wall> walls;  // by tag and plane
+  const TriangleMesh& mesh = surface.mesh;
+  for (Size t = 0; t < mesh.triangles.size(); ++t) {
+    if (!surface.is_crack_face[t] || surface.triangle_facets[t] < 0) continue;
+    const SolidFacet& facet = piece.facets[at(surface.triangle_facets[t])];
+    if (facet.plane < 0) continue;
+    Wall& wall = walls[{facet.tag, facet.plane}];
+    wall.triangles.push_back(static_cast<int>(t));
+    const Vec3& a = mesh.positions[at(mesh.triangles[t][0])];
+    const double area = (mesh.positions[at(mesh.triangles[t][1])] - a)
+                            .cross(mesh.positions[at(mesh.triangles[t][2])] - a)
+                            .norm();
+    if (!(area > wall.area)) continue;
+    wall.area = area;
+    wall.normal = find_normal(mesh, mesh.triangles[t]);
+  }
+  const auto is_plane = [&](const Wall& wall) {
+    if (!wall.normal) return false;
+    const Vec3& origin = mesh.positions[at(mesh.triangles[at(wall.triangles[0])][0])];
+    double off = 0.0, extent = 0.0;
+    for (const int t : wall.triangles)
+      for (const int v : mesh.triangles[at(t)]) {
+        off = std::max(off, std::abs(wall.normal->dot(mesh.positions[at(v)] - origin)));
+        extent = std::max(extent, (mesh.positions[at(v)] - origin).norm());
+      }
+    return off <= kFlatWall * extent;
+  };
+  std::erase_if(walls, [&](const auto& wall) { return !is_plane(wall.second); });
+  for (const int f : find_border_facets(piece)) {
+    SolidFacet& facet = piece.facets[at(f)];
+    if (facet.plane < 0) continue;
+    if (facet.kind == FacetKind::crack) facet.kind = FacetKind::old_crack;
+    if (!walls.contains({facet.tag, facet.plane})) facet.plane = -1;
+  }
+}
+
 /// Parts the border's crack facets along the edges of the surface's triangles, which no longer lie in one
 /// plane.
 void divide_crack_facets(SolidComplex& piece, const SolidSurface& surface) {
@@ -274,6 +318,7 @@ void divide_crack_facets(SolidComplex& piece, const SolidSurface& surface) {
   }
   for (auto& [facet, own] : sides) {
     piece.facets[at(facet)].kind = FacetKind::old_crack;
+    if (piece.facets[at(facet)].plane >= 0) continue;
     std::sort(own.begin(), own.end());
     std::vector<int> parts{facet};
     for (Size i = 0; i + 1 < own.size(); ++i) {
@@ -342,6 +387,7 @@ void keep_kerf(SolidComplex& piece, const SolidSurface& surface) {
     if (is_known && own[at(on.source)] == -1)
       set(on.source, positions[at(on.from)] + on.share * (positions[at(on.to)] - positions[at(on.from)]));
   }
+  keep_planes(piece, surface);
   divide_crack_facets(piece, surface);
 }
 

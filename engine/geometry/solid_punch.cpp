@@ -1,6 +1,7 @@
 #include "engine/geometry/solid_punch.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "engine/core/index.h"
 #include "engine/core/stop.h"
@@ -12,6 +13,8 @@ namespace {
 
 using Size = std::size_t;
 using core::at;
+
+constexpr double kPlaneSnap = 1e-6;  // of cuts that are to stay planes: see SolidCutter
 
 template <class Visit>
 void for_each_corner(const SolidComplex& complex, int cell, const Visit& visit) {
@@ -33,6 +36,17 @@ bool may_reach(const SolidComplex& complex, int cell, const std::vector<PunchSid
     if (is_beyond) return false;
   }
   return true;
+}
+
+/// False if no corner of the cells is outside of the half space.
+bool cuts_any(const SolidComplex& complex, const std::vector<int>& cells, const PunchSide& side) {
+  return std::any_of(cells.begin(), cells.end(), [&](int cell) {
+    bool is_within = true;
+    for_each_corner(complex, cell, [&](const Vec3& corner) {
+      if (side.normal.dot(corner) > side.offset) is_within = false;
+    });
+    return !is_within;
+  });
 }
 
 double distance_squared(const SolidComplex& complex, int cell, const Vec3& place) {
@@ -77,32 +91,57 @@ std::vector<int> find_punch_cells(const SolidComplex& complex, const std::vector
   return found;
 }
 
-Punched punch_out(SolidComplex& complex, const std::vector<PunchSide>& sides, std::vector<int> cells,
-                  int tag) {
-  SolidCutter cutter(complex);
-  for (const PunchSide& side : sides) {
-    core::stop_if_asked();
-    SolidCut cut;
-    cut.id = tag;
-    for (const Vec3& node : complex.elements->mesh.positions)
-      cut.node_values.push_back(side.normal.dot(node) - side.offset);
-    cut.cells = std::move(cells);
-    cutter.cut(cut);
-    // What is beyond this plane is not cut by the next ones.
-    cells.clear();
-    for (Size c = 0; c < complex.cells.size(); ++c)
-      if (cutter.side_of(static_cast<int>(c)) < 0) cells.push_back(static_cast<int>(c));
+Punched punch_out(SolidComplex& complex, const std::vector<PunchRegion>& regions, std::vector<int> groups,
+                  int tag, Walls walls) {
+  Punched out;
+  out.region_of.assign(complex.cells.size(), -1);
+  std::vector<int> near;  // cells of groups that have regions
+  for (Size c = 0; c < groups.size(); ++c)
+    if (groups[c] >= 0) near.push_back(static_cast<int>(c));
+  SolidCutter cutter(complex, walls == Walls::plane ? kPlaneSnap : SolidCutter::kUsualSnap);
+  SolidCut cut;
+  cut.id = tag;
+  cut.node_values.resize(complex.elements->mesh.positions.size());
+  for (Size r = 0; r < regions.size(); ++r) {
+    const PunchRegion& region = regions[r];
+    const auto is_free = [&](int c) {
+      return groups[at(c)] == region.group && out.region_of[at(c)] < 0 && may_reach(complex, c, region.sides);
+    };
+    std::vector<int> inside;
+    std::copy_if(near.begin(), near.end(), std::back_inserter(inside), is_free);
+    for (const PunchSide& side : region.sides) {
+      core::stop_if_asked();
+      if (!cuts_any(complex, inside, side)) continue;
+      if (walls == Walls::plane) ++cut.plane;
+      for (const int c : inside)
+        for (const int node : complex.elements->mesh.tetrahedra[at(complex.cells[at(c)].element)])
+          cut.node_values[at(node)] =
+              side.normal.dot(complex.elements->mesh.positions[at(node)]) - side.offset;
+      cut.cells = std::move(inside);
+      cutter.cut(cut);
+      const Size before = groups.size();
+      groups.resize(complex.cells.size(), region.group);
+      out.region_of.resize(complex.cells.size(), -1);
+      // What is beyond this plane is not cut by the next ones.
+      inside.clear();
+      const auto take = [&](int c) {
+        if (cutter.side_of(c) < 0) inside.push_back(c);
+      };
+      std::for_each(cut.cells.begin(), cut.cells.end(), take);
+      for (Size c = before; c < groups.size(); ++c) {
+        near.push_back(static_cast<int>(c));
+        take(static_cast<int>(c));
+      }
+    }
+    for (const int c : inside) out.region_of[at(c)] = static_cast<int>(r);
   }
   settle(complex);
-  Punched out;
-  out.is_inside.assign(complex.cells.size(), 0);
-  for (const int c : cells) {
-    out.is_inside[at(c)] = 1;
-    out.volume += complex.cells[at(c)].volume;
-  }
+  out.volumes.assign(regions.size(), 0.0);
+  for (Size c = 0; c < complex.cells.size(); ++c)
+    if (out.region_of[c] >= 0) out.volumes[at(out.region_of[c])] += complex.cells[c].volume;
   for (SolidFacet& facet : complex.facets) {
     if (facet.parts[0] >= 0 || facet.cells[0] < 0 || facet.cells[1] < 0) continue;
-    if (out.is_inside[at(facet.cells[0])] != out.is_inside[at(facet.cells[1])]) {
+    if (out.region_of[at(facet.cells[0])] != out.region_of[at(facet.cells[1])]) {
       if (facet.kind == FacetKind::crack && facet.tag != tag) continue;  // stood open before
       // Where a plane lies on one that was cut before, its facets are there already.
       facet.kind = FacetKind::crack;
@@ -110,7 +149,7 @@ Punched punch_out(SolidComplex& complex, const std::vector<PunchSide>& sides, st
       out.wall_area += facet_area_vector(complex, facet).norm();
     } else if (facet.kind == FacetKind::crack && facet.tag == tag) {
       facet.kind = FacetKind::grain;
-      facet.tag = -1;
+      facet.tag = facet.plane = -1;
     }
   }
   return out;

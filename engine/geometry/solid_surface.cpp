@@ -199,7 +199,14 @@ class BorderBuilder {
   }
   int next_side(int side) const { return next_corner(side, border_of(side).is_reversed ? -1 : 1); }
 
-  /// A region is a facet, or all connected ones of one given triangle.
+  /// Whether the surface has two neighbours as one: parts of one given triangle, or of one plane wall.
+  static bool are_of_one_region(const SolidFacet& a, const SolidFacet& b) {
+    if (a.kind != b.kind || a.tag != b.tag || a.tag < 0) return false;
+    if (a.kind == FacetKind::outer) return true;
+    return a.plane >= 0 && a.plane == b.plane && (a.cells[0] < 0) == (b.cells[0] < 0);
+  }
+
+  /// A region is a facet, or all connected ones of one given triangle or plane wall.
   void collect_regions() {
     border_of_corner_.resize(at(corner_count_));
     for (Size b = 0; b < borders_.size(); ++b)
@@ -210,7 +217,7 @@ class BorderBuilder {
       if (partner_[at(side)] < side) continue;
       const SolidFacet& a = complex_.facets[at(border_of(side).facet)];
       const SolidFacet& b = complex_.facets[at(border_of(partner_[at(side)]).facet)];
-      if (a.kind == FacetKind::outer && b.kind == FacetKind::outer && a.tag == b.tag && a.tag >= 0)
+      if (are_of_one_region(a, b))
         together.unite(border_of_corner_[at(side)], border_of_corner_[at(partner_[at(side)])]);
     }
     region_of_border_.resize(borders_.size());

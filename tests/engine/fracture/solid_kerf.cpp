@@ -9,6 +9,7 @@
 #include "engine/geometry/closest_points.h"
 #include "engine/geometry/crossings.h"
 #include "engine/geometry/generators.h"
+#include "engine/geometry/solid_punch.h"
 #include "engine/geometry/tetrahedralise.h"
 #include "tests/engine/geometry/solids.h"
 #include "tests/support/sanitized.h"
@@ -177,6 +178,57 @@ TEST_CASE("solid kerf: what is cut where a vertex of the whole had become severa
   }
   CHECK(farthest_alone > 0.3 * kerf);
   CHECK(farthest < 1e-5 * kerf);
+}
+
+TEST_CASE("solid kerf: plane walls have few triangles, and what is cut from behind them hardly sticks out") {
+  const double kerf = 2e-4;
+  double farthest = 0.0;
+  int crossing = 0;
+  std::size_t triangles = 0, triangles_by_element = 0;
+  for (int trial = 0; trial < test::how_many(6, 2); ++trial) {
+    core::Random random(35, static_cast<std::uint64_t>(trial));
+    const SolidComplex cube =
+        make_solid_complex(test::make_cube_elements(4, 0.2, static_cast<std::uint64_t>(trial)));
+    std::vector<Vec3> seeds(5);
+    for (Vec3& seed : seeds)
+      for (int axis = 0; axis < 3; ++axis) seed(axis) = random.uniform(0.1, 0.9);
+    std::vector<PunchRegion> regions;  // of all but the first
+    for (std::size_t r = 1; r < seeds.size(); ++r) {
+      regions.emplace_back();
+      for (const Vec3& other : seeds)
+        if (&other != &seeds[r])
+          regions.back().sides.push_back(
+              {other - seeds[r], 0.5 * (other.squaredNorm() - seeds[r].squaredNorm())});
+    }
+    const std::vector<int> all(cube.cells.size(), 0);
+    SolidComplex by_element = cube, complex = cube;
+    punch_out(by_element, regions, all, 0);
+    for (const auto& piece : fracture::split_solid(by_element, 1e-3).pieces)
+      triangles_by_element += extract_surface(piece.complex).mesh.triangles.size();
+    const Punched punched = punch_out(complex, regions, all, 0, Walls::plane);
+    CHECK(punched.wall_area > 0.5);
+    std::vector<TriangleMesh> cells;
+    for (auto& piece : fracture::split_solid(complex, 1e-3).pieces) {
+      SolidSurface surface = extract_surface(piece.complex);
+      CHECK(enclosed_volume(surface.mesh) == Approx(total_volume(piece.complex)).epsilon(1e-5));
+      triangles += surface.mesh.triangles.size();
+      stand_back(surface, kerf);
+      keep_kerf(piece.complex, surface);
+      cells.push_back(surface.mesh);
+      const SurfaceDistance whole(surface.mesh);
+      SolidCutter cutter(piece.complex);
+      for (int i = 0; i < 2; ++i) cutter.cut(whole_plane(piece.complex, random, 3 + i));
+      double least = 0.0;
+      const auto parts = pieces_with_kerf(piece.complex, kerf, least, &whole);
+      crossing += count_crossing_pairs(parts) > 0;
+      for (const TriangleMesh& part : parts)
+        farthest = std::max(farthest, farthest_outside(surface.mesh, part));
+    }
+    crossing += count_crossing_pairs(cells) > 0;
+  }
+  CHECK(crossing == 0);
+  CHECK(farthest < 0.15 * kerf);  // where a narrow place has kept a wall from going back as a plane
+  CHECK(2 * triangles < triangles_by_element);
 }
 
 TEST_CASE("solid kerf: halves stand apart by two kerfs, their outer faces stay in their planes") {

@@ -54,10 +54,13 @@ TEST_CASE("columns add up to the volume of what they go through and of what is l
   SolidComplex block = make_block(Vec3(0.05, 0.05, 0.05), 0.03);
   // A wedge: its column grows from nothing to the whole block.
   const std::vector<PunchSide> sides{{Vec3(1.0, 0.2, 1.0), 0.004}};
-  const Punched punched = punch_out(block, sides, find_punch_cells(block, sides, Vec3(-0.05, 0, -0.05)), 3);
+  std::vector<int> groups(block.cells.size(), -1);
+  for (const int cell : find_punch_cells(block, sides, Vec3(-0.05, 0, -0.05)))
+    groups[static_cast<std::size_t>(cell)] = 0;
+  const Punched punched = punch_out(block, {{sides, 0}}, groups, 3);
   std::vector<int> inside, outside;
-  for (std::size_t c = 0; c < punched.is_inside.size(); ++c)
-    (punched.is_inside[c] != 0 ? inside : outside).push_back(static_cast<int>(c));
+  for (std::size_t c = 0; c < punched.region_of.size(); ++c)
+    (punched.region_of[c] == 0 ? inside : outside).push_back(static_cast<int>(c));
   std::vector<Vec2> places;
   constexpr int kSide = 200;
   for (int i = 0; i < kSide; ++i)
@@ -71,8 +74,8 @@ TEST_CASE("columns add up to the volume of what they go through and of what is l
   };
   const auto within = find_columns(block, inside, {}, places),
              beside = find_columns(block, outside, {}, places);
-  CHECK(volume_of(within) == Approx(punched.volume).epsilon(1e-3));
-  CHECK(volume_of(beside) == Approx(1e-3 - punched.volume).epsilon(1e-3));
+  CHECK(volume_of(within) == Approx(punched.volumes[0]).epsilon(1e-3));
+  CHECK(volume_of(beside) == Approx(1e-3 - punched.volumes[0]).epsilon(1e-3));
   for (std::size_t i = 0; i < places.size(); ++i)
     CHECK(within[i].length + beside[i].length == Approx(0.1).epsilon(1e-9));
 }
