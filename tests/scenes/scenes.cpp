@@ -63,12 +63,13 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
 
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
-  for (const char* scene :
-       {"ornament",   "window",      "bowl",       "boats_pile",    "boats_edge",     "ornaments",
-        "card_house", "plate_stack", "bowls",      "rain",          "reel",           "tablet",
-        "lintel",     "wall",        "brick_wall", "mortar_wall",   "dominoes",       "blast",
-        "arch",       "vase",        "egg",        "bottle",        "slab",           "walls",
-        "armadillo",  "step_size",   "tempered",   "wrecking_ball", "champagne_tower"}) {
+  for (
+      const char* scene :
+      {"ornament",        "window",      "bowl",     "boats_pile", "boats_edge", "ornaments", "card_house",
+       "plate_stack",     "bowls",       "rain",     "reel",       "tablet",     "lintel",    "wall",
+       "brick_wall",      "mortar_wall", "dominoes", "blast",      "arch",       "vase",      "egg",
+       "bottle",          "slab",        "walls",    "armadillo",  "step_size",  "tempered",  "wrecking_ball",
+       "champagne_tower", "crater"}) {
     const Outcome outcome = program(folder, std::string("check ") + scene);
     INFO(outcome.err);
     CHECK(outcome.status == 0);
@@ -111,6 +112,18 @@ TEST_CASE("dominoes and blast: nobody hangs where he is, boxes that fall or spli
 TEST_CASE("blast: nobody hangs where he is in all of it", "[.][long]") {
   const Folder folder;
   check_nobody_hangs(play(folder, "blast --seconds 0.8 --audit"));
+}
+
+TEST_CASE("crater: the block is crushed where it is hit and nowhere else, and crumbs fall out") {
+  const Folder folder;
+  const auto report = play(folder, "crater --seconds 1 --audit");
+  check_breaks(report);
+  check_nobody_hangs(report);
+  REQUIRE(!report["breaks"].empty());
+  CHECK(report["breaks"][0]["pieces"].get<int>() > 30);
+  CHECK(report["pieces"].get<int>() < 90);
+  // Hit half as hard it is cracked at most.
+  CHECK(play(folder, "crater --seconds 0.3 --set throw.speed=15")["pieces"].get<int>() < 10);
 }
 
 TEST_CASE("slab: one ball dents it one goes through and what stands is one piece with a dent and a hole") {
