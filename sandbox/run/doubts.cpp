@@ -226,7 +226,7 @@ void doubt_camera(const scene::SceneDescription& scene, const scene::BuiltScene&
   };
   const scene::CameraEntry& camera = scene.camera;
   view::CameraRig rig(camera, view::find_subject(scene, built.plan));
-  const auto where = [&](int entry) { return scene::centre_of(built, built.world.bodies(), entry); };
+  const auto where = [&](scene::BodyRef who) { return scene::centre_of(built, built.world.bodies(), who); };
   look(rig.view_at({0.0, 0.0, 1.0, built.world.bodies()}, where).position, true, camera.place);
   for (const scene::CameraKey& key : camera.path)
     if (key.at > 0.0) look(key.position, false, camera.place);
@@ -290,13 +290,13 @@ struct Reach {
   double radii = 1e300;     // the same, of the ball about it
 };
 
-Reach find_reach(const Vec3& point, const scene::JointPartner& partner, const scene::BuiltScene& built,
+Reach find_reach(const Vec3& point, const scene::BodyRef& partner, const scene::BuiltScene& built,
                  const BodiesOf& bodies_of) {
   Reach nearest;
   const auto bodies = bodies_of.find(partner.body);
   if (bodies == bodies_of.end()) return nearest;  // they come in later
   for (const Body* body : bodies->second) {
-    if (partner.copy >= 0 && built.origins.at(body->id).copy != partner.copy) continue;
+    if (!partner.includes(partner.body, built.origins.at(body->id).copy)) continue;
     if (body->shape->kind == ShapeKind::plane) return {0.0, 0.0};
     const double distance = (body->pose.translation - point).norm();
     const double radii = distance / body->shape->bounding_radius;
@@ -353,7 +353,7 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
     const Vec3 velocity = script::aim(*thrown->from, *target, thrown->speed, scene.world.gravity)
                               .value_or(Vec3(way.normalized() * thrown->speed));
     const Flight flight(*thrown->from, velocity, scene.world.gravity, event.at, scene.seconds - event.at,
-                        built.plan.bodies[static_cast<std::size_t>(event.body)].bounding_radius);
+                        built.plan.bodies[static_cast<std::size_t>(event.who.body)].bounding_radius);
     double nearest = 1e300;
     const Body* whom = nullptr;
     for (const Body& body : built.world.bodies()) {
@@ -366,7 +366,7 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
     scene::book(doubts, event.place,
                 fmt::format("event \"{}\" throws past everything: {:.2g} m beside \"{}\" at the nearest",
                             event.name, nearest, whom->name),
-                fmt::format("at_body = \"{}\" aims at it", entry_of(scene, built, *whom).name));
+                fmt::format("at_body = \"{}\" aims at it", whom->name));
   }
 }
 

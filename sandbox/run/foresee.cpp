@@ -49,10 +49,10 @@ void keep_highest(scene::BodyEntry& body, std::uint64_t seed, std::size_t number
 /// What an event does to bodies that are not in the trial it does to nobody; nor is there any film.
 bool is_without(const scene::EventEntry& event, const std::vector<bool>& is_away) {
   const auto goes = [&is_away](int body) { return body >= 0 && is_away[static_cast<std::size_t>(body)]; };
-  if (std::holds_alternative<scene::Speed>(event.action) || goes(event.body)) return true;
+  if (std::holds_alternative<scene::Speed>(event.action) || goes(event.who.body)) return true;
   const auto* throws = std::get_if<scene::Projectile>(&event.action);
-  const int* target = throws == nullptr ? nullptr : std::get_if<int>(&throws->target);
-  return target != nullptr && goes(*target);
+  const auto* target = throws == nullptr ? nullptr : std::get_if<scene::BodyRef>(&throws->target);
+  return target != nullptr && goes(target->body);
 }
 
 Trial make_trial(const SceneDescription& scene, const scene::ScenePlan& plan, std::size_t tried,
@@ -158,7 +158,7 @@ void note_aftermath(Projector& projector, const scene::BuiltScene& built, int tr
   found.later_ms = steps[steps.size() / 2];
   found.all_ms = std::accumulate(steps.begin(), steps.end(), 0.0);
   found.pieces = 0;
-  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), tried))
+  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), {tried, -1}))
     found.pieces += built.world.ancestry(part->id).parent != 0 ? 1 : 0;
 }
 

@@ -42,7 +42,7 @@ view::Moment Projector::now() const {
 }
 
 view::Whereabouts Projector::whereabouts() const {
-  return [this](int entry) { return scene::centre_of(built_, built_.world.bodies(), entry); };
+  return [this](scene::BodyRef who) { return scene::centre_of(built_, built_.world.bodies(), who); };
 }
 
 script::Sight Projector::look() {
@@ -62,7 +62,7 @@ bool Projector::step(double film) {
   const view::Moment moment = now();
   for (const scene::Cue& cue : script_.take_cues()) {
     if (const auto* change = std::get_if<scene::CameraChange>(&cue.event->action))
-      rig_.begin(*change, cue.event->body, cue.film, moment, whereabouts());
+      rig_.begin(*change, cue.event->who, cue.film, moment, whereabouts());
     cues_.push_back(cue);
   }
   if (steps_at(film) < static_cast<double>(world.steps() + 1)) {

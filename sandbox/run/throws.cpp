@@ -35,7 +35,8 @@ std::vector<std::string> Throws::missed() const {
   std::vector<std::string> sentences;
   for (const Flight& flight : flights_) {
     const scene::EventEntry& event = *flight.thrown.event;
-    const bool is_at_body = std::holds_alternative<int>(std::get<scene::Projectile>(event.action).target);
+    const bool is_at_body =
+        std::holds_alternative<scene::BodyRef>(std::get<scene::Projectile>(event.action).target);
     sentences.push_back(scene::describe(scene::Problem{
         event.place,
         fmt::format("what event \"{}\" threw hit nothing{}", event.name,

@@ -20,9 +20,8 @@ std::vector<Partner> find_partners(const JointEntry& joint, const BuiltScene& bu
     const auto origin = built.origins.find(body.id);
     if (origin == built.origins.end()) continue;
     const Origin& who = origin->second;
-    if (std::none_of(joint.partners.begin(), joint.partners.end(), [&](const JointPartner& partner) {
-          return partner.body == who.entry && (partner.copy < 0 || partner.copy == who.copy);
-        }))
+    if (std::none_of(joint.partners.begin(), joint.partners.end(),
+                     [&](const BodyRef& partner) { return partner.includes(who.entry, who.copy); }))
       continue;
     partners.push_back({body.id, body.pose.translation, body.shape->bounding_radius});
   }
@@ -57,7 +56,7 @@ void add_joints(const SceneDescription& scene, BuiltScene& built, Problems& prob
       }
     }
     const bool is_somebody_away =
-        std::any_of(entry.partners.begin(), entry.partners.end(), [&](const JointPartner& partner) {
+        std::any_of(entry.partners.begin(), entry.partners.end(), [&](const BodyRef& partner) {
           return scene.bodies[static_cast<std::size_t>(partner.body)].is_held_back;
         });
     if (made > 0 || is_somebody_away) continue;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/vec.h"
+#include "sandbox/scene/body_ref.h"
 #include "sandbox/scene/problem.h"
 
 namespace shatterbox::sandbox::scene {
@@ -20,8 +21,8 @@ struct ScreenPlace {
 };
 
 struct Projectile {
-  std::optional<Vec3> from;                                          // m; nothing: from the camera
-  std::variant<Vec3, int, ScreenPlace> target = Vec3(Vec3::Zero());  // a point, or the number of a body
+  std::optional<Vec3> from;  // m; nothing: from the camera
+  std::variant<Vec3, BodyRef, ScreenPlace> target = Vec3(Vec3::Zero());
   double speed = 0.0;
   Vec3 spin = Vec3::Zero();
 };
@@ -104,7 +105,7 @@ struct EventEntry {
   std::string name;
   When when = When::time;
   double at = 0.0;  // s
-  int body = -1;    // number in SceneDescription::bodies: what comes in, is pushed or goes
+  BodyRef who;      // what comes in (with its copies), is pushed or goes
   std::variant<Projectile, Drop, Push, Remove, Gravity, Explosion, Grab, Carry, Release, Speed, CameraChange,
                OverlayChange, Caption>
       action;

@@ -3,20 +3,21 @@
 namespace shatterbox::sandbox::scene {
 
 std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const body::Body> bodies,
-                                        int entry) {
+                                        BodyRef who) {
   std::vector<const body::Body*> parts;
   for (const body::Body& body : bodies) {
     const auto original = built.origins.find(built.world.ancestry(body.id).original);
-    if (original != built.origins.end() && original->second.entry == entry) parts.push_back(&body);
+    if (original != built.origins.end() && who.includes(original->second.entry, original->second.copy))
+      parts.push_back(&body);
   }
   return parts;
 }
 
-std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry) {
+std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, BodyRef who) {
   double mass = 0.0;
   Vec3 moment = Vec3::Zero();
   std::optional<Vec3> massless;
-  for (const body::Body* body : parts_of(built, bodies, entry)) {
+  for (const body::Body* body : parts_of(built, bodies, who)) {
     mass += body->shape->mass;
     moment += body->shape->mass * body->pose.translation;
     if (!massless) massless = body->pose.translation;
@@ -25,10 +26,10 @@ std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Bod
   return Vec3(moment / mass);
 }
 
-Vec3 velocity_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry) {
+Vec3 velocity_of(const BuiltScene& built, std::span<const body::Body> bodies, BodyRef who) {
   double mass = 0.0;
   Vec3 momentum = Vec3::Zero();
-  for (const body::Body* body : parts_of(built, bodies, entry)) {
+  for (const body::Body* body : parts_of(built, bodies, who)) {
     mass += body->shape->mass;
     momentum += body->shape->mass * body->velocity;
   }

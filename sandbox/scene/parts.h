@@ -9,14 +9,14 @@
 
 namespace shatterbox::sandbox::scene {
 
-/// Those of `bodies` (of the world of `built`, at some time) that are body number `entry` or came from it.
+/// Those of `bodies` (of the world of `built`, at some time) that are `who` or came from it.
 std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const body::Body> bodies,
-                                        int entry);
+                                        BodyRef who);
 
-/// Where the body is: its centre of mass, or that of all its pieces, m. Nothing if it is not there.
-std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry);
+/// Where it is: its centre of mass, or that of all its pieces, m. Nothing if it is not there.
+std::optional<Vec3> centre_of(const BuiltScene& built, std::span<const body::Body> bodies, BodyRef who);
 
 /// Its momentum over its mass, m/s; zero if it is not there or has no mass.
-Vec3 velocity_of(const BuiltScene& built, std::span<const body::Body> bodies, int entry);
+Vec3 velocity_of(const BuiltScene& built, std::span<const body::Body> bodies, BodyRef who);
 
 }  // namespace shatterbox::sandbox::scene

@@ -9,12 +9,6 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-std::vector<std::string> body_names(const SceneDescription& scene) {
-  std::vector<std::string> names;
-  for (const BodyEntry& body : scene.bodies) names.push_back(body.name);
-  return names;
-}
-
 /// Nothing, with a problem, if it is missing or no such vector.
 std::optional<Vec3> find_needed(TableReader& reader, const std::string& key, const Range& range,
                                 const char* example) {
@@ -89,23 +83,13 @@ int read_thrown_body(TableReader& reader, const std::string& event_name, bool ha
   return found;
 }
 
-int read_named_body(TableReader& reader, const std::string& key, const SceneDescription& scene) {
-  const auto name = reader.text(key);
-  if (!name) return -1;
-  const int found = find_body(scene, *name);
-  if (found >= 0) return found;
-  const std::string whole = name->substr(0, name->find('['));
-  if (whole != *name && find_body(scene, whole) >= 0)
-    reader.add_problem_at(
-        key, fmt::format("\"{}\" is a copy, and events know bodies with all their copies", *name),
-        fmt::format("write \"{}\", aim at one place with at_point, or give it a [[body]] of its own", whole));
-  else
-    reader.add_problem_at(key, fmt::format("there is no body \"{}\"", *name),
-                          hint_for_name(*name, body_names(scene), "bodies"));
-  return found;
+BodyRef read_named_body(TableReader& reader, const std::string& key, const SceneDescription& scene) {
+  const TomlValue* value = reader.value(key);
+  if (value == nullptr || !reader.text(key)) return {};
+  return read_body_ref(reader, *value, scene).value_or(BodyRef{});
 }
 
-int read_acted_body(TableReader& reader, const SceneDescription& scene) {
+BodyRef read_acted_body(TableReader& reader, const SceneDescription& scene) {
   if (!reader.has("body"))
     reader.add_problem(reader.table().place, fmt::format("{} names no body", reader.what()),
                        "add body = \"name\"");
@@ -143,7 +127,7 @@ Projectile read_projectile(TableReader& reader, const SceneDescription& scene) {
   }
   projectile.spin = reader.vector("spin", between(-1e5, 1e5, "rad/s")).value_or(projectile.spin);
   const auto point = reader.vector("at_point", coordinate());
-  const int body = read_named_body(reader, "at_body", scene);
+  const BodyRef whom = read_named_body(reader, "at_body", scene);
   const int targets = int{reader.has("at_point")} + int{reader.has("at_body")} + int{screen != nullptr};
   if (targets != 1) {
     reader.add_problem(reader.table().place, fmt::format("{} needs one target", reader.what()),
@@ -151,7 +135,7 @@ Projectile read_projectile(TableReader& reader, const SceneDescription& scene) {
   } else if (screen != nullptr) {
     projectile.target = read_screen_place(reader, *screen);
   } else if (reader.has("at_body")) {
-    projectile.target = body;
+    projectile.target = whom;
   } else if (point) {
     projectile.target = *point;
     if (projectile.from && (*point - *projectile.from).norm() < 1e-9) {

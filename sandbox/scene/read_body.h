@@ -1,6 +1,7 @@
 // The tables [[material]], [[pair]], [[body]] and [[event]] of a scene.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,14 @@ int find_material(const std::string& name, const Place& place, SceneDescription&
 
 /// The number of the body of that name; -1 if there is none.
 int find_body(const SceneDescription& scene, const std::string& name);
+
+/// Of all bodies, in their order.
+std::vector<std::string> body_names(const SceneDescription& scene);
+
+/// Whom a text names: a body with all its copies, or one of them, "name[2]". None, with a problem, if there
+/// is no such.
+std::optional<BodyRef> read_body_ref(TableReader& reader, const TomlValue& value,
+                                     const SceneDescription& scene);
 
 /// All keys of a [[material]] but its name and what it is like.
 std::vector<std::string> material_keys();

@@ -68,8 +68,8 @@ void read_when(TableReader& reader, EventEntry& event) {
 
 /// What is thrown is one body, which goes where it is thrown.
 void check_projectile(TableReader& reader, const EventEntry& event, const SceneDescription& scene) {
-  if (event.body < 0) return;
-  const BodyEntry& body = scene.bodies[static_cast<std::size_t>(event.body)];
+  if (event.who.body < 0) return;
+  const BodyEntry& body = scene.bodies[static_cast<std::size_t>(event.who.body)];
   if (body.repeat.total() > 1)
     reader.add_problem_at("body", "a projectile is one body, and this one has copies",
                           "remove its repeat, or let it fall by do = \"drop\"");
@@ -100,36 +100,36 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   }
   if (!verb) return;
   if (*verb == "projectile") {
-    event.body = read_thrown_body(reader, event.name, true, scene);
+    event.who.body = read_thrown_body(reader, event.name, true, scene);
     event.action = read_projectile(reader, scene);
     check_projectile(reader, event, scene);
     reader.foreign({"position"}, "a projectile starts at \"from\"");
   } else if (*verb == "drop") {
-    event.body = read_thrown_body(reader, event.name, false, scene);
+    event.who.body = read_thrown_body(reader, event.name, false, scene);
     event.action = Drop{reader.vector("position", coordinate())};
   } else if (*verb == "push") {
-    event.body = read_acted_body(reader, scene);
-    event.action = read_push(reader, event.body, scene);
+    event.who = read_acted_body(reader, scene);
+    event.action = read_push(reader, event.who.body, scene);
   } else if (*verb == "remove") {
-    event.body = read_acted_body(reader, scene);
+    event.who = read_acted_body(reader, scene);
     event.action = Remove{};
   } else if (*verb == "gravity") {
     event.action = read_gravity(reader);
   } else if (*verb == "explosion") {
     event.action = read_explosion(reader);
   } else if (*verb == "grab") {
-    event.body = read_acted_body(reader, scene);
-    event.action = read_grab(reader, event.body, scene);
+    event.who = read_acted_body(reader, scene);
+    event.action = read_grab(reader, event.who.body, scene);
   } else if (*verb == "move") {
-    event.body = read_acted_body(reader, scene);
+    event.who = read_acted_body(reader, scene);
     event.action = read_carry(reader);
   } else if (*verb == "release") {
-    event.body = read_acted_body(reader, scene);
+    event.who = read_acted_body(reader, scene);
     event.action = Release{};
   } else if (*verb == "speed") {
     event.action = read_speed(reader);
   } else if (*verb == "camera") {
-    event.action = read_camera_change(reader, scene, event.body);
+    event.action = read_camera_change(reader, scene, event.who);
   } else if (*verb == "overlay") {
     event.action = read_overlay_change(reader);
   } else if (*verb == "caption") {

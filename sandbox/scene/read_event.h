@@ -13,11 +13,11 @@ namespace shatterbox::sandbox::scene {
 int read_thrown_body(TableReader& reader, const std::string& event_name, bool has_default,
                      SceneDescription& scene);
 
-/// The number of the body that `key` names; -1 if it is absent, or, with a problem, names none.
-int read_named_body(TableReader& reader, const std::string& key, const SceneDescription& scene);
+/// Whom `key` names; nobody if it is absent, or, with a problem, names none.
+BodyRef read_named_body(TableReader& reader, const std::string& key, const SceneDescription& scene);
 
-/// The number of the body that an event acts on, -1 with a problem if it names none.
-int read_acted_body(TableReader& reader, const SceneDescription& scene);
+/// Whom an event acts on; nobody, with a problem, if it names none.
+BodyRef read_acted_body(TableReader& reader, const SceneDescription& scene);
 
 Projectile read_projectile(TableReader& reader, const SceneDescription& scene);
 Push read_push(TableReader& reader, int body, const SceneDescription& scene);
@@ -28,8 +28,8 @@ Grab read_grab(TableReader& reader, int body, const SceneDescription& scene);
 Carry read_carry(TableReader& reader);
 
 Speed read_speed(TableReader& reader);
-/// `body`: takes the number of the one to follow.
-CameraChange read_camera_change(TableReader& reader, const SceneDescription& scene, int& body);
+/// `who`: takes the one to follow.
+CameraChange read_camera_change(TableReader& reader, const SceneDescription& scene, BodyRef& who);
 OverlayChange read_overlay_change(TableReader& reader);
 Caption read_caption(TableReader& reader);
 

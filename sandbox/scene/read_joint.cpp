@@ -1,12 +1,10 @@
 #include "sandbox/scene/read_joint.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "sandbox/scene/nearest_name.h"
 #include "sandbox/scene/overrides.h"
 #include "sandbox/scene/read_body.h"
 #include "sandbox/scene/table_reader.h"
@@ -15,45 +13,24 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-/// Whom one item of `between` names: a body with all its copies, or one of them, "name[2]". None, with a
-/// problem, if there is no such.
-std::optional<JointPartner> read_partner(TableReader& reader, const TomlValue& item,
-                                         const SceneDescription& scene) {
+/// Whom one item of `between` names. None, with a problem, if there is no such.
+std::optional<BodyRef> read_partner(TableReader& reader, const TomlValue& item,
+                                    const SceneDescription& scene) {
   if (!item.is_text()) {
     reader.add_problem(item.place,
                        fmt::format("between is a list of names, but has {}", kind_in_words(item)));
     return std::nullopt;
   }
-  const std::size_t bracket = item.text.find('[');
-  const std::string name = item.text.substr(0, bracket);
-  const int found = find_body(scene, name);
-  if (found < 0) {
-    std::vector<std::string> names;
-    for (const BodyEntry& body : scene.bodies) names.push_back(body.name);
-    reader.add_problem(item.place, fmt::format("there is no body \"{}\"", name),
-                       hint_for_name(name, names, "bodies"));
-    return std::nullopt;
-  }
-  const BodyEntry& body = scene.bodies[static_cast<std::size_t>(found)];
+  const std::optional<BodyRef> partner = read_body_ref(reader, item, scene);
+  if (!partner) return std::nullopt;
+  const BodyEntry& body = scene.bodies[static_cast<std::size_t>(partner->body)];
   if (body.is_held_back || body.repeat.every > 0.0) {
-    reader.add_problem(item.place,
-                       fmt::format("body \"{}\" is not there from the start, and cannot be joined", name),
-                       "join bodies that no event and no \"every\" brings in");
+    reader.add_problem(
+        item.place, fmt::format("body \"{}\" is not there from the start, and cannot be joined", body.name),
+        "join bodies that no event and no \"every\" brings in");
     return std::nullopt;
   }
-  if (bracket == std::string::npos) return JointPartner{found, -1};
-  int number = 0;
-  const char* const end = item.text.data() + item.text.size();
-  const auto parsed = std::from_chars(item.text.data() + bracket + 1, end, number);
-  if (parsed.ec != std::errc{} || parsed.ptr + 1 != end || *parsed.ptr != ']' || number < 1 ||
-      number > body.repeat.total()) {
-    reader.add_problem(item.place, fmt::format("there is no \"{}\"", item.text),
-                       body.repeat.total() > 1
-                           ? fmt::format("its copies are {0}[1] to {0}[{1}]", name, body.repeat.total())
-                           : fmt::format("\"{}\" has no copies", name));
-    return std::nullopt;
-  }
-  return JointPartner{found, body.repeat.total() > 1 ? number - 1 : -1};
+  return partner;
 }
 
 void read_partners(TableReader& reader, JointEntry& joint, const SceneDescription& scene) {
@@ -72,7 +49,7 @@ void read_partners(TableReader& reader, JointEntry& joint, const SceneDescriptio
 
 /// A point joins two bodies, each of which is one, or a row of copies.
 void check_point(TableReader& reader, JointEntry& joint, const SceneDescription& scene) {
-  const auto is_one = [&](const JointPartner& partner) {
+  const auto is_one = [&](const BodyRef& partner) {
     return partner.copy >= 0 || scene.bodies[static_cast<std::size_t>(partner.body)].repeat.total() == 1;
   };
   joint.is_chain = joint.partners.size() == 1 && !is_one(joint.partners[0]);

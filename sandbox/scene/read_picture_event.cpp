@@ -49,7 +49,7 @@ Speed read_speed(TableReader& reader) {
   return speed;
 }
 
-CameraChange read_camera_change(TableReader& reader, const SceneDescription& scene, int& body) {
+CameraChange read_camera_change(TableReader& reader, const SceneDescription& scene, BodyRef& who) {
   CameraChange change;
   const std::string move = reader.choice("move", {"cut", "dolly", "orbit", "follow"}).value_or("cut");
   if (move == "cut") {
@@ -70,7 +70,7 @@ CameraChange read_camera_change(TableReader& reader, const SceneDescription& sce
                          "add angle = 90 (degrees)");
   } else if (move == "follow") {
     change.move = CameraMove::follow;
-    body = read_acted_body(reader, scene);
+    who = read_acted_body(reader, scene);
     change.offset = reader.vector("offset", coordinate());
     if (change.offset && change.offset->norm() < 1e-9)
       reader.add_problem_at("offset", "the camera cannot be where it looks at", "for example [0, 0.3, 1]");

@@ -166,17 +166,10 @@ inline bool can_break(const BodyEntry& body) {
 
 /// Who is held together: all of these, and their copies, by mortar where they face each other; two, at a
 /// point.
-struct JointPartner {
-  int body = 0;   // number in SceneDescription::bodies
-  int copy = -1;  // of its repeat, from 0; -1: all
-
-  bool operator==(const JointPartner&) const = default;
-};
-
 struct JointEntry {
   Place place;
   std::string name;
-  std::vector<JointPartner> partners;
+  std::vector<BodyRef> partners;
   std::variant<world::MortarDescription, world::PivotDescription> form;
   bool is_chain = false;  // of points: each copy of the partner holds the next half way between them
   // Mortar of class M2.5 to M9 on clay bricks: about what EN 1996-1-1 tells as flexural and initial shear
@@ -196,11 +189,11 @@ struct CameraEntry {
   Vec3 up = Vec3::UnitY();
   double fov = 35.0;            // degrees, vertical
   std::vector<CameraKey> path;  // ascending in time; overrides the above
-  int follow = -1;              // number of the body that is kept in the middle; -1: none
+  BodyRef follow;               // who is kept in the middle
   std::optional<Vec3> offset;   // m, from that body; nothing: the camera stays where it is and turns
   double shutter = 0.0;         // share of a frame's time that it is open; 0: no time at all
   double aperture = 0.0;        // m, width of the lens; 0: everything is sharp
-  std::variant<std::monostate, double, int> focus;  // m from the eye, or number of a body; else the target
+  std::variant<std::monostate, double, BodyRef> focus;  // m from the eye, or a body; else the target
   int samples = 16;  // pictures a frame, where shutter or aperture want several
 };
 

@@ -13,10 +13,11 @@ constexpr double kUsualStrength = 10.0;  // of a hand: times the weight of what 
 
 /// Of what there is of a body, the part whose bounding ball is nearest to `point`, or the heaviest without
 /// one; null if nothing can be held.
-const body::Body* find_part(const scene::BuiltScene& built, int entry, const std::optional<Vec3>& point) {
+const body::Body* find_part(const scene::BuiltScene& built, scene::BodyRef who,
+                            const std::optional<Vec3>& point) {
   const body::Body* best = nullptr;
   double best_value = 0.0;
-  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), entry)) {
+  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), who)) {
     if (!part->is_dynamic()) continue;
     const double value =
         point ? part->shape->bounding_radius - (*point - part->pose.translation).norm() : part->shape->mass;
@@ -34,25 +35,25 @@ Vec3 Forces::Way::at(double time) const {
   return from + x * x * (3.0 - 2.0 * x) * (to - from);
 }
 
-std::string Forces::grab(const scene::Grab& grab, int entry, scene::BuiltScene& built) {
-  if (held_.count(entry) != 0) return "its body is held already";
-  const body::Body* part = find_part(built, entry, grab.point);
+std::string Forces::grab(const scene::Grab& grab, scene::BodyRef who, scene::BuiltScene& built) {
+  if (held_.count(who) != 0) return "its body is held already";
+  const body::Body* part = find_part(built, who, grab.point);
   if (part == nullptr) return "its body is not there, or cannot move";
   const Vec3 point = grab.point.value_or(part->pose.translation);
   const double force = grab.force.value_or(kUsualStrength * kEarth * part->shape->mass);
-  held_[entry] = {built.world.grab(part->id, point, force), point, std::nullopt};
+  held_[who] = {built.world.grab(part->id, point, force), point, std::nullopt};
   return {};
 }
 
-std::string Forces::carry(const scene::Carry& carry, int entry, const scene::BuiltScene& built) {
-  const auto found = held_.find(entry);
+std::string Forces::carry(const scene::Carry& carry, scene::BodyRef who, const scene::BuiltScene& built) {
+  const auto found = held_.find(who);
   if (found == held_.end()) return "no hand holds its body";
   found->second.way = Way{built.world.time(), carry.duration, found->second.place, carry.to};
   return {};
 }
 
-std::string Forces::release(int entry, scene::BuiltScene& built) {
-  const auto found = held_.find(entry);
+std::string Forces::release(scene::BodyRef who, scene::BuiltScene& built) {
+  const auto found = held_.find(who);
   if (found == held_.end()) return "no hand holds its body";
   built.world.release(found->second.hand);
   held_.erase(found);

@@ -12,10 +12,10 @@ namespace shatterbox::sandbox::script {
 
 class Forces {
  public:
-  // Each gives a sentence why it could not be done, or nothing. `entry`: number of the body in the scene.
-  std::string grab(const scene::Grab& grab, int entry, scene::BuiltScene& built);
-  std::string carry(const scene::Carry& carry, int entry, const scene::BuiltScene& built);
-  std::string release(int entry, scene::BuiltScene& built);
+  // Each gives a sentence why it could not be done, or nothing. `who`: whom the hand holds.
+  std::string grab(const scene::Grab& grab, scene::BodyRef who, scene::BuiltScene& built);
+  std::string carry(const scene::Carry& carry, scene::BodyRef who, const scene::BuiltScene& built);
+  std::string release(scene::BodyRef who, scene::BuiltScene& built);
   void change(const scene::Gravity& gravity, const world::World& world);
 
   /// Leads hands and gravity to where they are to be after the coming step.
@@ -35,7 +35,7 @@ class Forces {
     std::optional<Way> way;
   };
 
-  std::map<int, Held> held_;  // by the numbers of bodies
+  std::map<scene::BodyRef, Held> held_;
   std::optional<Way> gravity_;
 };
 

@@ -17,14 +17,14 @@ namespace {
 
 /// An impulse at a point goes to the part whose bounding ball is nearest to it; one without a point is shared
 /// by mass. A sentence if there is nothing to push.
-std::string push_bodies(const scene::Push& push, int entry, scene::BuiltScene& built) {
+std::string push_bodies(const scene::Push& push, scene::BodyRef who, scene::BuiltScene& built) {
   struct Share {
     body::BodyId id;
     Vec3 impulse, point;
   };
   std::vector<Share> shares;
   double total = 0.0, least = 1e300;
-  const std::vector<const body::Body*> parts = scene::parts_of(built, built.world.bodies(), entry);
+  const std::vector<const body::Body*> parts = scene::parts_of(built, built.world.bodies(), who);
   for (const body::Body* part : parts) total += part->shape->mass;
   for (const body::Body* part : parts) {
     const Vec3& centre = part->pose.translation;
@@ -42,9 +42,9 @@ std::string push_bodies(const scene::Push& push, int entry, scene::BuiltScene& b
 }
 
 /// A sentence if there is nothing to remove.
-std::string remove_bodies(int entry, scene::BuiltScene& built) {
+std::string remove_bodies(scene::BodyRef who, scene::BuiltScene& built) {
   std::vector<body::BodyId> ids;
-  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), entry)) ids.push_back(part->id);
+  for (const body::Body* part : scene::parts_of(built, built.world.bodies(), who)) ids.push_back(part->id);
   for (const body::BodyId id : ids) built.world.remove_body(id);
   return ids.empty() ? "its body is not there" : "";
 }
@@ -76,10 +76,10 @@ std::optional<double> flight_time(const Vec3& way, double speed, const Vec3& gra
 }
 
 /// What goes up or down faster than rest lets it falls.
-MovingTarget moving_target(const scene::BuiltScene& built, int entry, const Vec3& centre) {
+MovingTarget moving_target(const scene::BuiltScene& built, scene::BodyRef who, const Vec3& centre) {
   constexpr double kFalling = 0.1;  // s of free fall: so fast nothing settles
   const Vec3& gravity = built.world.settings().gravity;
-  const Vec3 velocity = scene::velocity_of(built, built.world.bodies(), entry);
+  const Vec3 velocity = scene::velocity_of(built, built.world.bodies(), who);
   const bool is_falling = std::abs(velocity.dot(gravity)) > kFalling * gravity.squaredNorm();
   return {centre, velocity, is_falling};
 }
@@ -88,7 +88,8 @@ MovingTarget moving_target(const scene::BuiltScene& built, int entry, const Vec3
 core::Result<world::BodyDescription> describe(const scene::EventEntry& event, const scene::BuiltScene& built,
                                               const std::function<Sight()>& look,
                                               std::vector<std::string>& faults) {
-  world::BodyDescription description = built.plan.bodies[static_cast<std::size_t>(event.body)].description;
+  world::BodyDescription description =
+      built.plan.bodies[static_cast<std::size_t>(event.who.body)].description;
   if (const auto* drop = std::get_if<scene::Drop>(&event.action)) {
     if (drop->position) description.pose.translation = *drop->position;
     return description;
@@ -107,10 +108,11 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
   } else if (const auto* place = std::get_if<scene::ScreenPlace>(&projectile.target)) {
     target = seen_at(*place, *sight, built.world);
   } else {
-    const auto centre = scene::centre_of(built, built.world.bodies(), std::get<int>(projectile.target));
+    const auto centre =
+        scene::centre_of(built, built.world.bodies(), std::get<scene::BodyRef>(projectile.target));
     if (!centre) return core::Error{"its target is not there"};
-    target = lead(from, moving_target(built, std::get<int>(projectile.target), *centre), projectile.speed,
-                  built.world.settings().gravity);
+    target = lead(from, moving_target(built, std::get<scene::BodyRef>(projectile.target), *centre),
+                  projectile.speed, built.world.settings().gravity);
   }
   const Vec3 way = target - from;
   const double distance = way.norm();
@@ -152,7 +154,7 @@ Script::Script(const scene::SceneDescription& scene)
 }
 
 void Script::drop_copies(const scene::EventEntry& event, const scene::BuiltScene& built) {
-  const auto entry = static_cast<std::size_t>(event.body);
+  const auto entry = static_cast<std::size_t>(event.who.body);
   const scene::BodyEntry& body = scene_.bodies[entry];
   const auto& drop = std::get<scene::Drop>(event.action);
   const Vec3 shift = drop.position.value_or(body.position) - body.position;
@@ -163,7 +165,7 @@ void Script::drop_copies(const scene::EventEntry& event, const scene::BuiltScene
     poses[copy].translation += shift;
     const long after = step_of(static_cast<double>(copy) * body.repeat.every, scene_.world.steps_per_second);
     copies_.push_back(
-        {built.world.steps() + after, event.body, before + static_cast<int>(copy), poses[copy]});
+        {built.world.steps() + after, event.who.body, before + static_cast<int>(copy), poses[copy]});
   }
   std::stable_sort(copies_.begin() + static_cast<std::ptrdiff_t>(next_copy_), copies_.end(),
                    [](const LateCopy& a, const LateCopy& b) { return a.due < b.due; });
@@ -171,7 +173,7 @@ void Script::drop_copies(const scene::EventEntry& event, const scene::BuiltScene
 
 std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                              std::vector<std::string>& faults) {
-  const scene::BodyEntry& entry = scene_.bodies[static_cast<std::size_t>(event.body)];
+  const scene::BodyEntry& entry = scene_.bodies[static_cast<std::size_t>(event.who.body)];
   if (std::holds_alternative<scene::Drop>(event.action) && entry.repeat.total() > 1) {
     drop_copies(event, built);
     return {};
@@ -180,11 +182,11 @@ std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& 
   if (!description) return description.error();
   if (const std::string obstacle = find_obstacle(built.world, description.value()); !obstacle.empty())
     return fmt::format("{} is where its body would come in", obstacle);
-  const int count = ++throws_[static_cast<std::size_t>(event.body)];
+  const int count = ++throws_[static_cast<std::size_t>(event.who.body)];
   if (count > 1) description.value().name += fmt::format("[{}]", count);
   const auto id = built.world.add_body(description.value());
   if (!id) return id.error();
-  built.origins[id.value()] = {event.body, count - 1};
+  built.origins[id.value()] = {event.who.body, count - 1};
   if (std::holds_alternative<scene::Projectile>(event.action)) thrown_.push_back({id.value(), &event});
   return {};
 }
@@ -208,9 +210,8 @@ std::vector<std::size_t> Script::take_due(const world::World& world) {
 
 std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                                std::vector<std::string>& faults) {
-  if (const auto* push = std::get_if<scene::Push>(&event.action))
-    return push_bodies(*push, event.body, built);
-  if (std::holds_alternative<scene::Remove>(event.action)) return remove_bodies(event.body, built);
+  if (const auto* push = std::get_if<scene::Push>(&event.action)) return push_bodies(*push, event.who, built);
+  if (std::holds_alternative<scene::Remove>(event.action)) return remove_bodies(event.who, built);
   if (const auto* gravity = std::get_if<scene::Gravity>(&event.action)) {
     forces_.change(*gravity, built.world);
     return {};
@@ -220,10 +221,10 @@ std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene
     return {};
   }
   if (const auto* grab = std::get_if<scene::Grab>(&event.action))
-    return forces_.grab(*grab, event.body, built);
+    return forces_.grab(*grab, event.who, built);
   if (const auto* carry = std::get_if<scene::Carry>(&event.action))
-    return forces_.carry(*carry, event.body, built);
-  if (std::holds_alternative<scene::Release>(event.action)) return forces_.release(event.body, built);
+    return forces_.carry(*carry, event.who, built);
+  if (std::holds_alternative<scene::Release>(event.action)) return forces_.release(event.who, built);
   if (const auto* speed = std::get_if<scene::Speed>(&event.action)) {
     clock_.change(clock_.film_at(built.world.time()), speed->factor, speed->ramp);
     return {};

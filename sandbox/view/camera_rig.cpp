@@ -37,7 +37,7 @@ void CameraRig::apply(Shot& shot, double film, const Whereabouts& where, Viewpoi
                                         (view.position - view.target);
       break;
     case scene::CameraMove::follow:
-      if (const auto place = where(shot.entry)) shot.last_seen = place;
+      if (const auto place = where(shot.who)) shot.last_seen = place;
       if (!shot.last_seen) break;
       go(view.target, *shot.last_seen, share);
       if (change.offset) go(view.position, *shot.last_seen + *change.offset, share);
@@ -47,7 +47,7 @@ void CameraRig::apply(Shot& shot, double film, const Whereabouts& where, Viewpoi
 
 Viewpoint CameraRig::view_at(const Moment& moment, const Whereabouts& where) {
   Viewpoint view = cut_ ? *cut_ : viewpoint_at(entry_, subject_, moment.time);
-  if (!cut_ && entry_.follow >= 0) {
+  if (!cut_ && entry_.follow.body >= 0) {
     if (const auto place = where(entry_.follow)) last_seen_ = place;
     if (last_seen_) {
       view.target = *last_seen_;
@@ -58,9 +58,9 @@ Viewpoint CameraRig::view_at(const Moment& moment, const Whereabouts& where) {
   return view;
 }
 
-void CameraRig::begin(const scene::CameraChange& change, int entry, double film, const Moment& moment,
-                      const Whereabouts& where) {
-  Shot shot{change, entry, film, std::nullopt};
+void CameraRig::begin(const scene::CameraChange& change, scene::BodyRef who, double film,
+                      const Moment& moment, const Whereabouts& where) {
+  Shot shot{change, who, film, std::nullopt};
   if (change.move == scene::CameraMove::cut) {
     Viewpoint view = view_at(moment, where);
     apply(shot, film, where, view);

@@ -14,9 +14,9 @@ class CameraRig {
  public:
   CameraRig(const scene::CameraEntry& camera, const Subject& subject) : entry_(camera), subject_(subject) {}
 
-  /// A move begins at `film` (s of the film); `entry`: of the body to follow. What it does not say stays as
+  /// A move begins at `film` (s of the film); `who`: to follow. What it does not say stays as
   /// it is. All moves before a cut are over.
-  void begin(const scene::CameraChange& change, int entry, double film, const Moment& moment,
+  void begin(const scene::CameraChange& change, scene::BodyRef who, double film, const Moment& moment,
              const Whereabouts& where);
 
   Viewpoint view_at(const Moment& moment, const Whereabouts& where);
@@ -27,7 +27,7 @@ class CameraRig {
   /// A move that goes on, on top of those before it.
   struct Shot {
     scene::CameraChange change;
-    int entry = -1;
+    scene::BodyRef who;
     double film = 0.0;
     std::optional<Vec3> last_seen;  // of the body that is followed
   };

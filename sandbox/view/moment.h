@@ -6,6 +6,7 @@
 #include <span>
 
 #include "engine/body/body.h"
+#include "sandbox/scene/body_ref.h"
 
 namespace shatterbox::sandbox::view {
 
@@ -16,8 +17,7 @@ struct Moment {
   std::span<const body::Body> bodies;
 };
 
-/// Where a body of the scene is, by its number: its centre, or that of its pieces, m; nothing if it is not
-/// there.
-using Whereabouts = std::function<std::optional<Vec3>(int entry)>;
+/// Where a body of the scene is: its centre, or that of its copies and pieces, m; nothing if it is not there.
+using Whereabouts = std::function<std::optional<Vec3>(scene::BodyRef who)>;
 
 }  // namespace shatterbox::sandbox::view

@@ -147,7 +147,7 @@ std::vector<Vec3> find_entrances(const scene::SceneDescription& scene, std::size
   std::vector<Vec3> shifts;
   for (const scene::EventEntry& event : scene.events) {
     const auto* drop = std::get_if<scene::Drop>(&event.action);
-    if (drop == nullptr || event.body != static_cast<int>(number)) continue;
+    if (drop == nullptr || event.who.body != static_cast<int>(number)) continue;
     shifts.emplace_back(drop->position.value_or(body.position) - body.position);
   }
   return shifts;
@@ -156,7 +156,7 @@ std::vector<Vec3> find_entrances(const scene::SceneDescription& scene, std::size
 // Of each body whether joints hold it to something that does not fall.
 std::vector<char> find_hung(const scene::SceneDescription& scene) {
   std::vector<char> is_hung(scene.bodies.size(), 0);
-  const auto holds = [&](const scene::JointPartner& partner) {
+  const auto holds = [&](const scene::BodyRef& partner) {
     const auto number = static_cast<std::size_t>(partner.body);
     return is_hung[number] != 0 || scene.bodies[number].motion != body::Motion::dynamic;
   };
@@ -164,7 +164,7 @@ std::vector<char> find_hung(const scene::SceneDescription& scene) {
     is_settled = true;
     for (const scene::JointEntry& joint : scene.joints) {
       if (std::none_of(joint.partners.begin(), joint.partners.end(), holds)) continue;
-      for (const scene::JointPartner& partner : joint.partners) {
+      for (const scene::BodyRef& partner : joint.partners) {
         if (holds(partner)) continue;
         is_hung[static_cast<std::size_t>(partner.body)] = 1;
         is_settled = false;

@@ -184,13 +184,13 @@ void View::mark_impacts(const Moment& moment, render::Frame& frame) {
 }
 
 Whereabouts View::whereabouts(const Moment& moment) const {
-  return [this, &moment](int entry) { return scene::centre_of(built_, moment.bodies, entry); };
+  return [this, &moment](scene::BodyRef who) { return scene::centre_of(built_, moment.bodies, who); };
 }
 
 void View::begin(const scene::Cue& cue, const Moment& moment) {
   const scene::EventEntry& event = *cue.event;
   if (const auto* change = std::get_if<scene::CameraChange>(&event.action))
-    camera_.begin(*change, event.body, cue.film, moment, whereabouts(moment));
+    camera_.begin(*change, event.who, cue.film, moment, whereabouts(moment));
   if (const auto* change = std::get_if<scene::OverlayChange>(&event.action))
     overlays_.show(change->name, change->most);
   if (std::holds_alternative<scene::Caption>(event.action)) caption_ = cue;
@@ -226,7 +226,7 @@ void View::look_through(glm::vec2 lens, const Moment& moment, render::Camera& ca
   const glm::vec3 way = camera.target - camera.position, forward = glm::normalize(way);
   float distance = glm::length(way);
   if (const double* metres = std::get_if<double>(&entry.focus)) distance = static_cast<float>(*metres);
-  if (const int* body = std::get_if<int>(&entry.focus))
+  if (const scene::BodyRef* body = std::get_if<scene::BodyRef>(&entry.focus))
     if (const auto centre = whereabouts(moment)(*body))
       distance = std::max(glm::dot(to_glm(*centre) - camera.position, forward), 1e-3F * distance);
   const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);

@@ -80,9 +80,9 @@ TEST_CASE("a good scene is read as it stands") {
   CHECK((window.rotation * Vec3::UnitX() - Vec3(0, 0, -1)).norm() < 1e-15);
   REQUIRE(scene.events.size() == 2);
   CHECK(scene.events[0].at == 0.5);  // by time
-  CHECK(std::get<int>(std::get<Projectile>(scene.events[0].action).target) == 2);
+  CHECK(std::get<BodyRef>(std::get<Projectile>(scene.events[0].action).target) == BodyRef{2, -1});
   CHECK(scene.events[1].name == "late");
-  CHECK(scene.bodies[static_cast<std::size_t>(scene.events[0].body)].is_held_back);
+  CHECK(scene.bodies[static_cast<std::size_t>(scene.events[0].who.body)].is_held_back);
   CHECK(scene.warnings.empty());
 }
 

@@ -185,8 +185,10 @@ const Broken kCorpus[] = {
      "t.toml:4:8", "there is no body \"bal\"", "did you mean \"ball\"?"},
     {"[[body]]\nname = \"ball\"\nkind = \"sphere\"\nrepeat = {count = 3, spacing = [1, 0, 0]}\n[[event]]\nat "
      "= 1\n"
-     "do = \"push\"\nbody = \"ball[2]\"\nimpulse = [1, 0, 0]\n",
-     "t.toml:8:8", "\"ball[2]\" is a copy", "at_point"},
+     "do = \"push\"\nbody = \"ball[4]\"\nimpulse = [1, 0, 0]\n",
+     "t.toml:8:8", "there is no \"ball[4]\"", "ball[1] to ball[3]"},
+    {"[[body]]\nname = \"ball\"\nkind = \"sphere\"\n[camera]\nfollow = \"ball[1x\"\n", "t.toml:5:10",
+     "there is no \"ball[1x\"", "has no copies"},
     {"[[event]]\nat = 1\ndo = \"projectle\"\n", "t.toml:3:6", "unknown do", "did you mean \"projectile\"?"},
     {"[[event]]\nat = 1\n", "t.toml:1:1", "does nothing", ""},
     {"[[event]]\ndo = \"projectile\"\nfrom=[0,0,0]\nat_point=[1,0,0]\nspeed=1\n", "t.toml:1:1", "has no time",

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "sandbox/scene/parts.h"
 #include "tests/sandbox/script/building.h"
 
 using namespace shatterbox;
@@ -39,7 +40,8 @@ TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
   }
 }
 
-TEST_CASE("a moving target is led, whether it falls or rolls, and one that runs away is aimed at where it is") {
+TEST_CASE(
+    "a moving target is led, whether it falls or rolls, and one that runs away is aimed at where it is") {
   const Vec3 gravity(0, -9.81, 0), from(-2, 0.5, 1);
   for (const bool is_falling : {false, true}) {
     const script::MovingTarget target{Vec3(0.3, 1.2, 0), Vec3(1.5, -2.0, 0.7), is_falling};
@@ -190,6 +192,48 @@ TEST_CASE("hands grab, carry and release, explosions and gravity come on time, a
   CHECK(words[0].find("no hand holds its body") != std::string::npos);
   CHECK(play_to(2.1).velocity.x() > 0.01);
   CHECK(script.is_over());
+}
+
+TEST_CASE("an event means one copy where it names one, and all of them where it names their body") {
+  const auto reading = scene::read(
+      "[scene]\ngravity = [0,0,0]\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.1\n"
+      "repeat = {count = 4, spacing = [1, 0, 0]}\n"
+      "[[event]]\nat = 0\ndo = \"push\"\nbody = \"ball[2]\"\nimpulse = [0,3,0]\n"
+      "[[event]]\nat = 0\ndo = \"remove\"\nbody = \"ball[4]\"\n"
+      "[[event]]\nat = 0\ndo = \"grab\"\nbody = \"ball[1]\"\n"
+      "[[event]]\nat = 0\ndo = \"move\"\nbody = \"ball[1]\"\nto = [0,0,1]\nduration = 0.1\n"
+      "[[event]]\nat = 0\ndo = \"move\"\nbody = \"ball\"\nto = [0,0,1]\n"
+      "[[event]]\nat = 0.5\ndo = \"projectile\"\nfrom = [2,5,0]\nat_body = \"ball[3]\"\nspeed = 50\n"
+      "[[event]]\nat = 1\ndo = \"remove\"\nbody = \"ball\"\n");
+  REQUIRE(reading.scene);
+  auto built = build(reading);
+  script::Script script(*reading.scene);
+  std::vector<std::string> words;
+  const auto play_to = [&](double time) {
+    while (built->world.time() < time - 1e-9) {
+      for (std::string& word : script.play(*built)) words.push_back(word);
+      built->world.step();
+    }
+  };
+  const auto find = [&](const std::string& name) -> const body::Body* {
+    for (const body::Body& body : built->world.bodies())
+      if (body.name == name) return &body;
+    return nullptr;
+  };
+  play_to(0.4);
+  CHECK(find("ball[4]") == nullptr);
+  REQUIRE(find("ball[2]"));
+  CHECK(find("ball[2]")->velocity.y() > 0.0);
+  CHECK(find("ball[3]")->velocity == Vec3(0, 0, 0));
+  CHECK((find("ball[1]")->pose.translation - Vec3(0, 0, 1)).norm() < 0.02);
+  REQUIRE(words.size() == 1);  // all of them are held by no hand
+  CHECK(words[0].find("no hand holds its body") != std::string::npos);
+  play_to(0.7);
+  CHECK(find("ball[3]")->velocity.y() < -0.1);
+  play_to(1.1);
+  CHECK(built->world.bodies().size() == 1);  // what was thrown
+  const scene::BodyRef second{0, 1};
+  CHECK(!scene::centre_of(*built, built->world.bodies(), second));
 }
 
 TEST_CASE("what is thrown at a place of the picture meets what is seen there") {
