@@ -39,8 +39,10 @@ class Crusher {
  public:
   Crusher(const geometry::SolidComplex& complex, const SolidCoreSetup& setup)
       : complex_(complex), setup_(setup) {
-    for (const SolidCore& core : setup.cores)
-      sizes_.push_back(std::max(setup.least_size, core.radius / kCellsAcross));
+    // What several points press with is one blow: it makes as many cells as that of one would.
+    double squares = 0.0;
+    for (const SolidCore& core : setup.cores) squares += core.radius * core.radius;
+    finest_ = std::max(setup.least_size, core::sqrt(squares) / kCellsAcross);
     find_near();
   }
 
@@ -57,14 +59,13 @@ class Crusher {
       Vec3 place = Vec3::Zero();
     };
     std::vector<Dart> darts;
-    for (Size i = 0; i < sizes_.size(); ++i) {
-      const double cube = sizes_[i] * core::pow(SpacePoints::kPointsPerCube / kDartsPerSeed, 1.0 / 3.0);
-      const Vec3 half = Vec3::Constant(reach_of(i));
-      SpacePoints(cube, setup_.seed)
-          .visit_box(setup_.cores[i].centre - half, setup_.cores[i].centre + half,
-                     [&](const Vec3& place, core::Random random) {
-                       darts.push_back({random.bits(), place});
-                     });
+    const SpacePoints points(finest_ * core::pow(SpacePoints::kPointsPerCube / kDartsPerSeed, 1.0 / 3.0),
+                             setup_.seed);
+    for (const SolidCore& core : setup_.cores) {
+      const Vec3 half = Vec3::Constant(reach_of(core));
+      points.visit_box(core.centre - half, core.centre + half, [&](const Vec3& place, core::Random random) {
+        darts.push_back({random.bits(), place});
+      });
     }
     std::sort(darts.begin(), darts.end(), [](const Dart& a, const Dart& b) { return a.key < b.key; });
     for (Size i = 0; i < darts.size(); ++i)
@@ -97,13 +98,12 @@ class Crusher {
   }
 
  private:
-  double size_at(Size core, double distance) const {
-    return sizes_[core] * std::max(1.0, kCoarsening * distance / setup_.cores[core].radius);
+  double size_at(const SolidCore& core, double distance) const {
+    return finest_ * std::max(1.0, kCoarsening * distance / core.radius);
   }
   /// How far from a core's centre seeds are needed, m.
-  double reach_of(Size core) const {
-    const double radius = setup_.cores[core].radius;
-    return radius + kRimMargin * size_at(core, radius);
+  double reach_of(const SolidCore& core) const {
+    return core.radius + kRimMargin * size_at(core, core.radius);
   }
 
   /// Cells that seeds may be in or that belong to them, and the pieces that these are in.
@@ -117,8 +117,9 @@ class Crusher {
       double radius = 0.0;
       for (const int v : mesh.tetrahedra[t])
         radius = std::max(radius, (mesh.positions[at(v)] - middles[t]).norm());
-      for (Size i = 0; i < sizes_.size() && is_near[t] == 0; ++i)
-        if ((middles[t] - setup_.cores[i].centre).norm() < reach_of(i) + radius) is_near[t] = 1;
+      is_near[t] = std::any_of(setup_.cores.begin(), setup_.cores.end(), [&](const SolidCore& core) {
+        return (middles[t] - core.centre).norm() < reach_of(core) + radius;
+      });
       if (is_near[t] != 0) greatest_radius = std::max(greatest_radius, radius);
     }
     core::DisjointSets pieces(complex_.cells.size());
@@ -150,12 +151,12 @@ class Crusher {
     CoreSeed seed;
     seed.position = place;
     bool is_in_reach = false;
-    for (Size i = 0; i < sizes_.size(); ++i) {
-      const double distance = (place - setup_.cores[i].centre).norm();
-      if (distance > reach_of(i)) continue;
+    for (const SolidCore& core : setup_.cores) {
+      const double distance = (place - core.centre).norm();
+      if (distance > reach_of(core)) continue;
       is_in_reach = true;
-      seed.size = std::min(seed.size, size_at(i, distance));
-      seed.is_open = seed.is_open || distance + kReachOfCells * size_at(i, distance) < setup_.cores[i].radius;
+      seed.size = std::min(seed.size, size_at(core, distance));
+      seed.is_open = seed.is_open || distance + kReachOfCells * size_at(core, distance) < core.radius;
     }
     if (!is_in_reach) return;
     const double least = kLeastSeedSpacing * seed.size;
@@ -172,8 +173,8 @@ class Crusher {
 
   const geometry::SolidComplex& complex_;
   const SolidCoreSetup& setup_;
-  std::vector<double> sizes_;  // m, of each core's finest cells
-  PointCubes cells_{1.0};      // near ones, by the middles of their elements
+  double finest_ = 0.0;    // m, of cells
+  PointCubes cells_{1.0};  // near ones, by the middles of their elements
   std::vector<int> pieces_;
   std::vector<CoreSeed> seeds_;
 };
