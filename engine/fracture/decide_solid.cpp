@@ -25,7 +25,7 @@ constexpr double kToldSize = 1.5;  // of the elements, is the least that they ca
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
 
-constexpr double kLeastLump = 0.5;    // of the cube of that, is what parts from bridges
+constexpr double kLeastLump = 0.5;   // of the cube of that, is what parts from bridges
 constexpr double kLeastCrumb = 1.0;  // of the elements, is a cell of a crushed core: planes do not mind them
 
 // Where a crack came to nothing, none is begun again before the stress is so many times as great.

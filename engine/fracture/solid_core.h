@@ -12,7 +12,7 @@ namespace shatterbox::fracture {
 /// What is crushed about one point that is pressed.
 struct SolidCore {
   Vec3 centre = Vec3::Zero();
-  double radius = 0.0;  // m: cells whose seed is nearer to the centre than this are broken out whole
+  double radius = 0.0;  // m: cells that lie within that, nearly all of them, are broken out whole
 };
 
 struct SolidCoreSetup {
