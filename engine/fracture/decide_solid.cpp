@@ -25,8 +25,7 @@ constexpr double kToldSize = 1.5;  // of the elements, is the least that they ca
 constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
 
-constexpr double kLeastLump = 0.5;   // of the cube of that, is what parts from bridges
-constexpr double kLeastCrumb = 1.0;  // of the elements, is a cell of a crushed core: planes do not mind them
+constexpr double kLeastLump = 0.5;  // of the cube of that, is what parts from bridges
 
 // Where a crack came to nothing, none is begun again before the stress is so many times as great.
 constexpr double kSolidTriedAgain = 1.25;
@@ -289,7 +288,7 @@ class SolidDecider {
       if (radius >= kToldSize * model().mean_edge_length)
         setup.cores.push_back({press.contact.point, radius});
     }
-    setup.least_size = kLeastCrumb * model().mean_edge_length;
+    setup.least_size = model().mean_edge_length;
     setup.most_area = most_area();
     setup.seed = core::mix(subject_.seed + 0x636f7265);
     setup.id = subject_.first_cut_id + decision_.cracks;

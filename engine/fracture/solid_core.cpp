@@ -1,10 +1,8 @@
 #include "engine/fracture/solid_core.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
-#include "engine/core/disjoint_sets.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/stop.h"
@@ -44,10 +42,6 @@ class Crusher {
     for (const SolidCore& core : setup.cores) squares += core.radius * core.radius;
     finest_ = std::max(setup.least_size, core::sqrt(squares) / kCellsAcross);
     find_near();
-  }
-
-  bool has_cells() const {
-    return std::any_of(seeds_.begin(), seeds_.end(), [](const CoreSeed& s) { return s.is_open; });
   }
 
   /// |cells|: the piece that each near one is in; -1 for the others.
@@ -122,16 +116,15 @@ class Crusher {
       });
       if (is_near[t] != 0) greatest_radius = std::max(greatest_radius, radius);
     }
-    core::DisjointSets pieces(complex_.cells.size());
-    for (const geometry::SolidContact& contact : find_solid_contacts(complex_))
-      pieces.unite(contact.cell_a, contact.cell_b);
-    pieces_.assign(complex_.cells.size(), -1);
+    int piece_count = 0;
+    pieces_ = label_parts(complex_.cells.size(), find_solid_contacts(complex_), piece_count);
     cells_ = PointCubes(greatest_radius);
     for (Size c = 0; c < pieces_.size(); ++c) {
       const int element = complex_.cells[c].element;
-      if (is_near[at(element)] == 0) continue;
-      pieces_[c] = pieces.find(static_cast<int>(c));
-      cells_.add(middles[at(element)], static_cast<int>(c));
+      if (is_near[at(element)] != 0)
+        cells_.add(middles[at(element)], static_cast<int>(c));
+      else
+        pieces_[c] = -1;
     }
   }
 
@@ -190,10 +183,11 @@ CrushedSolid crush(geometry::SolidComplex& complex, const SolidCoreSetup& setup)
   if (setup.cores.empty()) return out;
   Crusher crusher(complex, setup);
   crusher.throw_darts();
-  if (!crusher.has_cells()) return out;
+  const std::vector<geometry::PunchRegion> regions = crusher.regions();
+  if (regions.empty()) return out;
   geometry::SolidComplex cut = complex;
   const geometry::Punched punched =
-      punch_out(cut, crusher.regions(), crusher.pieces(), setup.id, geometry::Walls::plane);
+      punch_out(cut, regions, crusher.pieces(), setup.id, geometry::Walls::plane);
   if (punched.wall_area > setup.most_area) {
     out.is_out_of_energy = true;
     return out;

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/core/stop.h"
@@ -21,19 +20,6 @@ using Size = std::size_t;
 using core::at;
 
 constexpr int kMergeRounds = 8;
-
-/// The number of each cell's piece; pieces are numbered by their first cells.
-std::vector<int> label_cells(Size cell_count, const std::vector<SolidContact>& contacts, int& piece_count) {
-  core::DisjointSets pieces(cell_count);
-  for (const SolidContact& contact : contacts) pieces.unite(contact.cell_a, contact.cell_b);
-  std::vector<int> label(cell_count, -1);
-  piece_count = 0;
-  for (Size c = 0; c < cell_count; ++c) {
-    const int root = pieces.find(static_cast<int>(c));
-    label[c] = root == static_cast<int>(c) ? piece_count++ : label[at(root)];
-  }
-  return label;
-}
 
 bool is_open(const SolidFacet& facet) {
   return facet.parts[0] < 0 && facet.kind == FacetKind::crack && facet.cells[0] >= 0 && facet.cells[1] >= 0;
@@ -96,7 +82,7 @@ SolidSplitter::SolidSplitter(SolidComplex complex, double least_width) : complex
 void SolidSplitter::label() {
   contacts_ = find_solid_contacts(complex_);
   int count = 0;
-  piece_of_ = label_cells(complex_.cells.size(), contacts_, count);
+  piece_of_ = geometry::label_parts(complex_.cells.size(), contacts_, count);
   std::vector<double> volumes(at(count), 0.0);
   for (Size c = 0; c < piece_of_.size(); ++c) volumes[at(piece_of_[c])] += complex_.cells[c].volume;
   std::vector<int> order(at(count));

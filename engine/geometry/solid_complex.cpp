@@ -193,7 +193,7 @@ SolidComplex build_solid_complex(std::shared_ptr<const SolidElements> elements,
   std::vector<Side> found;
   for (const FacetLoop& loop : material.facets) {
     complex.facets.push_back(
-        {static_cast<int>(found.size()), loop.corner_count, loop.cells, loop.kind, loop.tag, {-1, -1}});
+        {static_cast<int>(found.size()), loop.corner_count, loop.cells, loop.kind, -1, loop.tag, {-1, -1}});
     for (int i = 0; i < loop.corner_count; ++i) {
       const int a = material.corners[at(loop.first_corner + i)];
       const int b = material.corners[at(loop.first_corner + (i + 1) % loop.corner_count)];

@@ -40,9 +40,9 @@ struct SolidFacet {
   int first_side = 0, side_count = 0;  // in `sides`; counter-clockwise seen from in front
   std::array<int, 2> cells{-1, -1};    // behind and in front; -1: nothing
   FacetKind kind = FacetKind::element_face;
+  std::int16_t plane = -1;           // crack: those of one tag and number here lie in one plane; -1: alone
   int tag = -1;                      // outer: number of the given triangle; crack, grain: of the cut
   std::array<int, 2> parts{-1, -1};  // facets it was divided into, or -1
-  int plane = -1;                    // crack: those of one tag and number here lie in one plane; -1: alone
 };
 
 struct SolidPart {

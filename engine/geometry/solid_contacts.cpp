@@ -66,13 +66,22 @@ std::vector<SolidContact> find_solid_contacts(const SolidComplex& complex) {
   return sorted;
 }
 
+std::vector<int> label_parts(std::size_t cell_count, const std::vector<SolidContact>& contacts,
+                             int& part_count) {
+  core::DisjointSets parts(cell_count);
+  for (const SolidContact& contact : contacts) parts.unite(contact.cell_a, contact.cell_b);
+  std::vector<int> label(cell_count, -1);
+  part_count = 0;
+  for (std::size_t c = 0; c < cell_count; ++c) {
+    const int root = parts.find(static_cast<int>(c));
+    label[c] = root == static_cast<int>(c) ? part_count++ : label[static_cast<std::size_t>(root)];
+  }
+  return label;
+}
+
 int count_parts(const SolidComplex& complex) {
-  core::DisjointSets parts(complex.cells.size());
-  for (const SolidContact& contact : find_solid_contacts(complex))
-    parts.unite(contact.cell_a, contact.cell_b);
   int count = 0;
-  for (int c = 0; c < static_cast<int>(complex.cells.size()); ++c)
-    if (parts.find(c) == c) ++count;
+  label_parts(complex.cells.size(), find_solid_contacts(complex), count);
   return count;
 }
 

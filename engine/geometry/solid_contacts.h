@@ -13,6 +13,10 @@ namespace shatterbox::geometry {
 /// (cell_a < cell_b). The complex is settled.
 std::vector<SolidContact> find_solid_contacts(const SolidComplex& complex);
 
+/// The number of each cell's part, which hangs together; parts are numbered by their first cells.
+std::vector<int> label_parts(std::size_t cell_count, const std::vector<SolidContact>& contacts,
+                             int& part_count);
+
 /// How many parts a settled complex falls into.
 int count_parts(const SolidComplex& complex);
 

@@ -19,7 +19,7 @@ struct SolidCut {
   std::vector<int> cells;  // active ones: the others are not cut, and hold together what touches them
   FacetKind kind = FacetKind::crack;  // or grain
   int id = 0;                         // tag of the new facets
-  int plane = -1;                     // and the number of the plane in which they lie
+  std::int16_t plane = -1;            // and the number of the plane in which they lie
 };
 
 class SolidCutter {

@@ -14,7 +14,8 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr double kPlaneSnap = 1e-6;  // of cuts that are to stay planes: see SolidCutter
+constexpr double kPlaneSnap = 1e-6;          // of cuts that are to stay planes: see SolidCutter
+constexpr std::int16_t kMostPlanes = 32767;  // that have a number
 
 template <class Visit>
 void for_each_corner(const SolidComplex& complex, int cell, const Visit& visit) {
@@ -101,6 +102,7 @@ Punched punch_out(SolidComplex& complex, const std::vector<PunchRegion>& regions
   SolidCutter cutter(complex, walls == Walls::plane ? kPlaneSnap : SolidCutter::kUsualSnap);
   SolidCut cut;
   cut.id = tag;
+  std::int16_t planes = 0;
   cut.node_values.resize(complex.elements->mesh.positions.size());
   for (Size r = 0; r < regions.size(); ++r) {
     const PunchRegion& region = regions[r];
@@ -112,7 +114,7 @@ Punched punch_out(SolidComplex& complex, const std::vector<PunchRegion>& regions
     for (const PunchSide& side : region.sides) {
       core::stop_if_asked();
       if (!cuts_any(complex, inside, side)) continue;
-      if (walls == Walls::plane) ++cut.plane;
+      if (walls == Walls::plane) cut.plane = planes < kMostPlanes ? planes++ : std::int16_t{-1};
       for (const int c : inside)
         for (const int node : complex.elements->mesh.tetrahedra[at(complex.cells[at(c)].element)])
           cut.node_values[at(node)] =
@@ -149,7 +151,8 @@ Punched punch_out(SolidComplex& complex, const std::vector<PunchRegion>& regions
       out.wall_area += facet_area_vector(complex, facet).norm();
     } else if (facet.kind == FacetKind::crack && facet.tag == tag) {
       facet.kind = FacetKind::grain;
-      facet.tag = facet.plane = -1;
+      facet.tag = -1;
+      facet.plane = -1;
     }
   }
   return out;

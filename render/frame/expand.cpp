@@ -18,6 +18,10 @@ glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
   return length > 0.0F && std::isfinite(length) ? v / length : otherwise;
 }
 
+bool is_crack_face(const Mesh& mesh, std::size_t triangle) {
+  return mesh.surface == Surface::solid && !mesh.cracks.empty() && (mesh.cracks[triangle] & kCrackFace) != 0;
+}
+
 // Corners about each vertex, as rows of one array.
 struct Fans {
   std::vector<std::uint32_t> first;  // |V| + 1
@@ -54,8 +58,7 @@ std::vector<glm::vec3> crease_normals(const Mesh& mesh, const Fans& fans, const 
       float least = 1.0F;
       for (const Corner other : fan) {
         const glm::vec3 n = faces.unit[other / 3];
-        const bool is_lip = is_crack_face(mesh, other / 3) != is_crack_face(mesh, fan[k] / 3);
-        const float cosine = is_lip ? -1.0F : glm::dot(n, own);
+        const float cosine = crease_cosine(mesh, faces.unit, other / 3, fan[k] / 3);
         least = std::min(least, cosine);
         if (cosine >= least_cosine) sum += n * faces.weight[other];
       }
@@ -213,10 +216,6 @@ void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::
 
 }  // namespace
 
-bool is_crack_face(const Mesh& mesh, std::size_t triangle) {
-  return mesh.surface == Surface::solid && !mesh.cracks.empty() && (mesh.cracks[triangle] & kCrackFace) != 0;
-}
-
 FaceNormals find_face_normals(const Mesh& mesh) {
   FaceNormals out{std::vector<glm::vec3>(mesh.triangles.size()),
                   std::vector<float>(mesh.triangles.size() * 3)};
@@ -236,6 +235,10 @@ FaceNormals find_face_normals(const Mesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) out.weight[3 * t + k] = share * squares[(k + 1) % 3];
   }
   return out;
+}
+
+float crease_cosine(const Mesh& mesh, const std::vector<glm::vec3>& units, std::size_t a, std::size_t b) {
+  return is_crack_face(mesh, a) != is_crack_face(mesh, b) ? -1.0F : glm::dot(units[a], units[b]);
 }
 
 std::vector<glm::vec3> find_corner_normals(const Mesh& mesh) {

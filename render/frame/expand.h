@@ -36,9 +36,6 @@ struct DrawnMesh {
   glm::vec3 box_least{0.0F}, box_most{0.0F};
 };
 
-// Whether a solid's triangle is one: sharp against what is none, at any angle.
-bool is_crack_face(const Mesh& mesh, std::size_t triangle);
-
 // The triangle's unit normal, and its say at each corner: the area over the squares of the two edges there
 // (Max 1999), which gives a sphere's normal where all corners lie on one.
 struct FaceNormals {
@@ -46,6 +43,10 @@ struct FaceNormals {
   std::vector<float> weight;    // 3|T|, 1/m2
 };
 FaceNormals find_face_normals(const Mesh& mesh);
+
+// Of the angle by which two triangles meet, with these unit normals; -1 across the lip of a solid's crack,
+// which is sharp at any angle.
+float crease_cosine(const Mesh& mesh, const std::vector<glm::vec3>& units, std::size_t a, std::size_t b);
 
 // Corner normals (3|T|, unit): the weighted mean over the triangles about a vertex that meet this one at less
 // than the crease angle; a crack's lip is sharp at any angle. Degenerate triangles get +y and weigh nothing.

@@ -116,8 +116,7 @@ bool Simplifier::find_normals(std::uint32_t v, const Fan& fan) {
     float least = 1.0F;
     for (std::size_t i = 0; i < fan.count; ++i) {
       const std::uint32_t t = CornerTable::triangle(fan.corners[i]);
-      const bool is_lip = is_crack_face(*mesh_, t) != is_crack_face(*mesh_, own_triangle);
-      const float cosine = is_lip ? -1.0F : glm::dot(units_[t], own);
+      const float cosine = crease_cosine(*mesh_, units_, t, own_triangle);
       least = std::min(least, cosine);
       if (cosine >= crease_cosine_) sum += units_[t] * weights_[3 * t + (fan.corners[i] & 3U)];
     }

@@ -296,7 +296,8 @@ Reach find_reach(const Vec3& point, const scene::BodyRef& partner, const scene::
   const auto bodies = bodies_of.find(partner.body);
   if (bodies == bodies_of.end()) return nearest;  // they come in later
   for (const Body* body : bodies->second) {
-    if (!partner.includes(partner.body, built.origins.at(body->id).copy)) continue;
+    const scene::Origin& origin = built.origins.at(body->id);
+    if (!partner.includes(origin.entry, origin.copy)) continue;
     if (body->shape->kind == ShapeKind::plane) return {0.0, 0.0};
     const double distance = (body->pose.translation - point).norm();
     const double radii = distance / body->shape->bounding_radius;

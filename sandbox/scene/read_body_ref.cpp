@@ -16,6 +16,7 @@ std::vector<std::string> body_names(const SceneDescription& scene) {
 
 std::optional<BodyRef> read_body_ref(TableReader& reader, const TomlValue& value,
                                      const SceneDescription& scene) {
+  if (const int exact = find_body(scene, value.text); exact >= 0) return BodyRef{exact, -1};
   const std::size_t bracket = value.text.find('[');
   const std::string name = value.text.substr(0, bracket);
   const int found = find_body(scene, name);
@@ -24,7 +25,6 @@ std::optional<BodyRef> read_body_ref(TableReader& reader, const TomlValue& value
                        hint_for_name(name, body_names(scene), "bodies"));
     return std::nullopt;
   }
-  if (bracket == std::string::npos) return BodyRef{found, -1};
   const int copies = scene.bodies[static_cast<std::size_t>(found)].repeat.total();
   int number = 0;
   const char* const end = value.text.data() + value.text.size();

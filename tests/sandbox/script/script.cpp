@@ -22,6 +22,15 @@ std::vector<std::size_t> count_bodies(script::Script& script, scene::BuiltScene&
   return counts;
 }
 
+/// Plays up to a time of the world, s, and collects what the script says.
+void play_until(double time, script::Script& script, scene::BuiltScene& built,
+                std::vector<std::string>& words) {
+  while (built.world.time() < time - 1e-9) {
+    for (std::string& word : script.play(built)) words.push_back(word);
+    built.world.step();
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a thrown body passes through its target, whatever pulls at it") {
@@ -172,10 +181,7 @@ TEST_CASE("hands grab, carry and release, explosions and gravity come on time, a
   script::Script script(*reading.scene);
   std::vector<std::string> words;
   const auto play_to = [&](double time) {
-    while (built->world.time() < time - 1e-9) {
-      for (std::string& word : script.play(*built)) words.push_back(word);
-      built->world.step();
-    }
+    play_until(time, script, *built, words);
     return built->world.bodies()[0];
   };
   CHECK((play_to(0.5).pose.translation - Vec3(0, 2, 0)).norm() < 1e-3);
@@ -209,12 +215,7 @@ TEST_CASE("an event means one copy where it names one, and all of them where it 
   auto built = build(reading);
   script::Script script(*reading.scene);
   std::vector<std::string> words;
-  const auto play_to = [&](double time) {
-    while (built->world.time() < time - 1e-9) {
-      for (std::string& word : script.play(*built)) words.push_back(word);
-      built->world.step();
-    }
-  };
+  const auto play_to = [&](double time) { play_until(time, script, *built, words); };
   const auto find = [&](const std::string& name) -> const body::Body* {
     for (const body::Body& body : built->world.bodies())
       if (body.name == name) return &body;
