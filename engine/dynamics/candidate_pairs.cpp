@@ -84,6 +84,7 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   w.collider = memory.collider.get();
   w.inertia = memory.inertia;
   w.reach = w.collider->bounding_radius;
+  w.travelled = memory.travelled;
   w.start = w.end = w.predicted = b.pose;
   w.rotation = b.pose.rotation;
   const double dt = settings.time_step;
@@ -143,6 +144,7 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<FoundPair>& 
                  ContactState& state) {
   std::vector<PairState> matched;
   matched.reserve(found.size());
+  work.pairs.reserve(found.size());
   const auto is_still = [&](body::BodyId id) {
     const auto place = std::lower_bound(work.ids.begin(), work.ids.end(), id);
     return place != work.ids.end() && *place == id &&
@@ -165,7 +167,7 @@ void match_pairs(const std::vector<Body>& bodies, const std::vector<FoundPair>& 
     if (old < state.pairs.size() && std::pair(state.pairs[old].body_a, state.pairs[old].body_b) == key) {
       matched.push_back(std::move(state.pairs[old++]));
       w.is_first_seen = work.is_new[at(pair.a)] || work.is_new[at(pair.b)];
-      if (w.is_first_seen) matched.back().gaps.reset();
+      if (w.is_first_seen) matched.back().forget_caches();
     } else {
       w.is_first_seen = true;
       matched.emplace_back();
@@ -199,8 +201,15 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.is_analytic = collision::is_analytic_pair(a.shape->kind, b.shape->kind);
   pair.has_sides =
       pair.is_plane || pair.is_analytic || body::is_round(a.shape->kind) || body::is_round(b.shape->kind);
-  pair.margin =
-      2.0 * usual_gap + (pair.is_plane ? felt : std::min(felt, settings.speculative_margin * pair.size));
+  // Surfaces that do not break for it are found on the way soon enough.
+  const bool foresees_falls = pair.is_analytic || a.may_break || b.may_break;
+  const double foreseen =
+      std::min(foresees_falls ? felt : pair.motion, settings.speculative_margin * pair.size);
+  pair.margin = 2.0 * usual_gap + (pair.is_plane ? felt : foreseen);
+  if (settings.has_caches && !pair.is_plane && !pair.is_analytic && !turns_far(a) && !turns_far(b)) {
+    pair.clear = memory.clear - (a.travelled + b.travelled - memory.clear_since);
+    pair.clearance = std::max(pair.clearance, pair.clear - pair.motion);
+  }
   pair.is_apart = pair.clearance > pair.margin;
   if (pair.is_plane || pair.is_analytic) {
     pair.motion = felt;
@@ -209,14 +218,14 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   const double slack = settings.search_slack * pair.size;
   pair.looks_ahead = pair.motion > slack;
   // Which features may meet is told by how bodies move where they are near each other.
-  if (!pair.is_apart && !turns_far(a) && !turns_far(b))
+  if (pair.motion + usual_gap > pair.margin && !pair.is_apart && !turns_far(a) && !turns_far(b))
     pair.motion = approach_bound(a, a.predicted, b, b.predicted, pair.motion + usual_gap);
   pair.is_fast = pair.motion > slack;
   const double needed = std::max(pair.margin, pair.motion + usual_gap);
-  pair.needs_search =
-      !pair.is_fast && !pair.is_apart &&
-      (!settings.has_caches || !memory.gaps ||
-       memory.gaps->search->margin - moved_since(*memory.gaps->search, a, b, needed) < needed);
+  if (pair.is_fast || pair.is_apart) return;
+  if (settings.has_caches && memory.gaps)
+    pair.beyond = memory.gaps->search->margin - moved_since(*memory.gaps->search, a, b, needed);
+  pair.needs_search = pair.beyond < needed;
 }
 
 // Sleepers that something hits, with its momentum, or touches and could move.

@@ -43,6 +43,16 @@ struct PairState {
   std::vector<RememberedContact> contacts;
 
   std::shared_ptr<const StartGaps> gaps;  // a cache: its list of features, and how near these were last
+  // The same for a pair that is not near: its surfaces were at least `clear` (m) apart when its bodies had
+  // travelled `clear_since` (m) in all.
+  double clear = kUnknownClear, clear_since = 0.0;
+
+  static constexpr double kUnknownClear = -1e300;
+
+  void forget_caches() {
+    gaps.reset();
+    clear = kUnknownClear;
+  }
 };
 
 /// One body's own memory.
@@ -51,8 +61,9 @@ struct BodyState {
   std::shared_ptr<const body::Shape> shape;
   std::shared_ptr<const collision::Collider> collider;  // of `shape`; shared between copies of the body
   PrincipalInertia inertia;
-  Pose rest_pose;  // the body has stayed about here for its quiet time
-  Pose last_pose;  // at the end of the last step: whoever moves a body by hand makes its lists void
+  Pose rest_pose;          // the body has stayed about here for its quiet time
+  Pose last_pose;          // at the end of the last step: whoever moves a body by hand makes its lists void
+  double travelled = 0.0;  // m: no point of it has moved further, from step to step, since it is known
 };
 
 /// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and

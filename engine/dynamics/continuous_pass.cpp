@@ -429,7 +429,7 @@ class Guard {
   static bool is_due(WorkPair& pair, double moved, double& spare) {
     if (moved == 0.0) return false;
     if (moved >= kElsewhere) {
-      pair.known.forget_ends();
+      pair.known.forget_ends(pair.search.get());
       return true;
     }
     spare -= moved;

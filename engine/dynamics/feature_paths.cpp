@@ -1,6 +1,7 @@
 #include "engine/dynamics/feature_paths.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
@@ -42,6 +43,11 @@ class Follower {
     if (part_as_one(number, block)) return;
     const auto [begin, end] = search_.features_of(number);
     all_free_until_ = 1e300;
+    if (!block.is_begun && !begins(begin, end)) {
+      block.free_until = all_free_until_;
+      return;
+    }
+    block.is_begun = true;
     for (Size i = begin; i < end; ++i) follow(i);
     block.free_until = all_free_until_;
   }
@@ -53,6 +59,19 @@ class Follower {
   void note_free(double until) {
     spare_ = std::min(spare_, until - known_.moved);
     all_free_until_ = std::min(all_free_until_, until);
+  }
+
+  // Sets what is known of the features [begin, end). False if they all start out of reach.
+  bool begins(Size begin, Size end) {
+    const StartGaps* known = known_.start_gaps.get();
+    if (known) {
+      float least = known->gaps[begin];
+      for (Size i = begin + 1; i < end; ++i) least = std::min(least, known->gaps[i]);
+      if (is_out_of_reach(least)) return false;
+    }
+    for (Size i = begin; i < end; ++i)
+      known_.features[i] = {known ? known->gaps[i] : PathMemory::kUnknown, -1.0, Vec3::Zero()};
+    return true;
   }
 
   // Along one direction the triangles of two leaves are apart at both ends.
@@ -151,13 +170,6 @@ class Follower {
   std::vector<PathHit> hits_;
 };
 
-void begin_memory(Size features, PathMemory& known) {
-  if (known.features.size() == features) return;
-  known.features.resize(features);
-  if (!known.start_gaps) return;
-  for (Size i = 0; i < features; ++i) known.features[i].start_gap = known.start_gaps->gaps[i];
-}
-
 }  // namespace
 
 double least_separation(double gap, const WorkPair& pair) {
@@ -170,18 +182,27 @@ std::vector<PathHit> follow_features(const WorkBody& a, const WorkBody& b, const
                                      WorkPair& pair, double& spare) {
   const FeatureSearch& search = *pair.search;
   const Size blocks = search.block_count();
-  begin_memory(search.features.size(), pair.known);
-  pair.known.blocks.resize(blocks);
+  if (pair.known.blocks.empty()) {
+    pair.known.blocks.resize(blocks);
+    pair.known.features = std::make_unique_for_overwrite<PathMemory::Feature[]>(search.features.size());
+  }
   struct Found {
     double spare = 0.0;
     std::vector<PathHit> hits;
   };
-  std::vector<Found> found((blocks + kBlocksToTask - 1) / kBlocksToTask);
-  core::parallel_chunks(blocks, kBlocksToTask, [&](Size begin, Size end) {
+  const auto follow = [&](Size begin, Size end) {
     Follower follower(a, b, paths, pair);
     for (Size block = begin; block < end; ++block) follower.follow_block(block);
-    found[begin / kBlocksToTask] = {follower.spare(), std::move(follower.hits())};
-  });
+    return Found{follower.spare(), std::move(follower.hits())};
+  };
+  if (blocks <= kBlocksToTask) {
+    Found all = follow(0, blocks);
+    spare = all.spare;
+    return std::move(all.hits);
+  }
+  std::vector<Found> found((blocks + kBlocksToTask - 1) / kBlocksToTask);
+  core::parallel_chunks(blocks, kBlocksToTask,
+                        [&](Size begin, Size end) { found[begin / kBlocksToTask] = follow(begin, end); });
   std::vector<PathHit> hits;
   spare = paths.spare;
   for (const Found& some : found) {

@@ -99,9 +99,13 @@ std::pair<std::size_t, std::size_t> FeatureSearch::features_of(std::size_t block
   return {at(blocks[block].begin), end};
 }
 
-void PathMemory::forget_ends() {
-  for (Feature& feature : features) feature.free_until = -1.0;
-  for (Block& block : blocks) block.free_until = -1.0;
+void PathMemory::forget_ends(const FeatureSearch* search) {
+  for (std::size_t number = 0; number < blocks.size(); ++number) {
+    blocks[number].free_until = -1.0;
+    if (!blocks[number].is_begun) continue;
+    const auto [begin, end] = search->features_of(number);
+    for (std::size_t i = begin; i < end; ++i) features[i].free_until = -1.0;
+  }
   parts.clear();
 }
 
@@ -126,18 +130,17 @@ StartGaps gaps_of(std::shared_ptr<const FeatureSearch> search) {
   return gaps;
 }
 
-StartGaps carry_gaps(const StartGaps& before, const WorkBody& a, const WorkBody& b) {
-  const Pose &from_a = before.start_a, &from_b = before.start_b;
+void carry_gaps(StartGaps& gaps, const WorkBody& a, const WorkBody& b) {
+  const Pose &from_a = gaps.start_a, &from_b = gaps.start_b;
   double moved = moved_at_most(from_a, a, a.start, from_b, b, b.start);
-  if (moved == 0.0) return before;
+  if (moved == 0.0) return;
   // The bound holds for what is so near now; all else is further.
-  const double near = before.search->margin;
-  if (before.gaps.size() > kFew)
+  const double near = gaps.search->margin;
+  if (gaps.gaps.size() > kFew)
     moved = std::min(moved, moved_where_near(from_a, a, a.start, from_b, b, b.start, near + moved));
-  StartGaps now{before.search, a.start, b.start, {}};
-  now.gaps.reserve(before.gaps.size());
-  for (const double gap : before.gaps) now.gaps.push_back(collision::round_down(std::min(gap - moved, near)));
-  return now;
+  gaps.start_a = a.start;
+  gaps.start_b = b.start;
+  for (float& gap : gaps.gaps) gap = collision::round_down(std::min(gap - moved, near));
 }
 
 double approach_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,

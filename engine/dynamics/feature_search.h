@@ -29,11 +29,12 @@ struct FeatureSearch {
 };
 
 /// How near the features of a search may be where the bodies are: what has moved by little need not be
-/// measured again. Made once, never changed, as the search.
+/// measured again. Shared as the search is; who alone holds it may go on with it.
 struct StartGaps {
   std::shared_ptr<const FeatureSearch> search;
   Pose start_a, start_b;
   std::vector<float> gaps;  // m: none is less, in the order of the features
+  double least = -1e300;    // m, of them, once they were measured
 };
 
 /// What is known of the features of a search, for the starts where they are.
@@ -42,11 +43,12 @@ struct PathMemory {
   struct Block {
     double free_until = -1.0;     // m, of all of it
     Vec3 parting = Vec3::Zero();  // at the start its leaves are apart along this; zero: unknown
+    bool is_begun = false;        // its features are set
   };
   struct Feature {
-    double start_gap = kUnknown;  // m: at least that
-    double free_until = -1.0;  // m: until the ends have moved so far in all, counted in `moved`, it is free
-    Vec3 parting = Vec3::Zero();  // as of a block
+    double start_gap;   // m: at least that
+    double free_until;  // m: until the ends have moved so far in all, counted in `moved`, it is free
+    Vec3 parting;       // as of a block
   };
   std::shared_ptr<const StartGaps> start_gaps;  // known before any test, or none
   // One of the straight parts of ways on which a body turns far.
@@ -54,15 +56,15 @@ struct PathMemory {
     collision::FeatureList features;  // all that came within `searched` on it
     std::vector<double> free_until;   // m, per feature, as above
   };
-  std::vector<Feature> features;
-  std::vector<Block> blocks;
-  std::vector<Part> parts;  // empty: nothing is known
+  std::unique_ptr<Feature[]> features;  // of the search, once it was tested
+  std::vector<Block> blocks;            // the same
+  std::vector<Part> parts;              // empty: nothing is known
   double moved = 0.0;
   double listed_at = 0.0;  // m: `moved` when the parts' features were listed
   double searched = 0.0;   // m: margin of what was searched for the tests of this step
 
-  /// The ends are elsewhere.
-  void forget_ends();
+  /// The ends are elsewhere, in tests of `search`, if any.
+  void forget_ends(const FeatureSearch* search);
 };
 
 /// To the bit.
@@ -79,8 +81,8 @@ double moved_since(const FeatureSearch& search, const WorkBody& a, const WorkBod
 /// What a search that was just made knows by its own bounds.
 StartGaps gaps_of(std::shared_ptr<const FeatureSearch> search);
 
-/// What is known where the bodies are now, of gaps where they were before.
-StartGaps carry_gaps(const StartGaps& before, const WorkBody& a, const WorkBody& b);
+/// Makes of what is known of gaps where the bodies were what is known where they are now.
+void carry_gaps(StartGaps& gaps, const WorkBody& a, const WorkBody& b);
 
 /// Straight paths from the bodies' starts to these ends bring features that are within `near` (m) of each
 /// other closer by no more than this, m.

@@ -209,6 +209,10 @@ std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose&
   return search;
 }
 
+double travelled_at_most(const WorkBody& body, const Pose& end) {
+  return ((end.translation - body.start.translation).norm() + turn_bound(body, end)) * (1.0 + 1e-9);
+}
+
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b) {
   const Vec3 way = (end_a.translation - a.start.translation) - (end_b.translation - b.start.translation);
   return way.norm() + find_bow(a) + find_bow(b) + turn_bound(a, end_a) + turn_bound(b, end_b);

@@ -29,6 +29,7 @@ struct alignas(64) WorkBody {
   Mat3 inverse_inertia = Mat3::Zero();  // world, now
   body::LockedAxes locked;
   double reach = 0.0;           // m: greatest distance of a vertex from the centre
+  double travelled = 0.0;       // m, before this step
   Vec3 gravity = Vec3::Zero();  // m/s2, the body's own force with it; zero unless dynamic and awake
 
   const body::Shape* shape = nullptr;
@@ -161,8 +162,10 @@ struct WorkPair {
   bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is
   double motion = 0.0;             // m: bound of the relative motion if nothing touches
   double margin = 0.0;             // m: contacts are felt from this gap on
+  double clear = -1e300;           // m: its surfaces start at least so far apart, as far as is known
   double clearance = -1e300;       // m: the predicted ways stay at least so far apart
   bool is_apart = false;           // further than the margin: nothing more need be known
+  double beyond = -1e300;          // m: features that its search does not list start further apart
   bool is_free_certified = false;  // the predicted paths of both bodies are known to be free
   std::shared_ptr<const FeatureSearch> search;
   PathMemory known;          // of its features
@@ -298,6 +301,9 @@ double turn_bound(const WorkBody& body, const Pose& end);
 /// them.
 std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose& end_a, const WorkBody& b,
                                                   const Pose& end_b, double margin);
+
+/// No point of the body is further from where it started than this at `end`, m.
+double travelled_at_most(const WorkBody& body, const Pose& end);
 
 /// Relative motion of a pair during the step is at most this, m: from ways and turns of end poses.
 double motion_bound(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b);

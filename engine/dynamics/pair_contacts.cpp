@@ -27,13 +27,14 @@ struct Manifold {
 };
 constexpr Manifold kOnSolid = {0.04, 16}, kOnSurface = {0.08, 8};
 constexpr std::size_t kFeaturesToTask = 256;
-constexpr double kFastSlack = 0.25;    // of the slack: a list for one step need not last
-constexpr double kAlwaysNear = 3.0;    // of the usual gap
-constexpr int kHangs = 3;              // steps in a row, cut short
-constexpr double kRaiseTime = 0.5;     // s
-constexpr double kTouching = 1e-9;     // share of the pair's size: what sinks less only touches
-constexpr double kClose = 0.5;         // of the usual gap: there is hardly room for what sweeps leave
-constexpr double kImpactWindow = 0.1;  // share of the step after the first hit in which others count
+constexpr std::size_t kUsualContacts = 16;  // of a pair that touches, before most are dropped
+constexpr double kFastSlack = 0.25;         // of the slack: a list for one step need not last
+constexpr double kAlwaysNear = 3.0;         // of the usual gap
+constexpr int kHangs = 3;                   // steps in a row, cut short
+constexpr double kRaiseTime = 0.5;          // s
+constexpr double kTouching = 1e-9;          // share of the pair's size: what sinks less only touches
+constexpr double kClose = 0.5;              // of the usual gap: there is hardly room for what sweeps leave
+constexpr double kImpactWindow = 0.1;       // share of the step after the first hit in which others count
 
 struct Hit {
   double time;
@@ -132,6 +133,7 @@ PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, st
       if (gap.gap <= kAlwaysNear * usual_gap ||
           collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
                                       kLocalSlack)) {
+        if (meeting.contacts.empty()) meeting.contacts.reserve(kUsualContacts);
         meeting.contacts.push_back(collision::contact_here(features, start, gap));
         meeting.is_free = false;
         continue;
@@ -146,6 +148,25 @@ PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, st
   return meeting;
 }
 
+PairMeeting meet_all(const WorkBody& a, const WorkBody& b, double usual_gap, const WorkPair& pair,
+                     std::vector<float>& start_gaps) {
+  const std::size_t count = start_gaps.size();
+  if (count <= kFeaturesToTask) return meet_some(a, b, usual_gap, 0, count, pair, start_gaps);
+  std::vector<PairMeeting> found((count + kFeaturesToTask - 1) / kFeaturesToTask);
+  core::parallel_chunks(count, kFeaturesToTask, [&](std::size_t begin, std::size_t end) {
+    found[begin / kFeaturesToTask] = meet_some(a, b, usual_gap, begin, end, pair, start_gaps);
+  });
+  PairMeeting whole;
+  for (PairMeeting& some : found) whole.add(std::move(some));
+  return whole;
+}
+
+// Itself, if nobody else holds it.
+std::shared_ptr<StartGaps> own(std::shared_ptr<const StartGaps>&& gaps) {
+  if (gaps.use_count() == 1) return std::const_pointer_cast<StartGaps>(std::move(gaps));
+  return std::make_shared<StartGaps>(*gaps);
+}
+
 void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
                    WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
@@ -153,33 +174,33 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   const bool one_turns_far = turns_far(a) || turns_far(b);
   pair.least_gap = pair.margin;
   if (one_turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
-    memory.gaps.reset();
+    memory.forget_caches();
     pair.is_free_certified = true;
     return;
   }
   const double usual_gap = settings.kept_gap * pair.size;
-  const auto gaps = std::make_shared<StartGaps>();
-  if (pair.is_fast)
-    *gaps = gaps_of(search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack));
-  else if (pair.needs_search)
-    *gaps = gaps_of(search_near(a, b, pair.margin + slack, !pair.is_first_seen));
-  else
-    *gaps = carry_gaps(*memory.gaps, a, b);
+  std::shared_ptr<StartGaps> gaps;
+  if (pair.is_fast) {
+    gaps = std::make_shared<StartGaps>(
+        gaps_of(search_paths(a, a.predicted, b, b.predicted, pair.margin + kFastSlack * slack)));
+  } else if (pair.needs_search) {
+    pair.beyond = pair.margin + slack;
+    gaps = std::make_shared<StartGaps>(gaps_of(search_near(a, b, pair.beyond, !pair.is_first_seen)));
+  } else {
+    gaps = own(std::move(memory.gaps));
+    carry_gaps(*gaps, a, b);
+  }
   pair.search = gaps->search;
-  const std::size_t count = gaps->gaps.size();
-  std::vector<PairMeeting> found((count + kFeaturesToTask - 1) / kFeaturesToTask);
-  core::parallel_chunks(count, kFeaturesToTask, [&](std::size_t begin, std::size_t end) {
-    found[begin / kFeaturesToTask] = meet_some(a, b, usual_gap, begin, end, pair, gaps->gaps);
-  });
+  PairMeeting whole = meet_all(a, b, usual_gap, pair, gaps->gaps);
+  gaps->least = 1e300;
+  for (const double gap : gaps->gaps) gaps->least = std::min(gaps->least, gap);
   pair.known.start_gaps = gaps;
   memory.gaps = pair.is_fast ? nullptr : gaps;
-  PairMeeting whole;
-  whole.least_gap = pair.margin;
-  whole.is_free = !one_turns_far;
-  for (PairMeeting& some : found) whole.add(std::move(some));
-  pair.least_gap = whole.least_gap;
+  memory.clear = std::min(gaps->least, pair.beyond);  // of paths that were swept nothing is known beyond
+  memory.clear_since = a.travelled + b.travelled;
+  pair.least_gap = std::min(whole.least_gap, pair.margin);
   pair.contacts = std::move(whole.contacts);
-  pair.is_free_certified = whole.is_free && whole.hits.empty();
+  pair.is_free_certified = !one_turns_far && whole.is_free && whole.hits.empty();
   if (!whole.hits.empty()) keep_first_hits(whole.hits, pair.size, pair.contacts);
 }
 

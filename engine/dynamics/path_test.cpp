@@ -39,6 +39,12 @@ void keep_first(std::vector<PathHit>& hits, double size) {
   hits = std::move(kept);
 }
 
+// No feature that was listed is so near at the start, as far as is known before any test.
+bool starts_beyond(const WorkPair& pair, double reach) {
+  const auto& gaps = pair.known.start_gaps;
+  return pair.known.blocks.empty() && gaps && gaps->search == pair.search && gaps->least > reach;
+}
+
 // Where a body began is free.
 bool stays(const WorkBody& w) {
   return is_same_pose(w.start, w.end) && w.knots.empty();
@@ -46,18 +52,23 @@ bool stays(const WorkBody& w) {
 
 }  // namespace
 
-PathTest::Look PathTest::look_at(const WorkPair& pair, double& clear) const {
+PathTest::Look PathTest::look_at(std::size_t pair_number) {
+  const WorkPair& pair = work_.pairs[pair_number];
+  double& clear = clearances_[pair_number];
   clear = -1e300;
   if (pair.is_plane || pair.is_analytic) return Look::listed;
   const auto turns = [&](int i) { return work_.bodies[at(i)].straight_parts > 1; };
   if (turns(pair.a) || turns(pair.b)) return Look::turning;
+  clear = pair.clear - motion_bound(work_.bodies[at(pair.a)], work_.bodies[at(pair.a)].end,
+                                    work_.bodies[at(pair.b)], work_.bodies[at(pair.b)].end);
+  if (clear > pair.kept_gap) return Look::apart;
   clear = clearance(paths_[at(pair.a)].box, paths_[at(pair.b)].box, kAmple * pair.kept_gap);
   if (clear > pair.kept_gap) return Look::apart;
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-  const bool is_known =
-      pair.search && strays_from(*pair.search, a, a.end, b, b.end, kLooked * pair.kept_gap) + pair.kept_gap <=
-                         pair.search->margin;
-  return is_known ? Look::listed : Look::searched;
+  if (!pair.search) return Look::searched;
+  double& strays = strays_[pair_number];
+  strays = strays_from(*pair.search, a, a.end, b, b.end, kLooked * pair.kept_gap);
+  return strays + pair.kept_gap <= pair.search->margin ? Look::listed : Look::searched;
 }
 
 // Boxes about the ways of the bodies in the pairs that are due.
@@ -77,9 +88,10 @@ void PathTest::prepare(const std::vector<char>& is_due) {
   paths_.resize(work_.bodies.size());
   looks_.resize(work_.pairs.size());
   clearances_.resize(work_.pairs.size());
+  strays_.resize(work_.pairs.size());
   box_ways(is_due);
   core::parallel_for(work_.pairs.size(), 16, [&](std::size_t p) {
-    if (is_due[p]) looks_[p] = look_at(work_.pairs[p], clearances_[p]);
+    if (is_due[p]) looks_[p] = look_at(p);
   });
   std::vector<char> must_place(work_.bodies.size(), 0), must_sweep(work_.bodies.size(), 0);
   std::vector<std::size_t> to_search, turning;
@@ -111,6 +123,7 @@ void PathTest::prepare(const std::vector<char>& is_due) {
     pair.search = search_paths(a, a.end, b, b.end, margin);
     pair.known = PathMemory();
     pair.known.searched = margin;
+    strays_[to_search[k]] = strays_from(*pair.search, a, a.end, b, b.end, kLooked * pair.kept_gap);
   });
 }
 
@@ -128,7 +141,7 @@ std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare)
   } else if (looks_[pair_number] == Look::turning) {
     hits = turning_.find_hits(pair_number, spare);
   } else {
-    hits = test_straight(pair, spare);
+    hits = test_straight(pair, strays_[pair_number], spare);
   }
   keep_first(hits, pair.size);
   return hits;
@@ -193,15 +206,16 @@ std::vector<PathHit> PathTest::test_solids(const WorkPair& pair) const {
   return hits;
 }
 
-std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double& spare) const {
+std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double strays, double& spare) const {
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   const FeatureSearch& search = *pair.search;
   const double safe = kSafe * pair.kept_gap;
   const double ample = kAmple * pair.kept_gap;
-  const double reach = safe + approach_bound(a, a.end, b, b.end, motion_bound(a, a.end, b, b.end) + ample);
+  const double motion = motion_bound(a, a.end, b, b.end);
   // What is beyond the search is at least so far from all that it may stray.
-  const double strays = strays_from(search, a, a.end, b, b.end, kLooked * pair.kept_gap);
   spare = std::min(search.margin - strays - safe, pair.kept_gap);
+  if (starts_beyond(pair, safe + motion + spare)) return {};
+  const double reach = safe + approach_bound(a, a.end, b, b.end, motion + ample);
   const double listed =
       search.is_swept ? spare + safe + strays_from(search, a, a.end, b, b.end, ample) : 1e300;
   return follow_features(a, b,

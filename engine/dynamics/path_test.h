@@ -40,11 +40,11 @@ class PathTest {
     searched,  // list them first
     turning    // one of the two turns far: by straight parts
   };
-  Look look_at(const WorkPair& pair, double& clear) const;
+  Look look_at(std::size_t pair_number);
   void box_ways(const std::vector<char>& is_due);
   std::vector<PathHit> test_plane(const WorkPair& pair, double& spare) const;
   std::vector<PathHit> test_solids(const WorkPair& pair) const;
-  std::vector<PathHit> test_straight(WorkPair& pair, double& spare) const;
+  std::vector<PathHit> test_straight(WorkPair& pair, double strays, double& spare) const;
 
   const ContactSettings& settings_;
   MotionWork& work_;
@@ -52,6 +52,7 @@ class PathTest {
   std::vector<Path> paths_;         // per body
   std::vector<Look> looks_;         // per pair
   std::vector<double> clearances_;  // per pair, m: how far its bodies surely stay apart
+  std::vector<double> strays_;      // per pair, m: how far its ways lead from what was searched, if looked at
 };
 
 }  // namespace shatterbox::dynamics

@@ -233,6 +233,7 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
     if (!w.is_active) continue;
     bodies[i].pose = w.end;
     state.bodies[i].last_pose = w.end;
+    state.bodies[i].travelled += travelled_at_most(w, w.end);
     if (w.is_scripted) end_scripted(w, bodies[i]);
     if (!bodies[i].is_dynamic()) continue;
     bodies[i].velocity = w.velocity;
@@ -386,7 +387,10 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     if (!part_coincident(bodies, own, state, work, report.parted)) break;
     find_candidate_pairs(bodies, own, state, work);
   }
-  put_on_shelf(work, state);
+  if (part.may_return)
+    put_on_shelf(work, state);
+  else
+    state.shelf->pairs.clear();
   work.is_trial = part.is_trial;
   solve_motion(bodies, own, work);
   guard_motion(bodies, own, state, work, report);

@@ -161,7 +161,10 @@ TEST_CASE("gaps that are carried from step to step are never more than they are"
     });
     StartGaps gaps;
     for (int step = 0; step < 6; ++step) {
-      gaps = step == 0 ? gaps_of(search) : carry_gaps(gaps, pair.a, pair.b);
+      if (step == 0)
+        gaps = gaps_of(search);
+      else
+        carry_gaps(gaps, pair.a, pair.b);
       for (std::size_t i = 0; i < listed.size(); ++i) {
         const double gap =
             (pair.a.start.apply(listed[i].first) - pair.b.start.apply(listed[i].second)).norm();

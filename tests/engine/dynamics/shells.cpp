@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/geometry/closest_points.h"
 #include "tests/engine/dynamics/bodies.h"
 
 namespace shatterbox {
@@ -55,6 +57,23 @@ test::Scene pieces_scene(double height, const Vec3& velocity, const Vec3& spin, 
     scene.add(b);
   }
   return scene;
+}
+
+std::size_t row_of(const test::Scene& scene, body::BodyId id) {
+  std::size_t row = 0;
+  while (scene.state.bodies[row].id != id) ++row;
+  return row;
+}
+
+double corners_to_faces(const body::Body& a, const body::Body& b) {
+  double least = 1e300;
+  const auto corner = [&](int v) { return b.pose.apply(b.shape->surface.positions[core::at(v)]); };
+  for (const Vec3& p : a.shape->surface.positions)
+    for (const auto& t : b.shape->surface.triangles)
+      least = std::min(
+          least,
+          geometry::closest_on_triangle(a.pose.apply(p), corner(t[0]), corner(t[1]), corner(t[2])).distance);
+  return least;
 }
 
 }  // namespace
@@ -213,6 +232,29 @@ TEST_CASE("a shard that a fast ball strikes does not leave through the ground in
     INFO("height " << height);
     CHECK(lowest > 0.0);
   }
+}
+
+TEST_CASE("surfaces are as far apart as a pair remembers") {
+  auto scene = pieces_scene(0.15, Vec3(0.3, -1, 0), Vec3(1, 0.5, 2), 16);
+  int known = 0, told = 0;
+  double least_left = 1e300;
+  for (int i = 0; i < 240; ++i) {
+    scene.step();
+    for (const dynamics::PairState& pair : scene.state.pairs) {
+      const std::size_t a = row_of(scene, pair.body_a), b = row_of(scene, pair.body_b);
+      const double gone =
+          scene.state.bodies[a].travelled + scene.state.bodies[b].travelled - pair.clear_since;
+      if (pair.clear - gone <= 0.0) continue;
+      ++known;
+      const double apart = std::min(corners_to_faces(scene.bodies[a], scene.bodies[b]),
+                                    corners_to_faces(scene.bodies[b], scene.bodies[a]));
+      told += pair.clear - gone > 0.5 * apart ? 1 : 0;
+      least_left = std::min(least_left, apart - (pair.clear - gone));
+    }
+  }
+  CHECK(least_left >= 0.0);
+  CHECK(known > 1000);
+  CHECK(told > 100);
 }
 
 TEST_CASE("the same bits with and without caches, and on any number of threads") {
