@@ -18,7 +18,7 @@ void IslandSolver::find_arrivals() {
     c.is_arriving = false;
     c.jammed_at = -1.0;
     c.was_apart = !is_touching(c);
-    work_.pairs[at(c.pair)].work = 0.0;
+    pair_work_[at(c.row)] = 0.0;
     const double drive = c.normal.dot(body(c.a).gravity - body(c.b).gravity);
     const double after_kick = relative_velocity(c)[0];
     const double before = after_kick - 0.5 * drive * step_;

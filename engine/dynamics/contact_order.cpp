@@ -1,10 +1,7 @@
 #include "engine/dynamics/contact_order.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <numeric>
+#include <span>
 
 #include "engine/core/index.h"
 
@@ -13,8 +10,8 @@ namespace {
 
 using core::at;
 
-constexpr std::size_t kColours = 64;
-constexpr std::size_t kChunk = 24;  // contacts, or more if a pair has them
+constexpr std::size_t kPart = 256;  // contacts of a smallest part, about
+constexpr std::size_t kSlice = 24;  // contacts, or more if a pair has them
 
 // Ranges of contacts, ordered by their pairs.
 std::vector<ContactOrder::Range> find_pairs(const std::vector<int>& contacts, const MotionWork& work) {
@@ -29,104 +26,97 @@ std::vector<ContactOrder::Range> find_pairs(const std::vector<int>& contacts, co
   return pairs;
 }
 
-class Palette {
+// Bodies in halves of halves, each along the direction in which it is longest, with as many contacts in one
+// as in the other. Parts are numbered as a heap: those of part k are 2 k and 2 k + 1, the whole is 1.
+class Parts {
  public:
-  explicit Palette(const MotionWork& work) : work_(work), taken_(work.bodies.size(), 0) {}
+  Parts(const Island& island, const MotionWork& work)
+      : work_(work), part_of_(work.bodies.size(), 0), weights_(work.bodies.size(), 0) {
+    for (const int i : island.contacts)
+      for (const int body : {work.contacts[at(i)].a, work.contacts[at(i)].b}) ++weights_[at(body)];
+    while (island.contacts.size() >> (levels_ + 1) >= kPart) ++levels_;
+    bodies_ = island.bodies;
+    part(bodies_, 1, 0);
+  }
 
-  // kColours: none is left.
-  std::size_t take(int a, int b) {
-    const bool a_moves = moves(a), b_moves = moves(b);
-    const std::uint64_t taken = (a_moves ? taken_[at(a)] : 0) | (b_moves ? taken_[at(b)] : 0);
-    const auto colour = static_cast<std::size_t>(std::countr_one(taken));
-    if (colour == kColours) return colour;
-    const std::uint64_t bit = std::uint64_t{1} << colour;
-    if (a_moves) taken_[at(a)] |= bit;
-    if (b_moves) taken_[at(b)] |= bit;
-    return colour;
+  std::size_t levels() const { return levels_; }
+  const std::vector<int>& bodies() const { return bodies_; }
+
+  // The smallest part in which both are that impulses move.
+  std::size_t common(const SolverContact& c) const {
+    std::size_t a = part_of_[at(moves(c.a) ? c.a : c.b)], b = part_of_[at(moves(c.b) ? c.b : c.a)];
+    for (; a != b; a /= 2) b /= 2;
+    return a;
   }
 
  private:
   bool moves(int body) const { return work_.bodies[at(body)].inverse_mass > 0.0; }
+  const Vec3& place(int body) const { return work_.bodies[at(body)].start.translation; }
 
-  const MotionWork& work_;
-  std::vector<std::uint64_t> taken_;  // per body, a bit a colour
-};
-
-// Where bodies, and what lies between two, are along the direction in which an island is longest.
-class Along {
- public:
-  Along(const Island& island, const MotionWork& work) : work_(work) {
+  void part(std::span<int> bodies, std::size_t number, std::size_t level) {
+    if (level == levels_) {
+      for (const int i : bodies) part_of_[at(i)] = number;
+      return;
+    }
     geometry::Box box;
-    for (const int i : island.bodies) box.include(work.bodies[at(i)].start.translation);
-    if (!island.bodies.empty()) (box.high - box.low).maxCoeff(&axis_);
+    std::size_t weight = 0, half = 0, middle = 0;
+    for (const int i : bodies) {
+      box.include(place(i));
+      weight += weights_[at(i)];
+    }
+    int axis = 0;
+    if (!bodies.empty()) (box.high - box.low).maxCoeff(&axis);
+    std::stable_sort(bodies.begin(), bodies.end(),
+                     [&](int x, int y) { return place(x)[axis] < place(y)[axis]; });
+    while (middle < bodies.size() && 2 * half < weight) half += weights_[at(bodies[middle++])];
+    part(bodies.first(middle), 2 * number, level + 1);
+    part(bodies.subspan(middle), 2 * number + 1, level + 1);
   }
 
-  double of(int body) const { return work_.bodies[at(body)].start.translation[axis_]; }
-  // What holds still may be anywhere.
-  double of(const SolverContact& c) const {
-    const bool a_moves = work_.bodies[at(c.a)].inverse_mass > 0.0,
-               b_moves = work_.bodies[at(c.b)].inverse_mass > 0.0;
-    return a_moves && b_moves ? 0.5 * (of(c.a) + of(c.b)) : of(a_moves ? c.a : c.b);
-  }
-
- private:
   const MotionWork& work_;
-  int axis_ = 0;
+  std::size_t levels_ = 0;
+  std::vector<std::size_t> part_of_, weights_;  // per body
+  std::vector<int> bodies_;
 };
-
-template <class Item, class Key>
-void sort_along(std::vector<Item>& items, const Key& key) {
-  std::stable_sort(items.begin(), items.end(), [&](const Item& x, const Item& y) { return key(x) < key(y); });
-}
 
 }  // namespace
 
 ContactOrder order_contacts(const Island& island, const MotionWork& work) {
   ContactOrder order;
-  const std::size_t count = island.contacts.size();
   if (!island.is_large()) {
     order.contacts = island.contacts;
-    order.chunks = {{0, count}};
+    order.chunks = order.slices = {{0, island.contacts.size()}};
     order.rounds = {{0, 1}};
+    order.bodies = island.bodies;
     return order;
   }
   // What was found on the way lies behind all others.
   std::vector<int> contacts = island.contacts;
   std::stable_sort(contacts.begin(), contacts.end(),
                    [&](int x, int y) { return work.contacts[at(x)].pair < work.contacts[at(y)].pair; });
-  Palette palette(work);
-  std::array<std::vector<ContactOrder::Range>, kColours + 1> by_colour;
-  for (const ContactOrder::Range& pair : find_pairs(contacts, work)) {
-    const SolverContact& c = work.contacts[at(contacts[pair.begin])];
-    by_colour[palette.take(c.a, c.b)].push_back(pair);
-  }
-  const Along along(island, work);
-  order.contacts.reserve(count);
-  for (std::size_t colour = 0; colour <= kColours; ++colour) {
-    if (by_colour[colour].empty()) continue;
-    if (colour < kColours) {
-      sort_along(by_colour[colour], [&](const ContactOrder::Range& pair) {
-        return along.of(work.contacts[at(contacts[pair.begin])]);
-      });
+  const Parts parts(island, work);
+  order.bodies = parts.bodies();
+  std::vector<std::vector<ContactOrder::Range>> pairs_in(std::size_t{2} << parts.levels());
+  for (const ContactOrder::Range& pair : find_pairs(contacts, work))
+    pairs_in[parts.common(work.contacts[at(contacts[pair.begin])])].push_back(pair);
+  order.contacts.reserve(contacts.size());
+  for (std::size_t first = std::size_t{1} << parts.levels(); first > 0; first /= 2) {
+    const std::size_t begin = order.chunks.size();
+    for (std::size_t part = first; part < 2 * first; ++part) {
+      if (pairs_in[part].empty()) continue;
+      ContactOrder::Range chunk = {order.contacts.size(), 0}, slice = chunk;
+      for (const ContactOrder::Range& pair : pairs_in[part]) {
+        for (std::size_t i = pair.begin; i < pair.end; ++i) order.contacts.push_back(contacts[i]);
+        slice.end = chunk.end = order.contacts.size();
+        if (slice.end - slice.begin < kSlice) continue;
+        order.slices.push_back(slice);
+        slice.begin = slice.end;
+      }
+      if (slice.begin < slice.end) order.slices.push_back(slice);
+      order.chunks.push_back(chunk);
     }
-    const std::size_t first = order.chunks.size();
-    order.chunks.push_back({order.contacts.size(), order.contacts.size()});
-    for (const ContactOrder::Range& pair : by_colour[colour]) {
-      // Who found no colour is in one chunk with all others of that kind.
-      if (colour < kColours && order.contacts.size() - order.chunks.back().begin >= kChunk)
-        order.chunks.push_back({order.contacts.size(), order.contacts.size()});
-      for (std::size_t i = pair.begin; i < pair.end; ++i) order.contacts.push_back(contacts[i]);
-      order.chunks.back().end = order.contacts.size();
-    }
-    order.rounds.push_back({first, order.chunks.size()});
+    if (begin < order.chunks.size()) order.rounds.push_back({begin, order.chunks.size()});
   }
-  order.chunks_along.resize(order.chunks.size());
-  std::iota(order.chunks_along.begin(), order.chunks_along.end(), std::size_t{0});
-  sort_along(order.chunks_along, [&](std::size_t chunk) {
-    return along.of(work.contacts[at(order.contacts[order.chunks[chunk].begin])]);
-  });
-  order.bodies_along = island.bodies;
-  sort_along(order.bodies_along, [&](int body) { return along.of(body); });
   return order;
 }
 

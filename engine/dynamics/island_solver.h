@@ -26,13 +26,16 @@ class IslandSolver {
         order_(order_contacts(island, work)),
         substep_(settings.time_step / settings.substeps),
         step_(substep_),
-        joints_(island, step_, work) {}
+        joints_(island, step_, work) {
+    number_pairs();
+  }
 
   /// Through all substeps.
   void run();
 
  private:
   // contact_solver.cpp
+  void number_pairs();
   void take_substeps();
   bool has_won_energy() const;
   void take_part(int substeps);
@@ -74,7 +77,7 @@ class IslandSolver {
   template <class VisitChunk>
   Found gather(std::size_t count, const VisitChunk& visit_chunk);
   template <class Visit>
-  void visit_chunk(std::size_t chunk, const Visit& visit, Found& found);
+  void visit_all(const ContactOrder::Range& own, const Visit& visit, Found& found);
 
   // contact_sweeps.cpp
   // How much closing may be left, as a share of what `visit` measures it by.
@@ -147,7 +150,7 @@ class IslandSolver {
     if (b.inverse_mass > 0.0) push(b, -p, c.arm_b);
     c.impulse += impulse;
     c.total += p;
-    double& work = work_.pairs[core::at(c.pair)].work;
+    double& work = pair_work_[core::at(c.row)];
     work += impulse.dot(velocity_before) + 0.5 * impulse.dot(c.response * impulse);
     // Half of gravity's kick is still to come: along the way that the impulse changes it does this much less
     // work.
@@ -205,7 +208,7 @@ class IslandSolver {
     const double wanted = std::max(-c.impulse[0], (c.target - before[0]) * c.weights[0]);
     Vec3 change(wanted, 0.0, 0.0);
     if (wanted > 0.0) {
-      const double budget = std::max(0.0, -work_.pairs[core::at(c.pair)].work);
+      const double budget = std::max(0.0, -pair_work_[core::at(c.row)]);
       const double root = before[0] * before[0] + 2.0 * c.response(0, 0) * budget;
       const double most = (std::sqrt(root) - before[0]) * c.weights[0];
       change[0] = std::min(wanted, std::max(0.0, most));
@@ -268,6 +271,7 @@ class IslandSolver {
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
+  std::vector<double> pair_work_;            // J, per pair of the island, of its impulses in this substep
   std::vector<Found> found_;                 // per chunk
   std::vector<std::size_t> struck_;          // contacts of the island that bounce together
   std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island
@@ -285,22 +289,21 @@ template <class Visit>
 IslandSolver::Found IslandSolver::in_turn(const Visit& visit) {
   Found all;
   for (const ContactOrder::Range& round : order_.rounds) {
-    all.add(gather(round.end - round.begin,
-                   [&](std::size_t i, Found& found) { visit_chunk(round.begin + i, visit, found); }));
+    all.add(gather(round.end - round.begin, [&](std::size_t i, Found& found) {
+      visit_all(order_.chunks[round.begin + i], visit, found);
+    }));
   }
   return all;
 }
 
 template <class Visit>
 IslandSolver::Found IslandSolver::each(const Visit& visit) {
-  return gather(order_.chunks.size(), [&](std::size_t i, Found& found) {
-    visit_chunk(island_.is_large() ? order_.chunks_along[i] : i, visit, found);
-  });
+  return gather(order_.slices.size(),
+                [&](std::size_t i, Found& found) { visit_all(order_.slices[i], visit, found); });
 }
 
 template <class Visit>
-void IslandSolver::visit_chunk(std::size_t chunk, const Visit& visit, Found& found) {
-  const ContactOrder::Range& own = order_.chunks[chunk];
+void IslandSolver::visit_all(const ContactOrder::Range& own, const Visit& visit, Found& found) {
   for (std::size_t k = own.begin; k < own.end; ++k) visit(k, contact(k), found);
 }
 
@@ -319,7 +322,7 @@ IslandSolver::Found IslandSolver::gather(std::size_t count, const VisitChunk& vi
 
 template <class Visit>
 void IslandSolver::each_body(const Visit& visit) {
-  const std::vector<int>& bodies = island_.is_large() ? order_.bodies_along : island_.bodies;
+  const std::vector<int>& bodies = order_.bodies;
   const std::size_t chunks = (bodies.size() + kBodies - 1) / kBodies;
   crew_.loop(chunks, [&](std::size_t chunk) {
     const std::size_t end = std::min(bodies.size(), (chunk + 1) * kBodies);

@@ -93,6 +93,7 @@ inline constexpr double kNoDistance = 1e-9;
 struct alignas(64) SolverContact {
   int a = 0, b = 0;  // numbers of the bodies
   int pair = 0;
+  int row = 0;             // of the pair in the solver of its island
   bool has_sides = false;  // one of the two is solid
   bool is_close = false;   // both are, and were placed nearer than the usual gap
   bool can_creep = false;  // both are quiet, and no sphere rolls
@@ -171,8 +172,7 @@ struct WorkPair {
   PathMemory known;          // of its features
   double least_gap = 1e300;  // m, at the start; at least what was looked at if nothing is near
   std::vector<collision::Contact> contacts;
-  int former = -1;    // row of the part's former taking, which began alike for it; -1: none
-  double work = 0.0;  // J, of its impulses in this substep
+  int former = -1;  // row of the part's former taking, which began alike for it; -1: none
 };
 
 struct WorkJoint {
