@@ -57,7 +57,7 @@ class Descent {
       : a_(a), b_(b), boxes_a_(boxes_a), boxes_b_(boxes_b), way_(way) {
     const float m = round_up(margin), beyond = m * (1.0F + 1e-5F);
     reach_squared_ = m * m * (1.0F + 1e-5F);
-    reach_ = BoxLanes{beyond, beyond, beyond, beyond};
+    reach_ = BoxLanes{beyond, beyond, beyond, round_up(kDiagonal * beyond)};
   }
 
   float reach_squared() const { return reach_squared_; }

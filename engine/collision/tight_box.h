@@ -1,5 +1,5 @@
-// Boxes in single precision, rounded outwards: never too small. Four lanes (x, y, z and a nought) are
-// worked on at once.
+// Boxes in single precision, rounded outwards: never too small. Four lanes are worked on at once: x, y, z and
+// their sum, which cuts off two of a box's corners.
 #pragma once
 
 #include <cmath>
@@ -22,8 +22,8 @@ inline BoxLanes greater(BoxLanes a, BoxLanes b) {
 
 /// An axis-aligned box that surely holds what was put in; empty as made.
 struct TightBox {
-  BoxLanes low = {1e18F, 1e18F, 1e18F, 0.0F};  // m
-  BoxLanes high = {-1e18F, -1e18F, -1e18F, 0.0F};
+  BoxLanes low = {1e18F, 1e18F, 1e18F, 1e18F};  // m
+  BoxLanes high = {-1e18F, -1e18F, -1e18F, -1e18F};
 
   void include(const TightBox& other) {
     low = lesser(low, other.low);
@@ -33,6 +33,9 @@ struct TightBox {
 
 /// Rounding of a number to single precision and of one sum of such numbers stays below this share.
 inline constexpr float kOutward = 2.4e-7F;
+
+/// Square root of 3, not less: of what is a metre apart, the sums of coordinates differ by no more, m.
+inline constexpr double kDiagonal = 1.7320508075688774;
 
 inline float round_down(double x) {
   const auto f = static_cast<float>(x);
@@ -46,16 +49,19 @@ inline float round_up(double x) {
 
 /// The box of a ball about `p`.
 inline TightBox box_of_point(const Vec3& p, double radius) {
+  const double along = p.sum(), reach = kDiagonal * radius;
   TightBox box;
-  box.low = BoxLanes{round_down(p[0] - radius), round_down(p[1] - radius), round_down(p[2] - radius), 0.0F};
-  box.high = BoxLanes{round_up(p[0] + radius), round_up(p[1] + radius), round_up(p[2] + radius), 0.0F};
+  box.low = BoxLanes{round_down(p[0] - radius), round_down(p[1] - radius), round_down(p[2] - radius),
+                     round_down(along - reach)};
+  box.high = BoxLanes{round_up(p[0] + radius), round_up(p[1] + radius), round_up(p[2] + radius),
+                      round_up(along + reach)};
   return box;
 }
 
 /// The box of a ball that goes straight from p to q.
 inline TightBox box_of_path(const Vec3& p, const Vec3& q, double radius) {
-  TightBox box = box_of_point(p.cwiseMin(q), radius);
-  box.high = box_of_point(p.cwiseMax(q), radius).high;
+  TightBox box = box_of_point(p, radius);
+  box.include(box_of_point(q, radius));
   return box;
 }
 
@@ -65,8 +71,9 @@ struct TightWay {
 
   TightWay() = default;
   explicit TightWay(const Vec3& way) {
-    low = lesser(low, BoxLanes{round_down(way[0]), round_down(way[1]), round_down(way[2]), 0.0F});
-    high = greater(high, BoxLanes{round_up(way[0]), round_up(way[1]), round_up(way[2]), 0.0F});
+    low = lesser(low,
+                 BoxLanes{round_down(way[0]), round_down(way[1]), round_down(way[2]), round_down(way.sum())});
+    high = greater(high, BoxLanes{round_up(way[0]), round_up(way[1]), round_up(way[2]), round_up(way.sum())});
   }
 };
 
@@ -77,7 +84,8 @@ inline TightBox stretched(const TightBox& box, const TightWay& way) {
   return result;
 }
 
-/// How far apart two boxes are along each axis, m; negative where they overlap.
+/// How far apart two boxes are along each axis, m, and in the sum of coordinates; negative where they
+/// overlap.
 inline BoxLanes apart(const TightBox& a, const TightBox& b) {
   return greater(a.low - b.high, b.low - a.high);
 }

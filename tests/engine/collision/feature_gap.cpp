@@ -190,6 +190,39 @@ TEST_CASE("a list reaches to its margin along every axis, and no further") {
   }
 }
 
+TEST_CASE("a list reaches to its margin along diagonals, and hardly further") {
+  core::Random random(31);
+  body::Shape flat = sheet(random, 1);
+  for (Vec3& v : flat.surface.positions) v = Vec3(0.01 * v.x(), 0.0, 0.01 * v.z());
+  for (const Vec3& along : {Vec3(1, 1, 1), Vec3(1, 1, -1), Vec3(-1, 1, 1), Vec3(1, -1, 1)}) {
+    const Vec3 normal = along.normalized();
+    body::Shape turned = flat;
+    for (Vec3& v : turned.surface.positions) v = Quat::FromTwoVectors(Vec3::UnitY(), normal) * v;
+    const auto collider = make_collider(turned);
+    const double margin = 0.7;
+    for (const double side : {1.0, -1.0}) {
+      for (const double share : {0.9999, 1.1}) {
+        PlacedCollider a, b;
+        a.collider = b.collider = collider.get();
+        a.start = b.start = collider->vertices;
+        for (Vec3& v : b.start) v += side * share * margin * normal;
+        refit_boxes(a);
+        refit_boxes(b);
+        FeatureList list;
+        list_near_features(a, b, margin, list);
+        CHECK((share < 1.0 ? list.size() >= 2 * collider->vertices.size() : list.empty()));
+        FeatureList swept;
+        b.start = a.start;
+        for (Vec3& v : b.start) v += 2.0 * side * margin * normal;
+        refit_swept_boxes(a, a.start, a.start);
+        refit_swept_boxes(b, b.start, b.start);
+        list_swept_features(a, b, (share - 2.0) * side * margin * normal, margin, swept);
+        CHECK(swept.size() == list.size());
+      }
+    }
+  }
+}
+
 TEST_CASE("a list along paths holds every feature pair that comes within the margin") {
   core::Random random(23);
   std::size_t listed = 0, met = 0;
