@@ -271,8 +271,8 @@ class IslandSolver {
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
-  std::vector<double> pair_work_;            // J, per pair of the island, of its impulses in this substep
-  std::vector<Found> found_;                 // per chunk
+  std::vector<double> pair_work_;            // J, by row: of a pair's impulses in this substep
+  std::vector<Found> found_;                 // per range that was visited
   std::vector<std::size_t> struck_;          // contacts of the island that bounce together
   std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island
   double course_square_ = 0.0;               // N2 s2, of the last change
