@@ -85,9 +85,8 @@ ContactOrder order_contacts(const Island& island, const MotionWork& work) {
   ContactOrder order;
   if (!island.is_large()) {
     order.contacts = island.contacts;
-    order.chunks = order.slices = {{0, island.contacts.size()}};
+    order.chunks = {{0, island.contacts.size()}};
     order.rounds = {{0, 1}};
-    order.bodies = island.bodies;
     return order;
   }
   // What was found on the way lies behind all others.

@@ -18,6 +18,7 @@ struct ContactOrder {
   std::vector<int> contacts;  // numbers in MotionWork::contacts, as they are visited
   std::vector<Range> chunks;  // of `contacts`: visited one after the other
   std::vector<Range> rounds;  // of `chunks`: those of one have no body in common that an impulse could move
+  // Of large islands only.
   std::vector<Range> slices;  // of `contacts`, short ones; as in chunks, the contacts of a pair are in one
   std::vector<int> bodies;    // the island's, part by part
 };

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 #include "engine/core/index.h"
 #include "engine/dynamics/contact_place.h"
@@ -25,19 +23,18 @@ Moved moved(const WorkBody& body, int substeps) {
 
 }  // namespace
 
-// A row for each pair, named after the first of its contacts that is visited.
+// A row for each pair, named after the first of its contacts that is visited. These come one after the other,
+// but in small islands what was found on the way lies behind all others.
 void IslandSolver::number_pairs() {
   const std::size_t count = order_.contacts.size();
   pair_work_.assign(count, 0.0);
-  std::vector<std::pair<int, std::size_t>> contacts;  // (pair, place among those that are visited)
-  contacts.reserve(count);
-  for (std::size_t k = 0; k < count; ++k) contacts.emplace_back(contact(k).pair, k);
-  // In large islands the contacts of a pair come one after the other.
-  if (!island_.is_large()) std::sort(contacts.begin(), contacts.end());
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i == 0 || contacts[i].first != contacts[i - 1].first) first = contacts[i].second;
-    contact(contacts[i].second).row = static_cast<int>(first);
+  bool is_behind = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const int pair = contact(k).pair, last = k > 0 ? contact(k - 1).pair : -1;
+    is_behind = is_behind || (pair < last && !island_.is_large());
+    std::size_t first = is_behind ? 0 : k;
+    while (contact(first).pair != pair) ++first;
+    contact(k).row = pair == last ? contact(k - 1).row : static_cast<int>(first);
   }
 }
 

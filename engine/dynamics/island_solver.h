@@ -298,8 +298,8 @@ IslandSolver::Found IslandSolver::in_turn(const Visit& visit) {
 
 template <class Visit>
 IslandSolver::Found IslandSolver::each(const Visit& visit) {
-  return gather(order_.slices.size(),
-                [&](std::size_t i, Found& found) { visit_all(order_.slices[i], visit, found); });
+  const std::vector<ContactOrder::Range>& ranges = island_.is_large() ? order_.slices : order_.chunks;
+  return gather(ranges.size(), [&](std::size_t i, Found& found) { visit_all(ranges[i], visit, found); });
 }
 
 template <class Visit>
@@ -322,7 +322,7 @@ IslandSolver::Found IslandSolver::gather(std::size_t count, const VisitChunk& vi
 
 template <class Visit>
 void IslandSolver::each_body(const Visit& visit) {
-  const std::vector<int>& bodies = order_.bodies;
+  const std::vector<int>& bodies = island_.is_large() ? order_.bodies : island_.bodies;
   const std::size_t chunks = (bodies.size() + kBodies - 1) / kBodies;
   crew_.loop(chunks, [&](std::size_t chunk) {
     const std::size_t end = std::min(bodies.size(), (chunk + 1) * kBodies);

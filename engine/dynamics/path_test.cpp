@@ -59,12 +59,11 @@ PathTest::Look PathTest::look_at(std::size_t pair_number) {
   if (pair.is_plane || pair.is_analytic) return Look::listed;
   const auto turns = [&](int i) { return work_.bodies[at(i)].straight_parts > 1; };
   if (turns(pair.a) || turns(pair.b)) return Look::turning;
-  clear = pair.clear - motion_bound(work_.bodies[at(pair.a)], work_.bodies[at(pair.a)].end,
-                                    work_.bodies[at(pair.b)], work_.bodies[at(pair.b)].end);
+  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
+  if (pair.clear > pair.kept_gap) clear = pair.clear - motion_bound(a, a.end, b, b.end);
   if (clear > pair.kept_gap) return Look::apart;
   clear = clearance(paths_[at(pair.a)].box, paths_[at(pair.b)].box, kAmple * pair.kept_gap);
   if (clear > pair.kept_gap) return Look::apart;
-  const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   if (!pair.search) return Look::searched;
   double& strays = strays_[pair_number];
   strays = strays_from(*pair.search, a, a.end, b, b.end, kLooked * pair.kept_gap);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
+#include <utility>
 
 #include "engine/core/index.h"
 #include "engine/core/random.h"
@@ -53,6 +54,26 @@ struct StillSheets {
     for (PlacedCollider* placed : {&pa, &pb}) refit_swept_boxes(*placed, placed->start, placed->start);
   }
 };
+
+// Lists of a body and its copy, `share` of the margin away along `direction`: where they are, and on the way
+// there from twice the margin away.
+std::pair<FeatureList, FeatureList> list_copies(const Collider& collider, const Vec3& direction, double share,
+                                                double margin) {
+  PlacedCollider a, b;
+  a.collider = b.collider = &collider;
+  a.start = b.start = collider.vertices;
+  for (Vec3& v : b.start) v += share * margin * direction;
+  refit_boxes(a);
+  refit_boxes(b);
+  std::pair<FeatureList, FeatureList> lists;
+  list_near_features(a, b, margin, lists.first);
+  b.start = a.start;
+  for (Vec3& v : b.start) v += 2.0 * margin * direction;
+  refit_swept_boxes(a, a.start, a.start);
+  refit_swept_boxes(b, b.start, b.start);
+  list_swept_features(a, b, (share - 2.0) * margin * direction, margin, lists.second);
+  return lists;
+}
 
 }  // namespace
 
@@ -165,25 +186,11 @@ TEST_CASE("a list reaches to its margin along every axis, and no further") {
     const double margin = 0.07;
     for (const double side : {1.0, -1.0}) {
       for (const double share : {0.9999, 1.0001}) {
-        PlacedCollider a, b;
-        a.collider = b.collider = collider.get();
-        a.start = b.start = collider->vertices;
-        for (Vec3& v : b.start) v[axis] += side * share * margin;
-        refit_boxes(a);
-        refit_boxes(b);
-        FeatureList list;
-        list_near_features(a, b, margin, list);
+        const auto [list, swept] = list_copies(*collider, side * Vec3::Unit(axis), share, margin);
         int above = 0;
         for (const FeaturePair& f : list) above += f.kind != FeatureKind::edge_edge ? 1 : 0;
         const auto vertices = static_cast<int>(collider->vertices.size());
         CHECK((share < 1.0 ? above >= 2 * vertices : list.empty()));
-        // The same on the way there.
-        FeatureList swept;
-        b.start = a.start;
-        for (Vec3& v : b.start) v[axis] += 2.0 * side * margin;
-        refit_swept_boxes(a, a.start, a.start);
-        refit_swept_boxes(b, b.start, b.start);
-        list_swept_features(a, b, (share - 2.0) * side * margin * Vec3::Unit(axis), margin, swept);
         CHECK(swept.size() == list.size());
       }
     }
@@ -199,24 +206,10 @@ TEST_CASE("a list reaches to its margin along diagonals, and hardly further") {
     body::Shape turned = flat;
     for (Vec3& v : turned.surface.positions) v = Quat::FromTwoVectors(Vec3::UnitY(), normal) * v;
     const auto collider = make_collider(turned);
-    const double margin = 0.7;
     for (const double side : {1.0, -1.0}) {
       for (const double share : {0.9999, 1.1}) {
-        PlacedCollider a, b;
-        a.collider = b.collider = collider.get();
-        a.start = b.start = collider->vertices;
-        for (Vec3& v : b.start) v += side * share * margin * normal;
-        refit_boxes(a);
-        refit_boxes(b);
-        FeatureList list;
-        list_near_features(a, b, margin, list);
+        const auto [list, swept] = list_copies(*collider, side * normal, share, 0.7);
         CHECK((share < 1.0 ? list.size() >= 2 * collider->vertices.size() : list.empty()));
-        FeatureList swept;
-        b.start = a.start;
-        for (Vec3& v : b.start) v += 2.0 * side * margin * normal;
-        refit_swept_boxes(a, a.start, a.start);
-        refit_swept_boxes(b, b.start, b.start);
-        list_swept_features(a, b, (share - 2.0) * side * margin * normal, margin, swept);
         CHECK(swept.size() == list.size());
       }
     }
