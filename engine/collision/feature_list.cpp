@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/geometry/bvh.h"
 #include "engine/geometry/crossings.h"
 
 namespace shatterbox::collision {
@@ -58,6 +60,7 @@ class Descent {
     const float m = round_up(margin), beyond = m * (1.0F + 1e-5F);
     reach_squared_ = m * m * (1.0F + 1e-5F);
     reach_ = BoxLanes{beyond, beyond, beyond, round_up(kDiagonal * beyond)};
+    stack_.reserve(kUsualDepth);
   }
 
   float reach_squared() const { return reach_squared_; }
@@ -153,17 +156,18 @@ class Descent {
   template <class Visit>
   void visit_triangles(const Node& node_a, const TightBox& box_a, const Node& node_b, const TightBox& box_b,
                        const Visit& visit) {
-    near_b_.clear();
+    std::array<NearTriangle, geometry::kLeafSize> near;
+    std::size_t count = 0;
     for (int k = 0; k < node_b.count; ++k) {
       const TightBox box = stretched(boxes_b_.triangles[at(node_b.begin + k)], way_);
-      if (is_near(box_a, box)) near_b_.push_back({b_.tree.order[at(node_b.begin + k)], k, box});
+      if (is_near(box_a, box)) near[count++] = {b_.tree.order[at(node_b.begin + k)], k, box};
     }
-    if (near_b_.empty()) return;
+    if (count == 0) return;
     for (int k = node_a.begin; k < node_a.begin + node_a.count; ++k) {
       const TightBox& box = boxes_a_.triangles[at(k)];
       if (!is_near(box, box_b)) continue;
       const int t = a_.tree.order[at(k)];
-      for (const NearTriangle& other : near_b_) {
+      for (const NearTriangle& other : std::span(near).first(count)) {
         if (is_near(box, other.box)) visit(t, box, other.number, other.box, other.place);
       }
     }
@@ -173,6 +177,7 @@ class Descent {
     int number, place;
     TightBox box;
   };
+  static constexpr std::size_t kUsualDepth = 64;  // pairs of nodes that wait
 
   const Collider &a_, &b_;
   const FeatureBoxes &boxes_a_, &boxes_b_;
@@ -181,7 +186,6 @@ class Descent {
   float reach_squared_ = 0.0F;
   int leaf_a_ = 0, leaf_b_ = 0;
   std::vector<NodePair> stack_;
-  std::vector<NearTriangle> near_b_;
 };
 
 // Where the vertices of a body are, or go from and to.
@@ -208,7 +212,6 @@ class Planes {
   // `place` of the second triangle in its leaf: those of a leaf are asked for again and again.
   bool are_apart(int ta, int tb, int place) {
     if (ta != first_.number) first_ = face(a_, places_a_, ta, Vec3::Zero());
-    if (at(place) >= seconds_.size()) seconds_.resize(at(place) + 1);
     Face& second = seconds_[at(place)];
     if (tb != second.number) second = face(b_, places_b_, tb, way_);
     return separates(first_.normal, first_.start, second.start, first_.end, second.end) ||
@@ -259,7 +262,7 @@ class Planes {
   const Vec3 way_;
   const double apart_from_;  // m
   Face first_;
-  std::vector<Face> seconds_;  // by place in a leaf
+  std::array<Face, geometry::kLeafSize> seconds_;  // by place in a leaf
 };
 
 // One that holds nothing gives its place to the next.
@@ -312,7 +315,9 @@ class Lister {
     const auto add = [&](FeatureKind kind, int i, const TightBox& box_i, int j, const TightBox& box_j) {
       if (!descent_.is_about_near(box_i, box_j)) return;
       const float squared = distance_squared(box_i, box_j);
-      if (squared <= descent_.reach_squared()) out.push_back({kind, squared, i, j});
+      if (squared > descent_.reach_squared()) return;
+      if (out.empty()) out.reserve(kUsualFeatures);
+      out.push_back({kind, squared, i, j});
     };
     // A sphere is but a vertex: what touches it, it touches with that.
     const bool a_has_faces = !a_.edges.empty(), b_has_faces = !b_.edges.empty();
@@ -341,6 +346,7 @@ class Lister {
   const TightWay way_;
   Descent descent_;
   Planes planes_;
+  static constexpr std::size_t kUsualFeatures = 32;
   int edges_of_ = -1;  // triangle of a, whose edges have these boxes
   std::array<TightBox, 3> boxes_e_;
 };

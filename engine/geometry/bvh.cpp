@@ -19,14 +19,15 @@ struct MedianPlace {
 struct Builder {
   const std::vector<Vec3>& centres;
   TriangleTree& tree;
-  int leaf_size;
   std::vector<MedianPlace> places;  // |T|, scratch
+
+  static bool is_leaf(int count) { return static_cast<std::size_t>(count) <= kLeafSize; }
 
   void build(int begin, int end) {
     const std::size_t index = tree.nodes.size();
     tree.nodes.emplace_back();
     tree.nodes[index].begin = begin;
-    if (end - begin <= leaf_size) {
+    if (is_leaf(end - begin)) {
       tree.nodes[index].count = end - begin;
       return;
     }
@@ -40,8 +41,8 @@ struct Builder {
     const auto first = places.begin() + begin, half = places.begin() + middle, last = places.begin() + end;
     std::nth_element(first, half, last);
     // What is no leaf is put in order by its own axis.
-    if (middle - begin <= leaf_size) std::sort(first, half);
-    if (end - middle <= leaf_size) std::sort(half, last);
+    if (is_leaf(middle - begin)) std::sort(first, half);
+    if (is_leaf(end - middle)) std::sort(half, last);
     for (int i = begin; i < end; ++i)
       tree.order[static_cast<std::size_t>(i)] = places[static_cast<std::size_t>(i)].triangle;
     build(begin, middle);
@@ -56,8 +57,7 @@ struct Builder {
 
 }  // namespace
 
-TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                 int leaf_size) {
+TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   TriangleTree tree;
   if (triangles.empty()) return tree;
   std::vector<Vec3> centres;
@@ -69,8 +69,8 @@ TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::
   }
   tree.order.resize(triangles.size());
   std::iota(tree.order.begin(), tree.order.end(), 0);
-  tree.nodes.reserve(2 * triangles.size() / static_cast<std::size_t>(leaf_size) + 2);
-  Builder{centres, tree, leaf_size, std::vector<MedianPlace>(triangles.size())}.build(
+  tree.nodes.reserve(2 * triangles.size() / kLeafSize + 2);
+  Builder{centres, tree, std::vector<MedianPlace>(triangles.size())}.build(
       0, static_cast<int>(triangles.size()));
   return tree;
 }

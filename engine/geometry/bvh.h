@@ -50,10 +50,11 @@ struct TriangleTree {
   std::vector<int> order;   // |T|, a permutation of the triangles
 };
 
-/// Builds the tree of `triangles` (|T| x 3) by median splits of their centres; leaves hold at most
-/// `leaf_size`. No triangles give no nodes.
-TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                 int leaf_size = 4);
+/// Triangles that a leaf holds at most.
+inline constexpr std::size_t kLeafSize = 4;
+
+/// Builds the tree of `triangles` (|T| x 3) by median splits of their centres. No triangles give no nodes.
+TriangleTree build_triangle_tree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
 /// Boxes of all nodes (|nodes|) from boxes of the vertices (|V|), by `vertex_box(vertex)`.
 template <class VertexBox>
