@@ -319,20 +319,23 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   work.warm_scale = state.substep > 0.0 ? work.substep / state.substep : 1.0;
   match_bodies(bodies, state, work);
   bool anything_moves = false;
-  work.bodies.reserve(bodies.size());
+  work.bodies.resize(bodies.size());
+  core::parallel_for(bodies.size(), 32, [&](std::size_t i) {
+    work.bodies[i] = make_work_body(bodies[i], state.bodies[i], settings);
+  });
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    work.bodies.push_back(make_work_body(bodies[i], state.bodies[i], settings));
     work.ids.push_back(bodies[i].id);
-    anything_moves = anything_moves || work.bodies.back().is_active;
-    work.has_scripted = work.has_scripted || !work.bodies.back().rides.empty();
+    anything_moves = anything_moves || work.bodies[i].is_active;
+    work.has_scripted = work.has_scripted || !work.bodies[i].rides.empty();
   }
   if (!anything_moves) return;
   list_joints(state, work);
-  std::vector<char> is_active;
-  for (WorkBody& w : work.bodies) {
+  std::vector<char> is_active(bodies.size());
+  core::parallel_for(bodies.size(), 32, [&](std::size_t i) {
+    WorkBody& w = work.bodies[i];
     look_about(settings, w.predicted, w);
-    is_active.push_back(w.is_active ? 1 : 0);
-  }
+    is_active[i] = w.is_active ? 1 : 0;
+  });
   match_pairs(bodies, find_pairs(bodies, work, is_active), work, state);
 
   struct Needs {

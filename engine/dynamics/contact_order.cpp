@@ -10,7 +10,7 @@ namespace {
 
 using core::at;
 
-constexpr std::size_t kPart = 256;  // contacts of a smallest part, about
+constexpr std::size_t kPart = 64;   // contacts of a smallest part, about
 constexpr std::size_t kSlice = 24;  // contacts, or more if a pair has them
 
 // Ranges of contacts, ordered by their pairs.
@@ -27,7 +27,7 @@ std::vector<ContactOrder::Range> find_pairs(const std::vector<int>& contacts, co
 }
 
 // Bodies in halves of halves, each along the direction in which it is longest, with as many contacts in one
-// as in the other. Parts are numbered as a heap: those of part k are 2 k and 2 k + 1, the whole is 1.
+// as in the other.
 class Parts {
  public:
   Parts(const Island& island, const MotionWork& work)
@@ -85,8 +85,7 @@ ContactOrder order_contacts(const Island& island, const MotionWork& work) {
   ContactOrder order;
   if (!island.is_large()) {
     order.contacts = island.contacts;
-    order.chunks = {{0, island.contacts.size()}};
-    order.rounds = {{0, 1}};
+    order.parts = {{}, {0, island.contacts.size()}};
     return order;
   }
   // What was found on the way lies behind all others.
@@ -99,22 +98,21 @@ ContactOrder order_contacts(const Island& island, const MotionWork& work) {
   for (const ContactOrder::Range& pair : find_pairs(contacts, work))
     pairs_in[parts.common(work.contacts[at(contacts[pair.begin])])].push_back(pair);
   order.contacts.reserve(contacts.size());
-  for (std::size_t first = std::size_t{1} << parts.levels(); first > 0; first /= 2) {
-    const std::size_t begin = order.chunks.size();
-    for (std::size_t part = first; part < 2 * first; ++part) {
-      if (pairs_in[part].empty()) continue;
-      ContactOrder::Range chunk = {order.contacts.size(), 0}, slice = chunk;
-      for (const ContactOrder::Range& pair : pairs_in[part]) {
+  order.parts.resize(pairs_in.size());
+  for (std::size_t first = order.count_smallest(); first > 0; first /= 2) {
+    for (std::size_t number = first; number < 2 * first; ++number) {
+      ContactOrder::Range& part = order.parts[number];
+      part = {order.contacts.size(), order.contacts.size()};
+      ContactOrder::Range slice = part;
+      for (const ContactOrder::Range& pair : pairs_in[number]) {
         for (std::size_t i = pair.begin; i < pair.end; ++i) order.contacts.push_back(contacts[i]);
-        slice.end = chunk.end = order.contacts.size();
+        slice.end = part.end = order.contacts.size();
         if (slice.end - slice.begin < kSlice) continue;
         order.slices.push_back(slice);
         slice.begin = slice.end;
       }
       if (slice.begin < slice.end) order.slices.push_back(slice);
-      order.chunks.push_back(chunk);
     }
-    if (begin < order.chunks.size()) order.rounds.push_back({begin, order.chunks.size()});
   }
   return order;
 }

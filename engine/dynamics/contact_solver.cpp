@@ -78,9 +78,11 @@ void IslandSolver::take_substeps() {
       take_part(i + 1);
       gone = step_ < substep_ - gone ? gone + step_ : substep_;
     }
-    for (const int k : island_.bodies)
-      if (body(k).shape->kind != body::ShapeKind::sphere)
-        body(k).substep_poses.push_back({body(k).rotation, body(k).start.translation + body(k).way});
+    each_body([&](WorkBody& b) {
+      if (b.shape->kind == body::ShapeKind::sphere) return;
+      if (i == 0) b.substep_poses.reserve(at(settings_.substeps));
+      b.substep_poses.push_back({b.rotation, b.start.translation + b.way});
+    });
   }
   set_step(substep_);
   // What bore and was not hit is logged with its effective mass at the end.

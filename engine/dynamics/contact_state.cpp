@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/parallel.h"
 #include "engine/dynamics/contact_settings.h"
 
 namespace shatterbox::dynamics {
@@ -15,6 +16,20 @@ auto* find_in(Pairs& pairs, body::BodyId a, body::BodyId b) {
       pairs.begin(), pairs.end(), std::pair(a, b),
       [](const PairState& p, const auto& key) { return std::pair(p.body_a, p.body_b) < key; });
   return place != pairs.end() && place->body_a == a && place->body_b == b ? &*place : nullptr;
+}
+
+std::uint64_t hash_of(const PairState& pair) {
+  core::Hash hash;
+  hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
+  hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));
+  hash.add(static_cast<std::uint64_t>(pair.has_parted));
+  hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
+  hash.add(static_cast<std::uint64_t>(pair.is_exempt));
+  for (const RememberedContact& c : pair.contacts) {
+    hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.creep).add(c.arrival_speed);
+    hash.add(static_cast<std::uint64_t>(c.was_loaded));
+  }
+  return hash.value();
 }
 
 }  // namespace
@@ -35,17 +50,10 @@ void add_to_hash(const ContactState& state, core::Hash& hash) {
   }
   add_to_hash(state.joints, hash);
   if (state.swing > 0.0) hash.add(state.swing);
-  for (const PairState& pair : state.pairs) {
-    hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
-    hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));
-    hash.add(static_cast<std::uint64_t>(pair.has_parted));
-    hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
-    hash.add(static_cast<std::uint64_t>(pair.is_exempt));
-    for (const RememberedContact& c : pair.contacts) {
-      hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.creep).add(c.arrival_speed);
-      hash.add(static_cast<std::uint64_t>(c.was_loaded));
-    }
-  }
+  // Pairs at once: in one chain each number would wait for the one before.
+  std::vector<std::uint64_t> of_pairs(state.pairs.size());
+  core::parallel_for(of_pairs.size(), 256, [&](std::size_t p) { of_pairs[p] = hash_of(state.pairs[p]); });
+  for (const std::uint64_t of_pair : of_pairs) hash.add(of_pair);
 }
 
 PairMaterial pair_material(const body::Body& a, const body::Body& b, const ContactSettings& settings) {

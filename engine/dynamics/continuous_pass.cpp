@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/core/groups.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/core/stop.h"
@@ -59,12 +60,11 @@ class Guard {
 
   void run() {
     was_cut_.assign(work_.bodies.size(), 0);
-    resize();
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+    add_missed_pairs();
+    std::erase_if(due_, [&](std::size_t p) {
       const WorkPair& pair = work_.pairs[p];
-      if (pair.is_free_certified && work_.bodies[at(pair.a)].is_free && work_.bodies[at(pair.b)].is_free)
-        must_test_[p] = 0;
-    }
+      return pair.is_free_certified && work_.bodies[at(pair.a)].is_free && work_.bodies[at(pair.b)].is_free;
+    });
     bool has_hits = test();
     // One who is hit may hit the next: that is followed where hits are taken one by one.
     const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
@@ -96,9 +96,9 @@ class Guard {
 
  private:
   // Bodies that end elsewhere than was thought may meet others.
-  void resize() {
+  void add_missed_pairs() {
     find_missed_pairs(bodies_, settings_, state_, work_);
-    must_test_.resize(work_.pairs.size(), 1);
+    for (std::size_t p = hits_.size(); p < work_.pairs.size(); ++p) make_due(p);
     hits_.resize(work_.pairs.size());
     known_.resize(work_.pairs.size());
     in_zone_.resize(work_.pairs.size(), 0);
@@ -108,36 +108,39 @@ class Guard {
     spare_.resize(work_.pairs.size(), 0.0);
   }
 
+  // What crosses passes, unless it has a side: that may not cross deeper.
+  void make_due(std::size_t p) {
+    if (!work_.pairs[p].passes) due_.push_back(p);
+  }
+
   // Tests all pairs that are due; true if any path is not free.
   bool test() {
     core::stop_if_asked();
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      // What crosses passes, unless it has a side: that may not cross deeper.
-      if (work_.pairs[p].passes) must_test_[p] = 0;
-    }
-    const std::vector<char> unknown = former_.pairs.empty() ? std::vector<char>{} : recall_all();
-    const std::vector<char>& must_go = former_.pairs.empty() ? must_test_ : unknown;
+    const std::vector<std::size_t> unknown =
+        former_.pairs.empty() ? std::vector<std::size_t>{} : recall_all();
+    const std::vector<std::size_t>& must_go = former_.pairs.empty() ? due_ : unknown;
     paths_.prepare(must_go);
-    core::parallel_for(work_.pairs.size(), 4, [&](std::size_t p) {
-      if (must_go[p]) hits_[p] = paths_.find_hits(p, spare_[p]);
-      if (must_test_[p] && p < memory_.pairs.size()) remember(p);
+    core::parallel_for(must_go.size(), 4, [&](std::size_t k) {
+      hits_[must_go[k]] = paths_.find_hits(must_go[k], spare_[must_go[k]]);
     });
-    bool has_hits = false;
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      report_.ways_tested += must_test_[p] ? 1 : 0;
-      if (!must_test_[p] || hits_[p].empty()) continue;
-      has_hits = true;
+    if (!memory_.pairs.empty())
+      core::parallel_for(due_.size(), 16, [&](std::size_t k) { remember(due_[k]); });
+    report_.ways_tested += static_cast<long>(due_.size());
+    hit_.clear();
+    for (const std::size_t p : due_) {
+      if (hits_[p].empty()) continue;
+      hit_.push_back(p);
       report_.hits += was_hit_[p] ? 0 : 1;
       was_hit_[p] = 1;
     }
-    return has_hits;
+    return !hit_.empty();
   }
 
   // Of the pairs that are due, those whose tests cannot be recalled.
-  std::vector<char> recall_all() {
-    std::vector<char> unknown = must_test_;
-    for (std::size_t p = 0; p < unknown.size(); ++p)
-      if (unknown[p] && recall(p)) unknown[p] = 0;
+  std::vector<std::size_t> recall_all() {
+    std::vector<std::size_t> unknown;
+    for (const std::size_t p : due_)
+      if (!recall(p)) unknown.push_back(p);
     return unknown;
   }
 
@@ -160,15 +163,16 @@ class Guard {
   }
 
   void remember(std::size_t p) {
+    if (p >= memory_.pairs.size()) return;
     const WorkBody &a = work_.bodies[at(work_.pairs[p].a)], &b = work_.bodies[at(work_.pairs[p].b)];
     memory_.pairs[p].tests.push_back(
         {{a.end, a.straight_parts, a.knots}, {b.end, b.straight_parts, b.knots}, hits_[p], spare_[p]});
   }
 
   bool open_in_rounds(bool has_hits) {
-    int hits_before = 1 << 30;
+    std::size_t hits_before = work_.pairs.size() + 1;
     for (int round = 0; has_hits && round < settings_.continuous_rounds; ++round) {
-      const int hits = count_hits();
+      const std::size_t hits = hit_.size();
       if (round >= kPatience && hits >= hits_before) break;
       if (round % kPatience == 0) hits_before = hits;
       ++report_.rounds;
@@ -186,9 +190,7 @@ class Guard {
     const std::vector<char> is_pressed = find_pressed();
     is_squeezed_.resize(work_.bodies.size(), 0);
     double first = 1.0;
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      if (must_test_[p] && !hits_[p].empty()) first = std::min(first, hits_[p].front().time);
-    }
+    for (const std::size_t p : hit_) first = std::min(first, hits_[p].front().time);
     std::vector<char> is_held(work_.bodies.size(), 0);
     for (std::size_t i = 0; i < work_.bodies.size(); ++i) {
       WorkBody& w = work_.bodies[i];
@@ -240,10 +242,7 @@ class Guard {
   // The bodies in hits, and from one to the next all that presses on them hard.
   std::vector<char> find_pressed() const {
     std::vector<char> is_pressed(work_.bodies.size(), 0);
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      if (!must_test_[p] || hits_[p].empty()) continue;
-      is_pressed[at(work_.pairs[p].a)] = is_pressed[at(work_.pairs[p].b)] = 1;
-    }
+    for (const std::size_t p : hit_) is_pressed[at(work_.pairs[p].a)] = is_pressed[at(work_.pairs[p].b)] = 1;
     for (bool goes_on = true; goes_on;) {
       goes_on = false;
       for (const SolverContact& c : work_.contacts) {
@@ -264,9 +263,9 @@ class Guard {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
     const std::vector<char> strikes_on = is_first ? std::vector<char>{} : find_striking();
     const std::vector<char> is_heaped = find_heaped();
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+    for (const std::size_t p : hit_) {
       const WorkPair& pair = work_.pairs[p];
-      if (!must_test_[p] || hits_[p].empty() || is_known_[p]) continue;
+      if (is_known_[p]) continue;
       if (!is_first && !may_strike_on(pair, strikes_on)) continue;
       const bool can_act =
           work_.bodies[at(pair.a)].inverse_mass > 0.0 || work_.bodies[at(pair.b)].inverse_mass > 0.0;
@@ -361,14 +360,12 @@ class Guard {
   // the bodies in them.
   void open(double least_wanted, Yielding yielding) {
     std::vector<char> is_dirty(work_.bodies.size(), 0);
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      if (!must_test_[p] || hits_[p].empty()) continue;
+    for (const std::size_t p : hit_) {
       add_to_known(p);
       for (const int i : {work_.pairs[p].a, work_.pairs[p].b})
         is_dirty[at(i)] = work_.bodies[at(i)].inverse_mass > 0.0;
     }
-    std::vector<Opening> openings = find_openings(
-        least_wanted, [&](const WorkPair& pair) { return is_dirty[at(pair.a)] || is_dirty[at(pair.b)]; });
+    std::vector<Opening> openings = find_openings(least_wanted, pairs_with(is_dirty));
     mark_due_by(open_gaps(openings, settings_.time_step, yielding, work_));
   }
 
@@ -380,22 +377,48 @@ class Guard {
   }
 
   // The hits of all rounds, and the contacts, of these pairs.
-  template <class IsToOpen>
-  std::vector<Opening> find_openings(double least_wanted, const IsToOpen& is_to_open) const {
-    std::vector<Opening> openings;
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+  std::vector<Opening> find_openings(double least_wanted, const std::vector<std::size_t>& pairs) const {
+    std::vector<std::size_t> begin{0};
+    for (const std::size_t p : pairs)
+      begin.push_back(begin.back() + known_[p].size() + work_.pairs[p].contacts.size());
+    std::vector<Opening> openings(begin.back());
+    core::parallel_for(pairs.size(), 8, [&](std::size_t k) {
+      const std::size_t p = pairs[k];
       const WorkPair& pair = work_.pairs[p];
-      if (!is_to_open(pair)) continue;
+      std::size_t next = begin[k];
       for (const PathHit& hit : known_[p]) {
         const double wanted =
             std::max(wanted_separation(hit.start_gap, pair.kept_gap), least_wanted * pair.kept_gap);
-        openings.push_back(make_opening(pair, work_, hit.contact, hit.knot, wanted));
-        openings.back().bounces = bounces_[p] != 0;
+        openings[next] = make_opening(pair, work_, hit.contact, hit.knot, wanted);
+        openings[next++].bounces = bounces_[p] != 0;
       }
       for (const Contact& c : pair.contacts)
-        openings.push_back(make_opening(pair, work_, c, 1.0, wanted_separation(c.gap, pair.kept_gap)));
-    }
+        openings[next++] = make_opening(pair, work_, c, 1.0, wanted_separation(c.gap, pair.kept_gap));
+    });
     return openings;
+  }
+
+  // All pairs in which one of these bodies (flags) is, ascending, and `more`.
+  std::vector<std::size_t> pairs_with(const std::vector<char>& is_one,
+                                      const std::vector<std::size_t>& more = {}) {
+    if (ends_of_body_.count_things() < 2 * work_.pairs.size()) sort_by_body();
+    std::vector<char> is_wanted(work_.pairs.size(), 0);
+    for (std::size_t i = 0; i < is_one.size(); ++i) {
+      if (!is_one[i]) continue;
+      for (const std::size_t end : ends_of_body_.of(i)) is_wanted[end / 2] = 1;
+    }
+    for (const std::size_t p : more) is_wanted[p] = 1;
+    std::vector<std::size_t> pairs;
+    for (std::size_t p = 0; p < is_wanted.size(); ++p)
+      if (is_wanted[p]) pairs.push_back(p);
+    return pairs;
+  }
+
+  void sort_by_body() {
+    ends_of_body_ = core::Groups(work_.bodies.size(), 2 * work_.pairs.size(), [&](std::size_t end) {
+      const WorkPair& pair = work_.pairs[end / 2];
+      return at(end % 2 == 0 ? pair.a : pair.b);
+    });
   }
 
   // How bodies went before they were solved anew.
@@ -414,13 +437,15 @@ class Guard {
   void mark_due_since(const std::vector<Way>& before) {
     std::vector<double> turns(work_.bodies.size());
     std::vector<Vec3> shifts(work_.bodies.size());
+    std::vector<char> has_moved(work_.bodies.size());
     for (std::size_t i = 0; i < turns.size(); ++i) {
       const WorkBody& w = work_.bodies[i];
       const bool is_straight = before[i].is_straight && w.straight_parts == 1;
       turns[i] = is_straight ? turn_bound(before[i].end.rotation, w.end.rotation, w.reach) : kElsewhere;
       shifts[i] = w.end.translation - before[i].end.translation;
+      has_moved[i] = turns[i] > 0.0 || !shifts[i].isZero(0.0);
     }
-    mark_due([&](const WorkPair& pair) {
+    mark_due(has_moved, [&](const WorkPair& pair) {
       const double shift = (shifts[at(pair.a)] - shifts[at(pair.b)]).norm();
       return (shift + turns[at(pair.a)] + turns[at(pair.b)]) * (1.0 + 1e-9);
     });
@@ -439,22 +464,26 @@ class Guard {
 
   // By how far (m) the ends of each pair may have moved against each other; kElsewhere or more: anywhere.
   template <class MovedBy>
-  void mark_due(const MovedBy& moved_by) {
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      const bool has_hit = must_test_[p] && !hits_[p].empty();
-      must_test_[p] = is_due(work_.pairs[p], moved_by(work_.pairs[p]), spare_[p]) || has_hit ? 1 : 0;
+  void mark_due(const std::vector<char>& has_moved, const MovedBy& moved_by) {
+    due_.clear();
+    for (const std::size_t p : pairs_with(has_moved, hit_)) {
+      const bool has_hit = !hits_[p].empty();
+      if (is_due(work_.pairs[p], moved_by(work_.pairs[p]), spare_[p]) || has_hit) make_due(p);
       hits_[p].clear();
     }
-    resize();
+    hit_.clear();
+    add_missed_pairs();
   }
 
   // Pairs whose last test leaves more than both bodies were moved (m) are free still.
   void mark_due_by(const std::vector<double>& moves) {
-    mark_due([&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+    std::vector<char> has_moved(moves.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) has_moved[i] = moves[i] != 0.0;
+    mark_due(has_moved, [&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
   }
 
   void mark_due_with(const std::vector<char>& has_moved) {
-    mark_due([&](const WorkPair& pair) {
+    mark_due(has_moved, [&](const WorkPair& pair) {
       return has_moved[at(pair.a)] || has_moved[at(pair.b)] ? kElsewhere : 0.0;
     });
   }
@@ -462,8 +491,7 @@ class Guard {
   // The last resort: bodies that are still in each other's way go as one, and as far as what cannot be moved
   // lets them; `stops`: not at all. Ends always: the start is free.
   void go_in_zones(bool stops) {
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      if (!must_test_[p] || hits_[p].empty()) continue;
+    for (const std::size_t p : hit_) {
       in_zone_[p] = 1;
       known_[p] = hits_[p];
       const int a = work_.pairs[p].a, b = work_.pairs[p].b;
@@ -480,30 +508,31 @@ class Guard {
   // Who meets a zone gives way to it first: if all that two united bodies came upon went with them, so would
   // soon all that lies close.
   bool open_zones_in_rounds(bool has_hits) {
-    int fewest = 1 << 30, since = 0;
+    std::size_t fewest = work_.pairs.size() + 1;
+    int since = 0;
     for (int round = 0; has_hits && round < kZoneOpenings && since < kZonePatience; ++round) {
       open_zones();
       has_hits = test();
-      const int hits = count_hits();
-      since = hits < fewest ? 0 : since + 1;
-      fewest = std::min(fewest, hits);
+      since = hit_.size() < fewest ? 0 : since + 1;
+      fewest = std::min(fewest, hit_.size());
     }
     return has_hits;
   }
 
   // What zones meet on their ways is opened as other hits are, with them as wholes.
   void open_zones() {
-    std::vector<char> is_due(work_.bodies.size(), 0);  // zones
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-      if (!must_test_[p] || hits_[p].empty()) continue;
+    std::vector<char> is_due_zone(work_.bodies.size(), 0), is_in_one = is_due_zone;
+    for (const std::size_t p : hit_) {
       add_to_known(p);
-      for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) is_due[at(zones_->zone_of(i))] = 1;
+      for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) is_due_zone[at(zones_->zone_of(i))] = 1;
     }
-    const auto is_to_open = [&](const WorkPair& pair) {
-      const int a = zones_->zone_of(pair.a), b = zones_->zone_of(pair.b);
-      return a != b && (is_due[at(a)] || is_due[at(b)]);
-    };
-    std::vector<Opening> openings = find_openings(kLastOpening, is_to_open);
+    for (std::size_t i = 0; i < is_in_one.size(); ++i)
+      is_in_one[i] = is_due_zone[at(zones_->zone_of(static_cast<int>(i)))];
+    std::vector<std::size_t> pairs = pairs_with(is_in_one);
+    std::erase_if(pairs, [&](std::size_t p) {
+      return zones_->zone_of(work_.pairs[p].a) == zones_->zone_of(work_.pairs[p].b);
+    });
+    std::vector<Opening> openings = find_openings(kLastOpening, pairs);
     mark_due_by(zones_->open(openings, settings_.time_step));
   }
 
@@ -549,14 +578,8 @@ class Guard {
 
   double kept_bytes() const {
     if (report_.ways_tested == 0) return 0.0;
-    const std::size_t a_pair = sizeof(spare_[0]) + 2 * sizeof(hits_[0]) + 3 * sizeof(must_test_[0]);
+    const std::size_t a_pair = sizeof(spare_[0]) + 2 * sizeof(hits_[0]) + 3 * sizeof(was_hit_[0]);
     return static_cast<double>(work_.pairs.size() * a_pair);
-  }
-
-  int count_hits() const {
-    int count = 0;
-    for (std::size_t p = 0; p < work_.pairs.size(); ++p) count += must_test_[p] && !hits_[p].empty() ? 1 : 0;
-    return count;
   }
 
   void note_trouble() {
@@ -585,7 +608,10 @@ class Guard {
   PartMemory& memory_;
   PathTest paths_;
   std::optional<ImpactZones> zones_;  // once nothing else helped
-  std::vector<char> must_test_, was_cut_, in_zone_, was_hit_;
+  std::vector<std::size_t> due_;      // pairs that must be tested, ascending
+  std::vector<std::size_t> hit_;      // those of them whose ways are not free
+  core::Groups ends_of_body_;         // two for each pair, once they are asked for
+  std::vector<char> was_cut_, in_zone_, was_hit_;
   std::vector<char> is_known_;              // per pair: the solver was given its hits
   std::vector<char> bounces_;               // per pair: it was not, and bounces where its hits are opened
   std::vector<char> is_squeezed_;           // per body, by a scripted one that was held up; empty: nobody

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -24,6 +25,7 @@ class IslandSolver {
         work_(work),
         crew_(crew),
         order_(order_contacts(island, work)),
+        one_half_done_(order_.parts.size()),
         substep_(settings.time_step / settings.substeps),
         step_(substep_),
         joints_(island, step_, work) {
@@ -73,11 +75,13 @@ class IslandSolver {
   Found each(const Visit& visit);
   template <class Visit>
   void each_body(const Visit& visit);
-  // visit_chunk(i, found by it) for each i below `count`, possibly at once.
-  template <class VisitChunk>
-  Found gather(std::size_t count, const VisitChunk& visit_chunk);
   template <class Visit>
-  void visit_all(const ContactOrder::Range& own, const Visit& visit, Found& found);
+  Found visit_range(const ContactOrder::Range& range, const Visit& visit);
+  Found all_found() const {
+    Found all;
+    for (const Found& found : found_) all.add(found);
+    return all;
+  }
 
   // contact_sweeps.cpp
   // How much closing may be left, as a share of what `visit` measures it by.
@@ -266,8 +270,9 @@ class IslandSolver {
   MotionWork& work_;
   core::Crew& crew_;
   const ContactOrder order_;
-  const double substep_;  // s
-  double step_;           // s, of the part of it that is taken
+  std::vector<std::atomic<char>> one_half_done_;  // per part: of its two, in the visit that goes on
+  const double substep_;                          // s
+  double step_;                                   // s, of the part of it that is taken
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
@@ -287,37 +292,31 @@ class IslandSolver {
 
 template <class Visit>
 IslandSolver::Found IslandSolver::in_turn(const Visit& visit) {
-  Found all;
-  for (const ContactOrder::Range& round : order_.rounds) {
-    all.add(gather(round.end - round.begin, [&](std::size_t i, Found& found) {
-      visit_all(order_.chunks[round.begin + i], visit, found);
-    }));
-  }
-  return all;
+  const std::size_t smallest = order_.count_smallest();
+  found_.assign(order_.parts.size(), {});
+  crew_.loop(smallest, [&](std::size_t i) {
+    for (std::size_t part = smallest + i; part > 0; part /= 2) {
+      found_[part] = visit_range(order_.parts[part], visit);
+      // Who is done with the second half of a part goes on with what is across.
+      if (part > 1 && !one_half_done_[part / 2].fetch_xor(1, std::memory_order_acq_rel)) return;
+    }
+  });
+  return all_found();
 }
 
 template <class Visit>
 IslandSolver::Found IslandSolver::each(const Visit& visit) {
-  const std::vector<ContactOrder::Range>& ranges = island_.is_large() ? order_.slices : order_.chunks;
-  return gather(ranges.size(), [&](std::size_t i, Found& found) { visit_all(ranges[i], visit, found); });
+  const std::vector<ContactOrder::Range>& ranges = island_.is_large() ? order_.slices : order_.parts;
+  found_.assign(ranges.size(), {});
+  crew_.loop(ranges.size(), [&](std::size_t i) { found_[i] = visit_range(ranges[i], visit); });
+  return all_found();
 }
 
 template <class Visit>
-void IslandSolver::visit_all(const ContactOrder::Range& own, const Visit& visit, Found& found) {
-  for (std::size_t k = own.begin; k < own.end; ++k) visit(k, contact(k), found);
-}
-
-template <class VisitChunk>
-IslandSolver::Found IslandSolver::gather(std::size_t count, const VisitChunk& visit_chunk) {
-  found_.assign(count, {});
-  crew_.loop(count, [&](std::size_t i) {
-    Found found;
-    visit_chunk(i, found);
-    found_[i] = found;
-  });
-  Found all;
-  for (const Found& found : found_) all.add(found);
-  return all;
+IslandSolver::Found IslandSolver::visit_range(const ContactOrder::Range& range, const Visit& visit) {
+  Found found;
+  for (std::size_t k = range.begin; k < range.end; ++k) visit(k, contact(k), found);
+  return found;
 }
 
 template <class Visit>

@@ -16,8 +16,11 @@ using body::Body;
 using body::ShapeKind;
 using core::at;
 
-constexpr double kBroadSlack = 0.015;  // share of a body's size
-constexpr double kFelt = 0.004;        // the same: further apart nothing is felt
+// How far impulses may push a body off its predicted way, as shares of its size: what lies still is pushed
+// little, and who is pushed further after all is looked about for once more.
+constexpr double kMostSlack = 0.015;
+constexpr double kLeastSlack = 0.005;
+constexpr double kFelt = 0.004;  // the same: further apart nothing is felt
 
 geometry::Box box_at(const WorkBody& w, const Pose& pose) {
   const auto& box = w.collider->box;
@@ -70,7 +73,9 @@ void look_about(const ContactSettings& settings, const Pose& end, WorkBody& w) {
   const double dt = settings.time_step;
   w.looked_end = end;
   const double pull = std::max(settings.gravity.norm(), w.gravity.norm());
-  w.reserve = 1.1 * pull * dt * dt + kBroadSlack * 2.0 * w.reach;
+  const double size = 2.0 * w.reach;
+  w.reserve =
+      1.1 * pull * dt * dt + std::min(kMostSlack * size, kLeastSlack * size + travelled_at_most(w, end));
   w.is_looked_straight = !turns_far(w);
   w.looked = box_at(w, w.start);
   if (!w.is_active) return;

@@ -71,11 +71,9 @@ PathTest::Look PathTest::look_at(std::size_t pair_number) {
 }
 
 // Boxes about the ways of the bodies in the pairs that are due.
-void PathTest::box_ways(const std::vector<char>& is_due) {
+void PathTest::box_ways(const std::vector<std::size_t>& due) {
   std::vector<char> must_box(work_.bodies.size(), 0);
-  for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-    if (is_due[p]) must_box[at(work_.pairs[p].a)] = must_box[at(work_.pairs[p].b)] = 1;
-  }
+  for (const std::size_t p : due) must_box[at(work_.pairs[p].a)] = must_box[at(work_.pairs[p].b)] = 1;
   core::parallel_for(work_.bodies.size(), 32, [&](std::size_t i) {
     const WorkBody& w = work_.bodies[i];
     if (must_box[i] && w.shape->kind != ShapeKind::plane)
@@ -83,19 +81,17 @@ void PathTest::box_ways(const std::vector<char>& is_due) {
   });
 }
 
-void PathTest::prepare(const std::vector<char>& is_due) {
+void PathTest::prepare(const std::vector<std::size_t>& due) {
   paths_.resize(work_.bodies.size());
   looks_.resize(work_.pairs.size());
   clearances_.resize(work_.pairs.size());
   strays_.resize(work_.pairs.size());
-  box_ways(is_due);
-  core::parallel_for(work_.pairs.size(), 16, [&](std::size_t p) {
-    if (is_due[p]) looks_[p] = look_at(p);
-  });
+  box_ways(due);
+  core::parallel_for(due.size(), 16, [&](std::size_t k) { looks_[due[k]] = look_at(due[k]); });
   std::vector<char> must_place(work_.bodies.size(), 0), must_sweep(work_.bodies.size(), 0);
   std::vector<std::size_t> to_search, turning;
-  for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
-    if (!is_due[p] || looks_[p] == Look::apart) continue;
+  for (const std::size_t p : due) {
+    if (looks_[p] == Look::apart) continue;
     const WorkPair& pair = work_.pairs[p];
     must_place[at(pair.a)] = must_place[at(pair.b)] = 1;
     if (looks_[p] == Look::listed) continue;

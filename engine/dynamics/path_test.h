@@ -21,7 +21,7 @@ class PathTest {
       : settings_(settings), work_(work), turning_(settings, work) {}
 
   /// Places the bodies of the pairs that are due at their ends, and looks for features that may meet.
-  void prepare(const std::vector<char>& is_due);
+  void prepare(const std::vector<std::size_t>& due);
 
   /// Where the pair meets, earliest first; empty if its way is free. Then ways that stay within `spare` (m)
   /// of it are free too. Different pairs may be tested at once.
@@ -41,7 +41,7 @@ class PathTest {
     turning    // one of the two turns far: by straight parts
   };
   Look look_at(std::size_t pair_number);
-  void box_ways(const std::vector<char>& is_due);
+  void box_ways(const std::vector<std::size_t>& due);
   std::vector<PathHit> test_plane(const WorkPair& pair, double& spare) const;
   std::vector<PathHit> test_solids(const WorkPair& pair) const;
   std::vector<PathHit> test_straight(WorkPair& pair, double strays, double& spare) const;

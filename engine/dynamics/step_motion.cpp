@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/core/groups.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_solver.h"
@@ -45,42 +46,62 @@ bool has_impulse(const SolverContact& c) {
   return c.impulse_a.squaredNorm() > 0.0 && c.impulse_b.squaredNorm() > 0.0;
 }
 
+body::LoggedImpulse describe(const std::vector<Body>& bodies, const SolverContact& c, ImpulseKind kind) {
+  body::LoggedImpulse entry;
+  entry.kind = kind;
+  entry.body_a = bodies[at(c.a)].id;
+  entry.body_b = bodies[at(c.b)].id;
+  entry.point_world = c.moment_weight > 0.0 ? Vec3(c.moment_point / c.moment_weight) : c.point;
+  if (c.moment_weight > 0.0) {
+    entry.point_a = c.moment_a / c.moment_weight;
+    entry.point_b = c.moment_b / c.moment_weight;
+  } else {
+    entry.point_a = bodies[at(c.a)].pose.apply_inverse(c.point);
+    entry.point_b = bodies[at(c.b)].pose.apply_inverse(c.point);
+  }
+  entry.impulse_a = c.impulse_a;
+  entry.impulse_b = c.impulse_b;
+  entry.normal_world = c.normal;
+  entry.impulse_world = c.total;
+  if (kind == ImpulseKind::collision) {
+    entry.closing_speed = c.closing_speed;
+    entry.time = c.arrival_time;
+  }
+  entry.effective_mass = c.effective_mass > 0.0 ? c.effective_mass : c.weights[0];
+  return entry;
+}
+
 void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body::ImpulseLog& log) {
   std::vector<char> pair_collides(work.pairs.size(), 0);
+  std::vector<const SolverContact*> logged;
   for (const SolverContact& c : work.contacts) {
     if (c.closing_speed > c.threshold && !c.was_loaded) pair_collides[at(c.pair)] = 1;
+    if (has_impulse(c)) logged.push_back(&c);
   }
-  for (const SolverContact& c : work.contacts) {
-    if (!has_impulse(c)) continue;
-    body::LoggedImpulse entry;
-    entry.kind = pair_collides[at(c.pair)] && !c.was_loaded ? ImpulseKind::collision : ImpulseKind::contact;
-    entry.body_a = bodies[at(c.a)].id;
-    entry.body_b = bodies[at(c.b)].id;
-    entry.point_world = c.moment_weight > 0.0 ? Vec3(c.moment_point / c.moment_weight) : c.point;
-    if (c.moment_weight > 0.0) {
-      entry.point_a = c.moment_a / c.moment_weight;
-      entry.point_b = c.moment_b / c.moment_weight;
-    } else {
-      entry.point_a = bodies[at(c.a)].pose.apply_inverse(c.point);
-      entry.point_b = bodies[at(c.b)].pose.apply_inverse(c.point);
-    }
-    entry.impulse_a = c.impulse_a;
-    entry.impulse_b = c.impulse_b;
-    entry.normal_world = c.normal;
-    entry.impulse_world = c.total;
-    if (entry.kind == ImpulseKind::collision) {
-      entry.closing_speed = c.closing_speed;
-      entry.time = c.arrival_time;
-    }
-    entry.effective_mass = c.effective_mass > 0.0 ? c.effective_mass : c.weights[0];
-    log.push_back(entry);
-  }
+  const std::size_t first = log.size();
+  log.resize(first + logged.size());
+  core::parallel_for(logged.size(), 64, [&](std::size_t k) {
+    const SolverContact& c = *logged[k];
+    const bool collides = pair_collides[at(c.pair)] && !c.was_loaded;
+    log[first + k] = describe(bodies, c, collides ? ImpulseKind::collision : ImpulseKind::contact);
+  });
   log.insert(log.end(), work.continuous_log.begin(), work.continuous_log.end());
+}
+
+void remember_contact(const SolverContact& c, PairState& memory) {
+  const bool is_loaded = has_impulse(c);
+  memory.is_touching = memory.is_touching || is_loaded || c.slack <= c.kept_gap;
+  const Vec3 crept = is_loaded ? Vec3(c.change - c.held_from) : Vec3::Zero();
+  memory.contacts.push_back({c.found.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v,
+                             crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded});
 }
 
 void remember_contacts(const MotionWork& work, ContactState& state) {
   state.substep = work.substep;
-  for (const WorkPair& pair : work.pairs) {
+  const core::Groups contacts(work.pairs.size(), work.contacts.size(),
+                              [&](std::size_t i) { return at(work.contacts[i].pair); });
+  core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
+    const WorkPair& pair = work.pairs[p];
     PairState& memory = state.pairs[at(pair.state)];
     memory.has_parted = std::any_of(memory.contacts.begin(), memory.contacts.end(),
                                     [](const RememberedContact& c) { return c.was_loaded; });
@@ -93,26 +114,15 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
       for (const auto& c : pair.contacts)
         memory.is_touching = memory.is_touching || c.gap <= 2.0 * pair.kept_gap;
     }
-  }
-  for (const SolverContact& c : work.contacts) {
-    PairState& memory = state.pairs[at(work.pairs[at(c.pair)].state)];
-    const bool is_loaded = has_impulse(c);
-    memory.is_touching = memory.is_touching || is_loaded || c.slack <= c.kept_gap;
-    const Vec3 crept = is_loaded ? Vec3(c.change - c.held_from) : Vec3::Zero();
-    memory.contacts.push_back({c.found.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v,
-                               crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded});
-  }
-  for (const WorkPair& pair : work.pairs) {
-    PairState& memory = state.pairs[at(pair.state)];
+    for (const std::size_t i : contacts.of(p)) remember_contact(work.contacts[i], memory);
     memory.has_parted = memory.has_parted && !memory.is_touching;
     // What was found on the way came last.
-    auto& contacts = memory.contacts;
     const auto by_key = [](const RememberedContact& x, const RememberedContact& y) {
       return x.feature_key < y.feature_key;
     };
-    if (!std::is_sorted(contacts.begin(), contacts.end(), by_key))
-      std::sort(contacts.begin(), contacts.end(), by_key);
-  }
+    if (!std::is_sorted(memory.contacts.begin(), memory.contacts.end(), by_key))
+      std::sort(memory.contacts.begin(), memory.contacts.end(), by_key);
+  });
 }
 
 void report_contacts(const MotionWork& work, ContactState& state, ContactReport& report) {

@@ -51,28 +51,32 @@ void check_order(const MotionWork& work, const ContactOrder& order) {
   std::vector<int> sorted = order.contacts;
   std::sort(sorted.begin(), sorted.end());
   CHECK(sorted == island_of(work).contacts);
-  std::size_t next_contact = 0, next_chunk = 0;
+  // From the smallest parts up to the whole they follow each other.
+  std::size_t next_contact = 0;
   std::set<int> pairs_seen;
-  for (const ContactOrder::Range& round : order.rounds) {
-    CHECK(round.begin == next_chunk);
-    next_chunk = round.end;
-    std::set<int> moved_in_round;
-    for (std::size_t k = round.begin; k < round.end; ++k) {
-      CHECK(order.chunks[k].begin == next_contact);
-      next_contact = order.chunks[k].end;
-      std::set<int> pairs, moved;
-      for (std::size_t i = order.chunks[k].begin; i < order.chunks[k].end; ++i) {
+  std::vector<std::set<int>> moved(order.parts.size());
+  for (std::size_t first = order.count_smallest(); first > 0; first /= 2) {
+    for (std::size_t part = first; part < 2 * first; ++part) {
+      CHECK(order.parts[part].begin == next_contact);
+      next_contact = order.parts[part].end;
+      std::set<int> pairs;
+      for (std::size_t i = order.parts[part].begin; i < order.parts[part].end; ++i) {
         const SolverContact& c = work.contacts[at(order.contacts[i])];
         pairs.insert(c.pair);
         for (const int b : {c.a, c.b})
-          if (work.bodies[at(b)].inverse_mass > 0.0) moved.insert(b);
+          if (work.bodies[at(b)].inverse_mass > 0.0) moved[part].insert(b);
       }
       for (const int pair : pairs) CHECK(pairs_seen.insert(pair).second);
-      for (const int b : moved) CHECK(moved_in_round.insert(b).second);
     }
   }
   CHECK(next_contact == order.contacts.size());
-  CHECK(next_chunk == order.chunks.size());
+  // What is moved in one half of a part is not in the other.
+  for (std::size_t part = order.parts.size() - 1; part > 1; --part) {
+    if (part % 2 == 0) {
+      for (const int b : moved[part]) CHECK_FALSE(moved[part + 1].contains(b));
+    }
+    moved[part / 2].insert(moved[part].begin(), moved[part].end());
+  }
   std::size_t next_slice = 0;
   std::set<int> pairs_sliced;
   for (const ContactOrder::Range& slice : order.slices) {
@@ -126,31 +130,37 @@ TEST_CASE("most of a heap is visited at once") {
   const ContactOrder order = order_contacts(island_of(work), work);
   check_order(work, order);
   CHECK(work.contacts.size() > 4000);
-  CHECK(order.rounds.size() <= 6);
-  // What no number of threads could make shorter: the longest chunk of each round.
-  std::size_t in_turn = 0;
-  for (const ContactOrder::Range& round : order.rounds) {
-    std::size_t longest = 0;
-    for (std::size_t k = round.begin; k < round.end; ++k)
-      longest = std::max(longest, order.chunks[k].end - order.chunks[k].begin);
-    in_turn += longest;
+  // What no number of threads could make shorter: from a smallest part to the whole.
+  const auto size = [&](std::size_t part) { return order.parts[part].end - order.parts[part].begin; };
+  std::vector<std::size_t> in_turn(order.parts.size(), 0);
+  for (std::size_t part = order.parts.size() - 1; part > 0; --part) {
+    const std::size_t half = 2 * part;
+    in_turn[part] = size(part);
+    if (half < in_turn.size()) in_turn[part] += std::max(in_turn[half], in_turn[half + 1]);
   }
-  CHECK(in_turn < work.contacts.size() / 3);
-  CHECK(order.chunks[0].end - order.chunks[0].begin > 50);
+  CHECK(in_turn[1] < work.contacts.size() / 3);
+  CHECK(order.count_smallest() >= 32);
 }
 
 TEST_CASE("the neighbours of one body are visited one by one") {
   const MotionWork work = draw_work(1500, 2000, true);
   const ContactOrder order = order_contacts(island_of(work), work);
   check_order(work, order);
-  for (const ContactOrder::Range& round : order.rounds) CHECK(round.end - round.begin == 1);
+  // All that are across the parts that the one is in, from the whole down to the smallest.
+  std::size_t apart = 0;
+  for (std::size_t part = 1; part < order.parts.size(); ++part)
+    apart += order.parts[part].begin < order.parts[part].end ? 1 : 0;
+  std::size_t levels = 1;
+  while (order.parts.size() >> (levels + 1) > 0) ++levels;
+  CHECK(apart <= levels);
 }
 
 TEST_CASE("the contacts of a small island keep their order") {
   const MotionWork work = draw_work(50, static_cast<int>(Island::kLarge), false);
   const ContactOrder order = order_contacts(island_of(work), work);
   CHECK(order.contacts == island_of(work).contacts);
-  CHECK(order.chunks.size() == 1);
+  CHECK(order.count_smallest() == 1);
+  CHECK(order.parts[1].end == order.contacts.size());
 }
 
 TEST_CASE("a heap that is one island has the same bits on any number of threads") {

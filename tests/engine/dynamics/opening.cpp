@@ -31,7 +31,7 @@ struct Meeting {
     scene.add(below);
     scene.fly(work);
     dynamics::PathTest paths(scene.settings, work);
-    paths.prepare(std::vector<char>(work.pairs.size(), 1));
+    paths.prepare(std::vector<std::size_t>(work.pairs.size(), 0));
     double spare = 0.0;
     if (work.pairs.size() == 1) hits = paths.find_hits(0, spare);
   }
