@@ -60,7 +60,6 @@ class Descent {
     const float m = round_up(margin), beyond = m * (1.0F + 1e-5F);
     reach_squared_ = m * m * (1.0F + 1e-5F);
     reach_ = BoxLanes{beyond, beyond, beyond, round_up(kDiagonal * beyond)};
-    stack_.reserve(kUsualDepth);
   }
 
   float reach_squared() const { return reach_squared_; }
@@ -177,7 +176,6 @@ class Descent {
     int number, place;
     TightBox box;
   };
-  static constexpr std::size_t kUsualDepth = 64;  // pairs of nodes that wait
 
   const Collider &a_, &b_;
   const FeatureBoxes &boxes_a_, &boxes_b_;
@@ -315,9 +313,7 @@ class Lister {
     const auto add = [&](FeatureKind kind, int i, const TightBox& box_i, int j, const TightBox& box_j) {
       if (!descent_.is_about_near(box_i, box_j)) return;
       const float squared = distance_squared(box_i, box_j);
-      if (squared > descent_.reach_squared()) return;
-      if (out.empty()) out.reserve(kUsualFeatures);
-      out.push_back({kind, squared, i, j});
+      if (squared <= descent_.reach_squared()) out.push_back({kind, squared, i, j});
     };
     // A sphere is but a vertex: what touches it, it touches with that.
     const bool a_has_faces = !a_.edges.empty(), b_has_faces = !b_.edges.empty();
@@ -346,7 +342,6 @@ class Lister {
   const TightWay way_;
   Descent descent_;
   Planes planes_;
-  static constexpr std::size_t kUsualFeatures = 32;
   int edges_of_ = -1;  // triangle of a, whose edges have these boxes
   std::array<TightBox, 3> boxes_e_;
 };

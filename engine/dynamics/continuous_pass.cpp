@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/core/groups.h"
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/core/stop.h"
@@ -121,7 +121,8 @@ class Guard {
     const std::vector<std::size_t>& must_go = former_.pairs.empty() ? due_ : unknown;
     paths_.prepare(must_go);
     core::parallel_for(must_go.size(), 4, [&](std::size_t k) {
-      hits_[must_go[k]] = paths_.find_hits(must_go[k], spare_[must_go[k]]);
+      const std::size_t p = must_go[k];
+      hits_[p] = paths_.find_hits(p, spare_[p]);
     });
     if (!memory_.pairs.empty())
       core::parallel_for(due_.size(), 16, [&](std::size_t k) { remember(due_[k]); });
@@ -401,11 +402,11 @@ class Guard {
   // All pairs in which one of these bodies (flags) is, ascending, and `more`.
   std::vector<std::size_t> pairs_with(const std::vector<char>& is_one,
                                       const std::vector<std::size_t>& more = {}) {
-    if (ends_of_body_.count_things() < 2 * work_.pairs.size()) sort_by_body();
+    if (ends_of_body_.items.size() < 2 * work_.pairs.size()) sort_by_body();
     std::vector<char> is_wanted(work_.pairs.size(), 0);
     for (std::size_t i = 0; i < is_one.size(); ++i) {
       if (!is_one[i]) continue;
-      for (const std::size_t end : ends_of_body_.of(i)) is_wanted[end / 2] = 1;
+      for (const int end : ends_of_body_.of(i)) is_wanted[at(end / 2)] = 1;
     }
     for (const std::size_t p : more) is_wanted[p] = 1;
     std::vector<std::size_t> pairs;
@@ -415,9 +416,9 @@ class Guard {
   }
 
   void sort_by_body() {
-    ends_of_body_ = core::Groups(work_.bodies.size(), 2 * work_.pairs.size(), [&](std::size_t end) {
+    ends_of_body_ = core::Buckets(work_.bodies.size(), 2 * work_.pairs.size(), [&](std::size_t end) {
       const WorkPair& pair = work_.pairs[end / 2];
-      return at(end % 2 == 0 ? pair.a : pair.b);
+      return end % 2 == 0 ? pair.a : pair.b;
     });
   }
 
@@ -610,7 +611,7 @@ class Guard {
   std::optional<ImpactZones> zones_;  // once nothing else helped
   std::vector<std::size_t> due_;      // pairs that must be tested, ascending
   std::vector<std::size_t> hit_;      // those of them whose ways are not free
-  core::Groups ends_of_body_;         // two for each pair, once they are asked for
+  core::Buckets ends_of_body_;        // two for each pair, once they are asked for
   std::vector<char> was_cut_, in_zone_, was_hit_;
   std::vector<char> is_known_;              // per pair: the solver was given its hits
   std::vector<char> bounces_;               // per pair: it was not, and bounces where its hits are opened

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "engine/core/groups.h"
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_solver.h"
@@ -98,8 +98,8 @@ void remember_contact(const SolverContact& c, PairState& memory) {
 
 void remember_contacts(const MotionWork& work, ContactState& state) {
   state.substep = work.substep;
-  const core::Groups contacts(work.pairs.size(), work.contacts.size(),
-                              [&](std::size_t i) { return at(work.contacts[i].pair); });
+  const core::Buckets contacts(work.pairs.size(), work.contacts.size(),
+                               [&](std::size_t i) { return work.contacts[i].pair; });
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
     const WorkPair& pair = work.pairs[p];
     PairState& memory = state.pairs[at(pair.state)];
@@ -114,7 +114,7 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
       for (const auto& c : pair.contacts)
         memory.is_touching = memory.is_touching || c.gap <= 2.0 * pair.kept_gap;
     }
-    for (const std::size_t i : contacts.of(p)) remember_contact(work.contacts[i], memory);
+    for (const int i : contacts.of(p)) remember_contact(work.contacts[at(i)], memory);
     memory.has_parted = memory.has_parted && !memory.is_touching;
     // What was found on the way came last.
     const auto by_key = [](const RememberedContact& x, const RememberedContact& y) {

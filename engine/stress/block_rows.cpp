@@ -1,7 +1,6 @@
 #include "engine/stress/block_rows.h"
 
-#include <numeric>
-
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 
@@ -11,23 +10,10 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-/// The corners of cells that each virtual vertex is, ascending: 4 cell + corner, from first[v] on.
-struct Incidence {
-  std::vector<int> first, corners;
-};
-
-Incidence find_incidence(const geometry::SolidMesh& mesh) {
-  Incidence incidence;
-  incidence.first.assign(mesh.vertex_source.size() + 1, 0);
-  for (const geometry::SolidCell& cell : mesh.cells)
-    for (const int vertex : cell.vertices) ++incidence.first[at(vertex) + 1];
-  std::partial_sum(incidence.first.begin(), incidence.first.end(), incidence.first.begin());
-  incidence.corners.resize(4 * mesh.cells.size());
-  std::vector<int> next(incidence.first.begin(), incidence.first.end() - 1);
-  for (Size c = 0; c < mesh.cells.size(); ++c)
-    for (Size i = 0; i < 4; ++i)
-      incidence.corners[at(next[at(mesh.cells[c].vertices[i])]++)] = static_cast<int>(4 * c + i);
-  return incidence;
+/// The corners of cells that each virtual vertex is: 4 cell + corner.
+core::Buckets find_incidence(const geometry::SolidMesh& mesh) {
+  return {mesh.vertex_source.size(), 4 * mesh.cells.size(),
+          [&](Size corner) { return mesh.cells[corner / 4].vertices[corner % 4]; }};
 }
 
 /// Some rows of the matrix by themselves.
@@ -38,7 +24,7 @@ struct RowRange {
 
 class RowBuilder {
  public:
-  RowBuilder(const SolidStiffness& stiffness, const geometry::SolidMesh& mesh, const Incidence& incidence)
+  RowBuilder(const SolidStiffness& stiffness, const geometry::SolidMesh& mesh, const core::Buckets& incidence)
       : stiffness_(stiffness), mesh_(mesh), incidence_(incidence), place_(mesh.vertex_source.size(), -1) {}
 
   RowRange build(Size begin, Size end) {
@@ -50,7 +36,7 @@ class RowBuilder {
       const Size first = range.column.size();
       const int begin_corner = incidence_.first[row], end_corner = incidence_.first[row + 1];
       if (begin_corner < end_corner) place_of(static_cast<int>(row), first, range);
-      for (int k = begin_corner; k < end_corner; ++k) add_corner(incidence_.corners[at(k)], first, range);
+      for (int k = begin_corner; k < end_corner; ++k) add_corner(incidence_.items[at(k)], first, range);
       range.counts.push_back(static_cast<int>(range.column.size() - first));
       for (Size block = first; block < range.column.size(); ++block) place_[at(range.column[block])] = -1;
     }
@@ -87,7 +73,7 @@ class RowBuilder {
 
   const SolidStiffness& stiffness_;
   const geometry::SolidMesh& mesh_;
-  const Incidence& incidence_;
+  const core::Buckets& incidence_;
   std::vector<int> place_;  // |V|: of a column in the row being made, or -1
 };
 
@@ -95,7 +81,7 @@ class RowBuilder {
 
 BlockRows assemble_stiffness(const SolidStiffness& stiffness, const geometry::SolidMesh& mesh) {
   constexpr Size kGrain = 4 * kRowGrain;
-  const Incidence incidence = find_incidence(mesh);
+  const core::Buckets incidence = find_incidence(mesh);
   const Size vertices = mesh.vertex_source.size();
   std::vector<RowRange> ranges((vertices + kGrain - 1) / kGrain);
   core::parallel_chunks(vertices, kGrain, [&](Size begin, Size end) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/stress/elimination_order.h"
@@ -36,14 +36,10 @@ CoarseModes::CoarseModes(const BlockRows& rows, const std::vector<Vec3>& positio
   const Size wanted = std::min(kMostClusters, rows.size() / kVerticesOfCluster);
   if (wanted < 2) return;
   cluster_ = cluster_vertices(rows, static_cast<int>(wanted));
-  first_.assign(at(*std::max_element(cluster_.begin(), cluster_.end())) + 2, 0);
-  for (const int c : cluster_)
-    if (c >= 0) ++first_[at(c) + 1];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  vertices_.resize(at(first_.back()));
-  std::vector<int> next(first_.begin(), first_.end() - 1);
-  for (Size v = 0; v < cluster_.size(); ++v)
-    if (cluster_[v] >= 0) vertices_[at(next[at(cluster_[v])]++)] = static_cast<int>(v);
+  core::Buckets clusters(at(*std::max_element(cluster_.begin(), cluster_.end())) + 1, cluster_.size(),
+                         [&](Size vertex) { return cluster_[vertex]; });
+  first_ = std::move(clusters.first);
+  vertices_ = std::move(clusters.items);
   arms_.assign(positions.size(), Vec3::Zero());
   for (Size c = 0; c < count(); ++c) {
     const int* const begin = vertices_.data() + first_[c];

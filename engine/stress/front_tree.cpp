@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
 #include "engine/stress/supernodes.h"
 
@@ -24,7 +25,7 @@ class TreeBuilder {
     number_fronts();
     for (Size f = 0; f < tree_.fronts.size(); ++f) add_rows(static_cast<int>(f));
     link_children();
-    const Buckets by_front(tree_.fronts.size(), placed_.size(), [&](Size e) {
+    const core::Buckets by_front(tree_.fronts.size(), placed_.size(), [&](Size e) {
       return placed_[e][0] < 0 ? -1 : front_of_node_[at(placed_[e][0])];
     });
     tree_.elements = by_front.items;
@@ -45,8 +46,8 @@ class TreeBuilder {
         front_of_supernode_[s] = static_cast<int>(top_.size());
         top_.push_back(static_cast<int>(s));
       }
-    const Buckets members(top_.size(), supernodes_.size(),
-                          [&](Size s) { return front_of(static_cast<int>(s)); });
+    const core::Buckets members(top_.size(), supernodes_.size(),
+                                [&](Size s) { return front_of(static_cast<int>(s)); });
     tree_.fronts.resize(top_.size());
     place_.assign(size_.size(), -1);
     front_of_node_.assign(size_.size(), -1);
@@ -90,8 +91,8 @@ class TreeBuilder {
   }
 
   void link_children() {
-    const Buckets children(tree_.fronts.size(), tree_.fronts.size(),
-                           [&](Size f) { return tree_.fronts[f].parent; });
+    const core::Buckets children(tree_.fronts.size(), tree_.fronts.size(),
+                                 [&](Size f) { return tree_.fronts[f].parent; });
     tree_.children = children.items;
     for (Size f = 0; f < tree_.fronts.size(); ++f) {
       Front& front = tree_.fronts[f];
@@ -104,7 +105,7 @@ class TreeBuilder {
   }
 
   /// Where the nodes of the front's own elements, and its children's rows, are in it.
-  void set_local_places(int f, const Buckets& by_front) {
+  void set_local_places(int f, const core::Buckets& by_front) {
     Front& front = tree_.fronts[at(f)];
     for (int i = nodes_of_front_first_[at(f)]; i < nodes_of_front_first_[at(f) + 1]; ++i)
       local_[at(pivot_nodes_[at(i)])] = place_[at(pivot_nodes_[at(i)])] - front.first_pivot;

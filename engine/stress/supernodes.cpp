@@ -1,5 +1,6 @@
 #include "engine/stress/supernodes.h"
 
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
 
 namespace shatterbox::stress {
@@ -29,8 +30,8 @@ std::vector<ElementNodes> place_elements(const NodeGraph& graph, const std::vect
 /// enough.
 std::vector<int> build_elimination_tree(Size count, const std::vector<ElementNodes>& placed) {
   constexpr Size kLinks = NodeGraph::kElementNodes - 1;
-  const Buckets links(count, placed.size() * kLinks,
-                      [&](Size i) { return placed[i / kLinks][i % kLinks + 1]; });
+  const core::Buckets links(count, placed.size() * kLinks,
+                            [&](Size i) { return placed[i / kLinks][i % kLinks + 1]; });
   std::vector<int> parent(count, -1);
   std::vector<int> ancestor(count, -1);
   for (Size j = 0; j < count; ++j)
@@ -77,11 +78,11 @@ std::vector<int> postorder(const std::vector<int>& parent) {
 std::vector<Supernode> find_supernodes(const std::vector<ElementNodes>& placed,
                                        const std::vector<int>& parent, const std::vector<int>& size) {
   const Size count = parent.size();
-  const Buckets starting(count, placed.size(), [&](Size e) { return placed[e][0]; });
+  const core::Buckets starting(count, placed.size(), [&](Size e) { return placed[e][0]; });
   std::vector<int> child_count(count, 0), mark(count, -1), owner(count, -1);
   for (const int p : parent)
     if (p >= 0) ++child_count[at(p)];
-  const Buckets children(count, count, [&](Size i) { return parent[i]; });
+  const core::Buckets children(count, count, [&](Size i) { return parent[i]; });
 
   std::vector<Supernode> supernodes;
   const auto finish = [&] {

@@ -3,7 +3,6 @@
 // FrontTree.
 #pragma once
 
-#include <numeric>
 #include <vector>
 
 #include "engine/stress/front_tree.h"
@@ -11,24 +10,6 @@
 namespace shatterbox::stress {
 
 using ElementNodes = std::array<int, NodeGraph::kElementNodes>;
-
-/// Groups `count` items by key in [0, keys): items of key k are [first[k], first[k + 1]) of `items`,
-/// ascending.
-struct Buckets {
-  std::vector<int> first, items;
-
-  template <class Key>
-  Buckets(std::size_t keys, std::size_t count, const Key& key) : first(keys + 1, 0) {
-    for (std::size_t i = 0; i < count; ++i)
-      if (const int k = key(i); k >= 0) ++first[static_cast<std::size_t>(k) + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    items.resize(static_cast<std::size_t>(first.back()));
-    std::vector<int> fill(first.begin(), first.end() - 1);
-    for (std::size_t i = 0; i < count; ++i)
-      if (const int k = key(i); k >= 0)
-        items[static_cast<std::size_t>(fill[static_cast<std::size_t>(k)]++)] = static_cast<int>(i);
-  }
-};
 
 /// Entries of a dense lower trapezoid of so many columns and rows below them.
 inline double trapezoid(double pivots, double rows) {
