@@ -35,9 +35,24 @@ Vec3 turned_normal(const Contact& contact, const Mat3& turn_a, const Mat3& turn_
   return contact.normal;
 }
 
+KeptContacts::KeptContacts(double radius, std::size_t most) : radius_(radius), most_(most) {}
+
+void KeptContacts::offer(const Contact& c) {
+  constexpr double kSameWay = 0.97;
+  const bool is_doubled = std::any_of(kept_.begin(), kept_.end(), [&](const Contact& k) {
+    return k.key == c.key ||
+           (k.normal.dot(c.normal) > kSameWay && (k.on_a - c.on_a).squaredNorm() < radius_ * radius_);
+  });
+  if (!is_doubled) kept_.push_back(c);
+}
+
+std::vector<Contact> KeptContacts::take() {
+  std::sort(kept_.begin(), kept_.end(), [](const Contact& x, const Contact& y) { return x.key < y.key; });
+  return std::move(kept_);
+}
+
 void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint64_t>& loaded_keys,
                      double loaded_reach, double radius, std::size_t cap) {
-  constexpr double kSameWay = 0.97;
   struct Ranked {
     double rank;
     std::uint64_t key;
@@ -53,18 +68,12 @@ void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint
   std::sort(order.begin(), order.end(), [](const Ranked& x, const Ranked& y) {
     return x.rank < y.rank || (x.rank == y.rank && x.key < y.key);
   });
-  std::vector<Contact> kept;
+  KeptContacts kept(radius, cap);
   for (const Ranked& ranked : order) {
-    if (kept.size() >= cap) break;
-    const Contact& c = contacts[ranked.place];
-    const bool is_doubled = std::any_of(kept.begin(), kept.end(), [&](const Contact& k) {
-      return k.key == c.key ||
-             (k.normal.dot(c.normal) > kSameWay && (k.on_a - c.on_a).squaredNorm() < radius * radius);
-    });
-    if (!is_doubled) kept.push_back(c);
+    if (kept.is_full()) break;
+    kept.offer(contacts[ranked.place]);
   }
-  std::sort(kept.begin(), kept.end(), [](const Contact& x, const Contact& y) { return x.key < y.key; });
-  contacts = std::move(kept);
+  contacts = kept.take();
 }
 
 }  // namespace shatterbox::collision

@@ -1,6 +1,7 @@
 // One place where two bodies touch or may soon touch, as the solver wants it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,9 +37,24 @@ void set_crossing_edges(const Vec3& edge_a, const Vec3& edge_b, Contact& contact
 /// The contact's normal once the bodies have turned so far since the start of the step. Not for balls.
 Vec3 turned_normal(const Contact& contact, const Mat3& turn_a, const Mat3& turn_b);
 
-/// Keeps few contacts that stand for all: those in `loaded_keys` (ascending) first while they are within
-/// `loaded_reach` (m), so that what rests keeps its feet; then nearest first, none within `radius` of a kept
-/// one that points the same way, at most `cap`. The order of the result is by key.
+/// Few contacts that stand for all that were offered, the most important first: none within `radius` (m) of
+/// another that points the same way.
+class KeptContacts {
+ public:
+  KeptContacts(double radius, std::size_t most);
+  bool is_full() const { return kept_.size() >= most_; }
+  void offer(const Contact& contact);
+  /// Ascending by key.
+  std::vector<Contact> take();
+
+ private:
+  double radius_;
+  std::size_t most_;
+  std::vector<Contact> kept_;
+};
+
+/// Keeps those in `loaded_keys` (ascending) first while they are within `loaded_reach` (m), so that what
+/// rests keeps its feet; then nearest first; at most `cap`.
 void reduce_manifold(std::vector<Contact>& contacts, const std::vector<std::uint64_t>& loaded_keys,
                      double loaded_reach, double radius, std::size_t cap);
 

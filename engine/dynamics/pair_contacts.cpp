@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/dynamics/nearest_contacts.h"
 #include "engine/dynamics/rest.h"
 #include "engine/dynamics/solid_touch.h"
 
@@ -18,7 +20,6 @@ using body::ShapeKind;
 using collision::Contact;
 using core::at;
 
-constexpr double kLocalSlack = 0.1;  // sine: neighbouring features may lead closer by this
 // Contacts of a pair: how far apart, as a share of its size, and how many. What rolls on something solid
 // needs more feet than surfaces that lie on each other.
 struct Manifold {
@@ -28,8 +29,8 @@ struct Manifold {
 constexpr Manifold kOnSolid = {0.04, 16}, kOnSurface = {0.08, 8};
 constexpr std::size_t kFeaturesToTask = 256;
 constexpr std::size_t kUsualContacts = 16;  // of a pair that touches, before most are dropped
+constexpr std::size_t kManyNear = 512;      // features, of which not all are measured
 constexpr double kFastSlack = 0.25;         // of the slack: a list for one step need not last
-constexpr double kAlwaysNear = 3.0;         // of the usual gap
 constexpr int kHangs = 3;                   // steps in a row, cut short
 constexpr double kRaiseTime = 0.5;          // s
 constexpr double kTouching = 1e-9;          // share of the pair's size: what sinks less only touches
@@ -59,11 +60,6 @@ double least_on_path(double gap, double kept_gap) {
   return gap > 0.0 ? std::min(kept_gap, 0.8 * gap) : gap - kept_gap;
 }
 
-// Surely not more than a gap that was measured.
-float bound_of(double gap) {
-  return collision::round_down(gap * (1.0 - 1e-9));
-}
-
 // All features that are near now, for as many steps as the pair stays about here. Boxes are rough: of a pair
 // that stays, what is not in truth so near need not be looked at again and again.
 std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBody& b, double margin,
@@ -77,8 +73,7 @@ std::shared_ptr<const FeatureSearch> search_near(const WorkBody& a, const WorkBo
   if (!stays) return search;
   core::parallel_for(features.size(), kFeaturesToTask, [&](std::size_t i) {
     collision::FeaturePair& f = features[i];
-    const auto points = collision::gather(f, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    f.bound = std::max(f.bound, bound_of(collision::measure(points, direction_hint(a, b, points)).gap));
+    f.bound = std::max(f.bound, bound_of(meet_at_start(a, b, f).gap.gap));
   });
   std::erase_if(features, [&](const auto& f) { return f.bound > margin; });
   return search;
@@ -123,21 +118,14 @@ PairMeeting meet_some(const WorkBody& a, const WorkBody& b, double usual_gap, st
       continue;
     }
     const collision::FeaturePair& features = pair.search->features[i];
-    const auto start = collision::gather(features, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    const Vec3 hint = direction_hint(a, b, start);
-    const auto gap = collision::measure(start, hint);
+    const auto [start, hint, gap] = meet_at_start(a, b, features);
     start_gap = bound_of(gap.gap);
     meeting.least_gap = std::min(meeting.least_gap, gap.gap);
-    if (gap.gap <= pair.margin) {
-      // So close that the direction cannot mislead, every feature counts.
-      if (gap.gap <= kAlwaysNear * usual_gap ||
-          collision::is_local_minimum(features, gap, *a.collider, a.placed.start, *b.collider, b.placed.start,
-                                      kLocalSlack)) {
-        if (meeting.contacts.empty()) meeting.contacts.reserve(kUsualContacts);
-        meeting.contacts.push_back(collision::contact_here(features, start, gap));
-        meeting.is_free = false;
-        continue;
-      }
+    if (is_contact(a, b, features, gap, usual_gap, pair.margin)) {
+      if (meeting.contacts.empty()) meeting.contacts.reserve(kUsualContacts);
+      meeting.contacts.push_back(collision::contact_here(features, start, gap));
+      meeting.is_free = false;
+      continue;
     }
     if (gap.gap > pair.motion + usual_gap) continue;
     if (pair.looks_ahead)
@@ -167,8 +155,22 @@ std::shared_ptr<StartGaps> own(std::shared_ptr<const StartGaps>&& gaps) {
   return std::make_shared<StartGaps>(*gaps);
 }
 
-void meet_features(const ContactSettings& settings, const MotionWork& work, PairState& memory,
-                   WorkPair& pair) {
+// Whether the nearest of so many features are contacts, and nothing has to be known of the others: none is
+// followed on its way, and whether surfaces cross was asked before.
+bool has_many_near(const WorkBody& a, const WorkBody& b, double usual_gap, const PairState& memory,
+                   const WorkPair& pair, const std::vector<float>& start_gaps) {
+  if (start_gaps.size() < kManyNear || pair.is_fast || pair.is_first_seen || memory.is_exempt) return false;
+  if (a.collider->radius > 0.0 || b.collider->radius > 0.0) return false;
+  if (pair.looks_ahead && pair.motion + usual_gap > std::min(kAlwaysNear * usual_gap, pair.margin))
+    return false;
+  const auto near =
+      std::count_if(start_gaps.begin(), start_gaps.end(), [&](float gap) { return !(gap > pair.margin); });
+  return static_cast<std::size_t>(near) >= kManyNear;
+}
+
+// Contacts, or, of very many, what tells them.
+std::optional<NearestContacts> meet_features(const ContactSettings& settings, const MotionWork& work,
+                                             PairState& memory, WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   const double slack = settings.search_slack * pair.size;
   const bool one_turns_far = turns_far(a) || turns_far(b);
@@ -176,7 +178,7 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   if (one_turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
     memory.forget_caches();
     pair.is_free_certified = true;
-    return;
+    return std::nullopt;
   }
   const double usual_gap = settings.kept_gap * pair.size;
   std::shared_ptr<StartGaps> gaps;
@@ -191,7 +193,16 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
     carry_gaps(*gaps, a, b);
   }
   pair.search = gaps->search;
-  PairMeeting whole = meet_all(a, b, usual_gap, pair, gaps->gaps);
+  std::optional<NearestContacts> nearest;
+  if (has_many_near(a, b, usual_gap, memory, pair, gaps->gaps)) {
+    nearest.emplace(a, b, usual_gap, pair, gaps->gaps);
+    if (!(nearest->least_gap() <= std::min(kAlwaysNear * usual_gap, pair.margin))) nearest.reset();
+  }
+  PairMeeting whole;
+  if (nearest)
+    whole.least_gap = nearest->least_gap();
+  else
+    whole = meet_all(a, b, usual_gap, pair, gaps->gaps);
   gaps->least = 1e300;
   for (const double gap : gaps->gaps) gaps->least = std::min(gaps->least, gap);
   pair.known.start_gaps = gaps;
@@ -200,8 +211,9 @@ void meet_features(const ContactSettings& settings, const MotionWork& work, Pair
   memory.clear_since = a.travelled + b.travelled;
   pair.least_gap = std::min(whole.least_gap, pair.margin);
   pair.contacts = std::move(whole.contacts);
-  pair.is_free_certified = !one_turns_far && whole.is_free && whole.hits.empty();
+  pair.is_free_certified = !nearest && !one_turns_far && whole.is_free && whole.hits.empty();
   if (!whole.hits.empty()) keep_first_hits(whole.hits, pair.size, pair.contacts);
+  return nearest;
 }
 
 // Spheres and boxes: contacts at the start, and the first touch on the way if the pair moves further than
@@ -249,12 +261,13 @@ void take_gap(const ContactSettings& settings, const MotionWork& work, double ke
 
 // The gap that is kept is the usual one unless the pair was found closer: it never pushes newborn pieces
 // apart.
-void adapt_gap(const ContactSettings& settings, const MotionWork& work, PairState& memory, WorkPair& pair) {
+void adapt_gap(const ContactSettings& settings, const MotionWork& work, double least, PairState& memory,
+               WorkPair& pair) {
   const double usual = settings.kept_gap * pair.size;
-  double least = usual;
   for (const Contact& c : pair.contacts) {
     if (!c.is_time_of_impact) least = std::min(least, c.gap);
   }
+  least = std::min(least, usual);
   const bool is_new = memory.kept_gap <= 0.0;
   least = std::max(least, 0.02 * usual);
   // What lies on something solid from the start is raised to the usual gap, slowly enough to be no push.
@@ -290,31 +303,32 @@ void find_pair_contacts(const ContactSettings& settings, const MotionWork& work,
     pair.least_gap = pair.clearance;
     pair.is_free_certified = true;
     memory.is_exempt = false;
-    adapt_gap(settings, work, memory, pair);
+    adapt_gap(settings, work, 1e300, memory, pair);
     return;
   }
-  if (pair.is_plane) {
-    meet_plane(work, pair);
-  } else if (pair.is_analytic) {
-    meet_solids(settings, work, pair);
-  } else {
-    meet_features(settings, work, memory, pair);
-  }
+  if (pair.is_plane) meet_plane(work, pair);
+  if (pair.is_analytic) meet_solids(settings, work, pair);
+  std::optional<NearestContacts> nearest =
+      pair.is_plane || pair.is_analytic ? std::nullopt : meet_features(settings, work, memory, pair);
   if (pair.is_first_seen || memory.is_exempt) {
     memory.is_exempt = is_crossing(work, memory, pair);
     pair.passes = memory.is_exempt && has_no_side(work, memory, pair);
     if (pair.passes) pair.contacts.clear();
   }
-  adapt_gap(settings, work, memory, pair);
+  adapt_gap(settings, work, nearest ? nearest->least_gap() : 1e300, memory, pair);
   std::vector<std::uint64_t> loaded;
   for (const auto& c : memory.contacts) {
     if (c.was_loaded) loaded.push_back(c.feature_key);
   }
   const Manifold manifold = pair.has_sides ? kOnSolid : kOnSurface;
   const bool is_in_trouble = memory.trouble_age < 30;
-  collision::reduce_manifold(pair.contacts, loaded, 2.0 * pair.kept_gap,
-                             manifold.radius * pair.size * (is_in_trouble ? 0.5 : 1.0),
-                             manifold.cap * (is_in_trouble ? 2 : 1));
+  const double radius = manifold.radius * pair.size * (is_in_trouble ? 0.5 : 1.0);
+  const std::size_t cap = manifold.cap * (is_in_trouble ? 2 : 1);
+  const double loaded_reach = 2.0 * pair.kept_gap;
+  if (nearest)
+    pair.contacts = nearest->keep(loaded, loaded_reach, {radius, cap});
+  else
+    collision::reduce_manifold(pair.contacts, loaded, loaded_reach, radius, cap);
 }
 
 void meet_again(const ContactSettings& settings, const PartMemory::Pair& former, const MotionWork& work,
