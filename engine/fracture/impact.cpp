@@ -4,6 +4,22 @@
 
 namespace shatterbox::fracture {
 
+LoadBound::LoadBound(const Impact& impact) : borne_ratio_(impact.resting_ratio.value_or(0.0)) {
+  for (const ImpactLoad& load : impact.loads) {
+    if (is_collision(load)) {
+      root_energy_ += core::sqrt(collision_energy(load));
+      hit_force_ += load.hertz_compliance > 0.0 ? collision_force(load, load.hertz_compliance) : kBoundless;
+    } else if (!load.is_resting || !impact.resting_ratio) {
+      contact_force_ += load.impulse / impact.contact_average;
+    }
+  }
+}
+
+double LoadBound::stress(double strength, double per_newton, double per_root_joule) const {
+  const double hits = std::min(per_newton * hit_force_, per_root_joule * root_energy_);
+  return borne_ratio_ * strength + per_newton * contact_force_ + hits;
+}
+
 double rigid_mobility(const geometry::MassProperties& mass, const ImpactLoad& load) {
   const Vec3 arm = (load.point_material - mass.centre).cross(load.direction);
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);

@@ -41,6 +41,8 @@ struct Impact {
   Vec3 spin_material = Vec3::Zero();     // rad/s
   std::optional<double> given_duration;  // s; replaces the computed one
   double contact_average = 1.0 / 60.0;   // s
+  /// Stress over strength, anywhere, by what rests on the body alone, as an earlier solve told.
+  std::optional<double> resting_ratio;
 };
 
 enum class Outcome : std::uint8_t { held, broke, not_evaluated };
@@ -94,6 +96,26 @@ inline void add_energy(const ImpactLoad& load, double force, double elastic_comp
   sum.all += energy;
   sum.most += (1.0 - load.restitution * load.restitution) * energy;
 }
+
+/// What the loads of an impact come to at most, as if they met in one place and pressed in one way. Of no
+/// given duration.
+class LoadBound {
+ public:
+  explicit LoadBound(const Impact& impact);
+
+  /// Pa, where material of `strength` (Pa) is under `per_newton` (Pa/N) of what bends the body, and under
+  /// `per_root_joule` (Pa/J^1/2) of what energy may gather there: a hit does no more than either.
+  double stress(double strength, double per_newton, double per_root_joule) const;
+
+  /// Of what nothing is known.
+  static constexpr double kBoundless = 1e200;
+
+ private:
+  double root_energy_ = 0.0;    // J^1/2, of collisions
+  double hit_force_ = 0.0;      // N, of collisions with a body that gives no way
+  double contact_force_ = 0.0;  // N, of what else presses, and is not known to be borne
+  double borne_ratio_ = 0.0;    // stress over strength, anywhere, of what is
+};
 
 /// Share of a load's energy (J) that cracks which took `spent` J have left.
 inline double share_left(double energy, double spent) {

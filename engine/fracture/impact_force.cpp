@@ -111,29 +111,20 @@ bool ImpactForce::does_spin_crack() const {
 std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
   if (impact_.given_duration) return std::nullopt;
   if (are_snapshots(impact_)) return std::nullopt;  // a spring too deep holds more than there is
-  // Loads add up: so do the roots of collisions' energies, and the forces of resting contact.
-  double root_energy = 0.0, contact_force = 0.0;
-  for (const Press& press : presses_) {
-    const ShellLoad& load = *press.load;
-    if (is_collision(load))
-      root_energy += core::sqrt(0.5 * load.effective_mass) * load.closing_speed;
-    else
-      contact_force += load.impulse / impact_.contact_average;
-  }
+  const LoadBound bound(impact_);
   const stress::ShellFigures& figures = subject_.systems->figures();
   const double width = std::max(subject_.thickness, settings_.least_width);
-  const double constant = kSpinSafety * spin_stress() +
-                          stress::bending_bound(subject_.thickness, width, figures.reach, contact_force);
-  const double energy = root_energy * root_energy;
-  const double per_root_area = stress::stress_bound(properties_of(subject_), 1.0, energy);
+  const double spin = kSpinSafety * spin_stress();
+  const double per_newton = stress::bending_bound(subject_.thickness, width, figures.reach, 1.0);
+  const double per_root_energy = stress::stress_bound(properties_of(subject_), 1.0, 1.0);
   // Of two stresses von Mises' is at most sqrt(3) times the greater.
   const double flow = subject_.material.yield > 0.0 ? subject_.material.yield / core::sqrt(3.0) : 1e300;
   Bound worst;
   for (Size c = 0; c < subject_.mesh->cells.size(); ++c) {
     const double area = figures.stressed_areas[c];
-    if (!(area > 0.0)) return std::nullopt;
     const double strength = std::min(borne_by(c), flow);
-    const double stress = per_root_area / core::sqrt(area) + constant;
+    const double per_root_joule = area > 0.0 ? per_root_energy / core::sqrt(area) : LoadBound::kBoundless;
+    const double stress = spin + bound.stress(strength, per_newton, per_root_joule);
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
   }

@@ -106,32 +106,24 @@ bool SolidForce::is_spinning() const {
 std::optional<SolidForce::Bound> SolidForce::harmless_bound() const {
   if (impact_.given_duration) return std::nullopt;
   if (are_snapshots(impact_)) return std::nullopt;  // a spring too deep holds more than there is
-  // Loads add up: so do the roots of collisions' energies, and the forces of resting contact.
-  double root_energy = 0.0, contact_force = 0.0;
-  for (const SolidPress& press : presses_) {
-    const ImpactLoad& load = *press.load;
-    if (is_collision(load))
-      root_energy += core::sqrt(collision_energy(load));
-    else
-      contact_force += load.impulse / impact_.contact_average;
-  }
+  const LoadBound bound(impact_);
   const SolidModel& model = *subject_.model;
   if (!(model.width > 0.0)) return std::nullopt;
-  const double constant = kSolidSpinSafety * spin_stress() +
-                          stress::bending_bound(model.width, model.width, model.reach, contact_force);
-  const double per_root_volume = stress::stress_bound(*model.stiffness, 1.0, root_energy * root_energy);
+  const double spin = kSolidSpinSafety * spin_stress();
+  const double per_newton = stress::bending_bound(model.width, model.width, model.reach, 1.0);
+  const double per_root_energy = stress::stress_bound(*model.stiffness, 1.0, 1.0);
   // Of two stresses von Mises' is at most sqrt(3) times the greater.
   const double flow = subject_.material.yield > 0.0 ? subject_.material.yield / core::sqrt(3.0) : 1e300;
   Bound worst;
   for (Size c = 0; c < model.mesh.cells.size(); ++c) {
     const double volume = model.stressed_volumes[c];
-    if (!(volume > 0.0)) return std::nullopt;
     double strength = subject_.flaws->greatest_strength;
     // The weakest is the first; whether it lies in this cell of its element does not matter to a bound.
     if (const auto flaws = subject_.flaws->of_element(model.mesh.cells[c].element); !flaws.empty())
       strength = std::min(strength, flaws.front().strength);
     strength = std::min(strength, flow);
-    const double stress = per_root_volume / core::sqrt(volume) + constant;
+    const double per_root_joule = volume > 0.0 ? per_root_energy / core::sqrt(volume) : LoadBound::kBoundless;
+    const double stress = spin + bound.stress(strength, per_newton, per_root_joule);
     if (!(stress < strength)) return std::nullopt;
     if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
   }

@@ -10,6 +10,7 @@ std::uint64_t as_word(long number) {
 
 void add_to_hash(const ImpactMemory& memory, core::Hash& hash) {
   hash.add(memory.event_duration).add(memory.tested_contact).add(memory.tested_growth);
+  hash.add(memory.solved_contact).add(memory.solved_ratio);
   hash.add(as_word(memory.generation));
   for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
   for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);

@@ -63,6 +63,8 @@ struct ImpactMemory {
   bool has_open_dent = false;     // that is so
   double tested_contact = 0.0;    // N: total contact force at which the body was last found to hold
   double tested_growth = 1.1;     // times that force, at which it is tested again
+  double solved_contact = 0.0;    // N: that force when a solve last told that the body holds; 0: none has
+  double solved_ratio = 0.0;      // stress over strength, as it told, with what struck
   bool keeps_dents = true;        // false of a piece of what cracked, which tears
   int generation = 0;             // breaks since the event began from which this piece comes
 

@@ -34,10 +34,11 @@ struct Candidate {
   const Fragile* fragile = nullptr;
   Load hardest;
   std::vector<Load> loads;
-  double first_time = 0.0;    // s
-  bool is_struck = false;     // by a collision
-  bool is_piece = false;      // born of a break
-  bool has_used_all = false;  // generations of its event
+  double first_time = 0.0;     // s
+  bool is_struck = false;      // by a collision
+  bool is_piece = false;       // born of a break
+  bool has_used_all = false;   // generations of its event
+  double contact_force = 0.0;  // N, of what rests on it
   fracture::Impact impact;
 };
 
@@ -190,6 +191,13 @@ void add_to_event(ImpactMemory& memory, const std::vector<Load>& hits, double ra
   add_to_event(memory.event, hits, radius);
 }
 
+/// What is known of the stress by that much resting contact, N, from the last solve: it is in proportion.
+std::optional<double> known_ratio(const ImpactMemory& memory, double contact_force) {
+  if (!(memory.solved_contact > 0.0) || contact_force > kContactGrowth * memory.solved_contact)
+    return std::nullopt;
+  return memory.solved_ratio * contact_force / memory.solved_contact;
+}
+
 /// What presses on the body, and, of what was `struck` in this step, the event.
 void fill_candidate(const Judge& judge, const body::Body& body, double radius, double time, bool is_struck,
                     const ImpactMemory& memory, Candidate& candidate) {
@@ -253,6 +261,8 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   }
   if (hits.empty() && !is_pressed) return false;
   fill_candidate(judge, body, radius, time, !hits.empty(), memory, candidate);
+  candidate.contact_force = contact_force;
+  candidate.impact.resting_ratio = known_ratio(memory, contact_force);
   memory.tested_contact = std::max(memory.tested_contact, contact_force);
   return true;
 }
@@ -396,6 +406,10 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
       borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict), duration,
                           tested_growth, false};
     ImpactMemory& memory = memories[impact.id];
+    if (!decision.needed_no_solve()) {
+      memory.solved_contact = holds && !impact.is_cracked_only() ? candidates[i].contact_force : 0.0;
+      memory.solved_ratio = ratio;
+    }
     if (impact.is_struck) await_dent(impact, *candidates[i].body, memory);
     if (const fracture::Perforation* asked = find_perforation(impact); asked && !asked->is_through())
       for (Load& load : memory.event) load.was_asked = true;

@@ -124,6 +124,22 @@ TEST_CASE(
   CHECK(fracture::decide_shell(subject, test::steel_ball(1e-4)).verdict.stress < light.verdict.stress);
 }
 
+TEST_CASE("a soft hit of a bauble is bounded by its force, a hard one of as much energy is solved") {
+  const auto subject = make_bauble(1, 0.0);
+  const auto decide = [&](double speed, double hertz_compliance) {
+    auto impact = drop_on_floor(subject, speed);
+    impact.loads.back().hertz_compliance = hertz_compliance;
+    fracture::FractureSettings settings;
+    settings.least_width = 0.01;
+    return fracture::decide_shell(subject, impact, settings).verdict;
+  };
+  double speed = 1e-4;
+  while (decide(speed, 1e-7).reason == "bound") speed *= 1.1;
+  CHECK(decide(speed, 1.0).reason == "bound");
+  // What a solve tells of the hard one, in proportion, is less.
+  CHECK(decide(speed, 1.0).ratio > decide(speed, 1e-7).ratio * std::sqrt(1e-7 / 1.0));
+}
+
 TEST_CASE("the speed that breaks a held pane grows as the root of its thickness") {
   // Compliance ~ t^-3, so T ~ t^-3/2; peak force F = V sqrt(m / C) ~ V t^3/2; bending stress ~ F / t^2 ~ V
   // t^-1/2.

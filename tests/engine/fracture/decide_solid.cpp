@@ -81,6 +81,50 @@ TEST_CASE("decide solid: what cannot break needs no solve, and says so") {
   CHECK(decide_solid(subject, {}).verdict.reason == "no load");
 }
 
+TEST_CASE(
+    "decide solid: a hit's force bounds it where its energy, gathered in a small cell, could do anything") {
+  const SolidSubject subject = box(Vec3(0.1, 0.05, 0.05), 0.008, "ceramic");
+  const auto decide = [&](double speed, double hertz_compliance) {
+    Impact impact = hit(Vec3(0.0, 0.0, 0.05), -Vec3::UnitZ(), 0.02, speed);
+    impact.loads.back().hertz_compliance = hertz_compliance;
+    return decide_solid(subject, impact).verdict;
+  };
+  // The same energy from something soft and something hard.
+  double speed = 0.05;
+  while (decide(speed, 1e-10).reason == "bound") speed *= 1.1;
+  CHECK(decide(speed, 1e-6).reason == "bound");
+  // What a solve tells, in proportion, is less than the bound.
+  double faster = speed;
+  while (decide(faster, 1e-6).reason == "bound") faster *= 1.1;
+  const double bound = decide(faster / 1.1, 1e-6).ratio;
+  CHECK(bound < 1.0);
+  CHECK(bound > 0.5);
+  CHECK(decide(faster, 1e-6).ratio < 1.1 * bound);
+}
+
+TEST_CASE("decide solid: what is known to be borne at rest leaves a tap alone to be bounded") {
+  const SolidSubject subject = box(Vec3(0.1, 0.05, 0.05), 0.02, "ceramic");
+  Impact impact = hit(Vec3(0.0, 0.0, 0.05), -Vec3::UnitZ(), 0.01, 0.05);
+  ImpactLoad rest;
+  rest.point_material = Vec3(0.0, 0.0, -0.05);
+  rest.direction = Vec3::UnitZ();
+  rest.is_resting = true;
+  rest.impulse = 1.0;
+  while (decide_solid(subject, impact).needed_no_solve()) {
+    impact.loads.resize(1);
+    rest.impulse *= 2.0;
+    impact.loads.push_back(rest);
+  }
+  const double solved = decide_solid(subject, impact).verdict.ratio;
+  CHECK(solved < 0.5);
+  impact.resting_ratio = solved;
+  const SolidDecision known = decide_solid(subject, impact);
+  CHECK(known.verdict.reason == "bound");
+  CHECK(known.verdict.ratio > solved);
+  impact.resting_ratio = 1.0;
+  CHECK(!decide_solid(subject, impact).needed_no_solve());
+}
+
 TEST_CASE("decide solid: the verdict's stress is the beam's") {
   // A beam of 0.4 by 0.04 by 0.04 m, free, pressed in the middle for a given time: F L c / 8 I.
   const SolidSubject subject = box(Vec3(0.2, 0.02, 0.02), 0.008, "ceramic");

@@ -131,6 +131,34 @@ TEST_CASE("what presses for long does not make an event longer") {
   CHECK(memories[kStruck].event_duration == 0.0);
 }
 
+TEST_CASE("what a body bears at rest is solved once, not for each tap that comes on top of it") {
+  using Kind = body::ImpulseKind;
+  Hit hit(8.0);
+  hit.settings.stress_window.reset();
+  const Vec3 side(0.04, 0.0, 0.0);
+  std::map<body::BodyId, world::ImpactMemory> memories;
+  const double weight = 20.0;
+  REQUIRE(hit.judge({hit.impulse(Kind::contact, weight, side)}, 0.0, memories).size() == 1);
+  const world::ImpactMemory& memory = memories[kStruck];
+  REQUIRE(memory.solved_contact > 0.0);
+  REQUIRE(memory.solved_ratio > 0.0);
+  REQUIRE(memory.solved_ratio < 1.0);
+  double time = 0.0;
+  const auto taps = [&](double pressed) {
+    hit.borne = {};
+    time += 1.0;
+    const auto judged = hit.judge(
+        {hit.impulse(Kind::contact, pressed, side), hit.impulse(Kind::collision, 1e-4, Vec3(-side))}, time,
+        memories);
+    REQUIRE(judged.size() == 1);
+    return judged[0].figures().needed_no_solve();
+  };
+  CHECK(taps(weight));
+  CHECK(taps(0.5 * weight));
+  CHECK(!taps(1.2 * weight));
+  CHECK(taps(1.2 * weight));
+}
+
 TEST_CASE("a pass that is taken again remembers what was found of a body that bore it") {
   Hit hit(8.0);
   const body::ImpulseLog log = {hit.impulse(body::ImpulseKind::collision, 0.4, Vec3(0.04, 0.0, 0.0))};
