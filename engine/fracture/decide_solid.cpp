@@ -64,7 +64,7 @@ class SolidDecider {
       verdict.outcome = Outcome::held;
       return std::move(decision_);
     }
-    force_.complete(decision_);
+    if (!force_.complete(decision_, verdict.reason)) return std::move(decision_);
     run_generations(std::move(candidates));
     return std::move(decision_);
   }

@@ -251,6 +251,7 @@ bool SolidForce::settle(SolidDecision& decision, std::string& problem) {
   if (lead && !settle_lead(*lead, decision, problem)) return false;
   if (lead) settle_force(presses_[*lead]);
   choose_minor();
+  put_together();
   std::vector<Size> others;
   for (Size i = 0; i < presses_.size(); ++i)
     if (i != lead && !presses_[i].is_minor) others.push_back(i);
@@ -285,6 +286,19 @@ void SolidForce::choose_minor() {
   }
 }
 
+/// Whether the body holds is told by the sum of what rests on it. How the pieces of a cracked body share a
+/// load is told by a solve.
+void SolidForce::put_together() {
+  if (impact_.given_duration) return;
+  for (Size i = 0; i < presses_.size(); ++i) {
+    SolidPress& press = presses_[i];
+    if (press.is_minor || !press.load->is_resting || is_collision(*press.load)) continue;
+    if (now_.groups[i].forces.size() != 1) continue;
+    press.is_minor = true;
+    together_.push_back(i);
+  }
+}
+
 void SolidForce::settle_force(SolidPress& press) {
   const ImpactLoad& load = *press.load;
   if (impact_.given_duration) {
@@ -316,7 +330,10 @@ DentEnergy SolidForce::struck_energy() const {
   return sum;
 }
 
-void SolidForce::complete(SolidDecision& decision) {
+bool SolidForce::complete(SolidDecision& decision, std::string& problem) {
+  for (const Size i : together_) presses_[i].is_minor = false;
+  if (!together_.empty() && !answer(now_, together_, decision, problem, true)) return false;
+  together_.clear();
   for (SolidPress& press : presses_) {
     if (press.is_minor) continue;
     press.first_compliance = press.compliance;
@@ -325,6 +342,7 @@ void SolidForce::complete(SolidDecision& decision) {
     if (press.energy == 0.0) press.energy = elastic;
     decision.elastic_energy += std::min(elastic, press.energy);
   }
+  return true;
 }
 
 /// What presses beside the loads that are solved for, N: the spin, and minor loads on the heaviest of their

@@ -1,5 +1,6 @@
 // How hard and how long an impact presses on a solid: as impact_force.h for shells, by conjugate gradients in
-// place of factors. Resting contact that is next to nothing beside the impact is solved for all at once.
+// place of factors. Resting contact, whose force no solve has to tell, is solved for all at once: of a body
+// that breaks only what of it is next to nothing beside the impact.
 #pragma once
 
 #include <optional>
@@ -28,7 +29,7 @@ struct SolidPress {
   double compliance = 0.0;          // m/N
   double elastic_compliance = 0.0;  // m/N
   std::vector<double> shares;       // of its groups in the force
-  /// Resting contact that was never solved for: it has no compliance and no energy.
+  /// Resting contact that was not solved for by itself: it has no compliance and no energy.
   bool is_minor = false;
 };
 
@@ -67,8 +68,9 @@ class SolidForce {
   /// `problem` says why, if there is no answer.
   bool settle(SolidDecision& decision, std::string& problem);
 
-  /// Before the body cracks: books the elastic energy.
-  void complete(SolidDecision& decision);
+  /// Before the body cracks: what of resting contact counts is solved for by itself, and the elastic energy
+  /// booked. False, and `problem` says why, if there is no answer.
+  bool complete(SolidDecision& decision, std::string& problem);
 
   /// The cut body under the force that its compliance and the energy left allow. `origins` (|cells|): which
   /// cell of the mesh solved before each was, which is still there.
@@ -100,6 +102,7 @@ class SolidForce {
   bool answer(const SolidStage& stage, const std::vector<std::size_t>& wanted, SolidDecision& decision,
               std::string& problem, bool wants_rest = false);
   void choose_minor();
+  void put_together();
   bool promote_minor(SolidDecision& decision, std::string& problem);
   std::vector<double> part_forces() const;
   void settle_cracked_force(SolidPress& press, const SolidDecision& decision);
@@ -120,6 +123,7 @@ class SolidForce {
   SolidStage first_, now_;  // the intact body; the mesh last solved
   SolidForm form_;          // of now_, once it has cracked
   VecX displacement_, rest_displacement_;
+  std::vector<std::size_t> together_;  // presses that are minor until the body breaks
   std::size_t hardest_ = 0;
   double duration_ = 0.0;  // s, of the lead; contact_average without one
   int exponent_ = 0;       // of the screening of the cracked body

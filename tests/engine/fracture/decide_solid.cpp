@@ -125,6 +125,41 @@ TEST_CASE("decide solid: what is known to be borne at rest leaves a tap alone to
   CHECK(!decide_solid(subject, impact).needed_no_solve());
 }
 
+TEST_CASE("decide solid: what rests on a body is solved for together, and by itself where the body breaks") {
+  const SolidSubject subject = box(Vec3(0.2, 0.02, 0.02), 0.008, "ceramic");
+  const auto decide = [&](double force, bool is_resting) {
+    Impact impact;
+    for (const double x : {-0.19, -0.15, -0.1, -0.05, 0.05, 0.1, 0.15, 0.19}) {
+      ImpactLoad load;
+      load.point_material = Vec3(x, 0.0, x * x > 0.03 ? -0.02 : 0.02);
+      load.direction = x * x > 0.03 ? Vec3::UnitZ() : Vec3(-Vec3::UnitZ());
+      load.impulse = force * impact.contact_average;
+      load.is_resting = is_resting;
+      impact.loads.push_back(load);
+    }
+    return decide_solid(subject, impact);
+  };
+  double force = 100.0;
+  while (decide(force, true).needed_no_solve()) force *= 1.5;
+  const SolidDecision together = decide(force, true), apart = decide(force, false);
+  REQUIRE(together.verdict.outcome == Outcome::held);
+  CHECK(together.verdict.ratio == Approx(apart.verdict.ratio).epsilon(0.01));
+  CHECK(together.verdict.place == apart.verdict.place);
+  CHECK(together.iterations < 0.4 * apart.iterations);
+  // How cracks go hangs on rounding: on average.
+  const double enough = 1.5 * force / together.verdict.ratio;
+  double area = 0.0, area_apart = 0.0;
+  for (const double times : {0.999, 0.9999, 1.0, 1.0001, 1.001}) {
+    const SolidDecision broken = decide(times * enough, true), by_itself = decide(times * enough, false);
+    REQUIRE(broken.verdict.outcome == Outcome::broke);
+    CHECK(broken.elastic_energy == Approx(by_itself.elastic_energy).epsilon(1e-6));
+    CHECK(broken.part_count == by_itself.part_count);
+    area += broken.new_area;
+    area_apart += by_itself.new_area;
+  }
+  CHECK(area == Approx(area_apart).epsilon(0.1));
+}
+
 TEST_CASE("decide solid: the verdict's stress is the beam's") {
   // A beam of 0.4 by 0.04 by 0.04 m, free, pressed in the middle for a given time: F L c / 8 I.
   const SolidSubject subject = box(Vec3(0.2, 0.02, 0.02), 0.008, "ceramic");

@@ -55,7 +55,7 @@ Impact hit_among(const std::vector<double>& resting) {
 
 struct Settled {
   VecX displacement, struck;
-  std::vector<bool> is_minor;
+  std::vector<bool> is_minor;  // when the body breaks
   double hardest = 0.0;
   int iterations = 0;
 };
@@ -68,8 +68,9 @@ Settled settled(const SolidSubject& subject, const Impact& impact) {
   REQUIRE(force.prepare(problem));
   REQUIRE(force.settle(decision, problem));
   Settled out{force.displacement(), {}, {}, force.presses().front().force, decision.iterations};
-  for (const SolidPress& press : force.presses()) out.is_minor.push_back(press.is_minor);
   out.struck = force.struck_displacement();
+  REQUIRE(force.complete(decision, problem));
+  for (const SolidPress& press : force.presses()) out.is_minor.push_back(press.is_minor);
   return out;
 }
 
