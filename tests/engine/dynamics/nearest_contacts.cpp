@@ -58,7 +58,7 @@ bool are_same(const std::vector<collision::Contact>& x, const std::vector<collis
 
 TEST_CASE("of very many features those contacts are kept that are kept of all, whatever is known of gaps") {
   core::Random random(3);
-  for (int n = 0; n < 8; ++n) {
+  for (int n = 0; n < 3; ++n) {
     const Dense dense(random);
     REQUIRE(dense.contacts.size() > 2000);
     std::vector<std::uint64_t> loaded;  // some that are contacts, and one that is not
@@ -68,7 +68,7 @@ TEST_CASE("of very many features those contacts are kept that are kept of all, w
     const struct {
       double radius;
       std::size_t cap;
-    } manifolds[] = {{0.08, 8}, {0.04, 16}, {0.3, 1000}, {0.0, 100000}};
+    } manifolds[] = {{0.08, 8}, {0.04, 16}, {0.3, 1000}, {0.0, 300}};
     for (const double off : {0.0, kGap, 20.0 * kGap}) {
       for (const auto& [radius, cap] : manifolds) {
         auto all = dense.contacts;
@@ -79,7 +79,8 @@ TEST_CASE("of very many features those contacts are kept that are kept of all, w
         CHECK(nearest.least_gap() == dense.least());
         CHECK(are_same(nearest.keep(loaded, 2.0 * kGap, {radius, cap}), all));
         // What was measured is known, and what was not stays a bound.
-        for (std::size_t i = 0; i < bounds.size(); ++i) REQUIRE(bounds[i] <= dense.gaps[i]);
+        CHECK(std::equal(bounds.begin(), bounds.end(), dense.gaps.begin(),
+                         [](float bound, double gap) { return bound <= gap; }));
       }
     }
   }
@@ -96,7 +97,7 @@ TEST_CASE("of very many features only those are measured that may be among the n
     for (std::size_t i = 0; i < bounds.size(); ++i) count += bounds[i] != before[i] ? 1 : 0;
     return static_cast<double>(count) / static_cast<double>(bounds.size());
   };
-  const double all = count_measured(0.1 * kGap, 100000);  // there are not so many
+  const double all = count_measured(0.1 * kGap, 1000);  // there are not so many
   CAPTURE(all);
   CHECK(count_measured(0.1 * kGap, 8) < 0.4 * all);
 }
