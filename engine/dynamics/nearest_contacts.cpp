@@ -42,10 +42,10 @@ float bound_of(double gap) {
 NearestContacts::NearestContacts(const WorkBody& a, const WorkBody& b, double usual_gap, const WorkPair& pair,
                                  std::vector<float>& start_gaps)
     : a_(a), b_(b), usual_gap_(usual_gap), pair_(pair), start_gaps_(start_gaps), least_(pair.margin) {
-  const double layers_to_metre = kLayers / pair.margin;
+  const double layers_per_metre = kLayers / pair.margin;
   layers_ = core::Buckets(kLayers, start_gaps.size(), [&](std::size_t i) {
     if (start_gaps[i] > pair.margin) return -1;
-    return std::clamp(static_cast<int>(layers_to_metre * start_gaps[i]), 0, static_cast<int>(kLayers) - 1);
+    return static_cast<int>(std::clamp(layers_per_metre * start_gaps[i], 0.0, kLayers - 1.0));
   });
 }
 
