@@ -15,7 +15,7 @@ LoadBound::LoadBound(const Impact& impact) : borne_ratio_(impact.resting_ratio.v
   }
 }
 
-double LoadBound::stress(double strength, double per_newton, double per_root_joule) const {
+double LoadBound::stress_at(double strength, double per_newton, double per_root_joule) const {
   const double hits = std::min(per_newton * hit_force_, per_root_joule * root_energy_);
   return borne_ratio_ * strength + per_newton * contact_force_ + hits;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -103,14 +104,31 @@ class LoadBound {
  public:
   explicit LoadBound(const Impact& impact);
 
-  /// Pa, where material of `strength` (Pa) is under `per_newton` (Pa/N) of what bends the body, and under
-  /// `per_root_joule` (Pa/J^1/2) of what energy may gather there: a hit does no more than either.
-  double stress(double strength, double per_newton, double per_root_joule) const;
-
-  /// Of what nothing is known.
-  static constexpr double kBoundless = 1e200;
+  /// Stress over strength where that is greatest, Pa.
+  struct Worst {
+    double stress = 0.0, strength = 0.0;
+  };
+  /// Of all places c, of which each bears `strength_of(c)` (Pa), and of which energy may gather in `rooms[c]`
+  /// (m2 or m3): under `spin` (Pa), `per_newton` (Pa/N) of what bends the body, and `per_root_joule`
+  /// (Pa/J^1/2, in a room of one); a hit does no more than its force or its energy. None if one may break.
+  template <class StrengthOf>
+  std::optional<Worst> harmless(const std::vector<double>& rooms, const StrengthOf& strength_of, double spin,
+                                double per_newton, double per_root_joule) const {
+    Worst worst;
+    for (std::size_t c = 0; c < rooms.size(); ++c) {
+      const double strength = strength_of(c);
+      const double gathered = rooms[c] > 0.0 ? per_root_joule / core::sqrt(rooms[c]) : kBoundless;
+      const double stress = spin + stress_at(strength, per_newton, gathered);
+      if (!(stress < strength)) return std::nullopt;
+      if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
+    }
+    return worst;
+  }
 
  private:
+  static constexpr double kBoundless = 1e200;
+  double stress_at(double strength, double per_newton, double per_root_joule) const;
+
   double root_energy_ = 0.0;    // J^1/2, of collisions
   double hit_force_ = 0.0;      // N, of collisions with a body that gives no way
   double contact_force_ = 0.0;  // N, of what else presses, and is not known to be borne

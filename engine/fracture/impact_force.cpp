@@ -108,27 +108,19 @@ bool ImpactForce::does_spin_crack() const {
   return false;
 }
 
-std::optional<ImpactForce::Bound> ImpactForce::harmless_bound() const {
+std::optional<LoadBound::Worst> ImpactForce::harmless_bound() const {
   if (impact_.given_duration) return std::nullopt;
   if (are_snapshots(impact_)) return std::nullopt;  // a spring too deep holds more than there is
-  const LoadBound bound(impact_);
   const stress::ShellFigures& figures = subject_.systems->figures();
   const double width = std::max(subject_.thickness, settings_.least_width);
   const double spin = kSpinSafety * spin_stress();
   const double per_newton = stress::bending_bound(subject_.thickness, width, figures.reach, 1.0);
-  const double per_root_energy = stress::stress_bound(properties_of(subject_), 1.0, 1.0);
+  const double per_root_joule = stress::stress_bound(properties_of(subject_), 1.0, 1.0);
   // Of two stresses von Mises' is at most sqrt(3) times the greater.
   const double flow = subject_.material.yield > 0.0 ? subject_.material.yield / core::sqrt(3.0) : 1e300;
-  Bound worst;
-  for (Size c = 0; c < subject_.mesh->cells.size(); ++c) {
-    const double area = figures.stressed_areas[c];
-    const double strength = std::min(borne_by(c), flow);
-    const double per_root_joule = area > 0.0 ? per_root_energy / core::sqrt(area) : LoadBound::kBoundless;
-    const double stress = spin + bound.stress(strength, per_newton, per_root_joule);
-    if (!(stress < strength)) return std::nullopt;
-    if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
-  }
-  return worst;
+  return LoadBound(impact_).harmless(
+      figures.stressed_areas, [&](Size c) { return std::min(borne_by(c), flow); }, spin, per_newton,
+      per_root_joule);
 }
 
 bool ImpactForce::use(const System& system, std::string& problem) {

@@ -34,10 +34,7 @@ class ImpactForce {
 
   /// Stress bound over strength, at the worst place, if kinetic energy and resting contact can break nothing;
   /// none if a solve has to tell.
-  struct Bound {
-    double stress = 0.0, strength = 0.0;  // Pa
-  };
-  std::optional<Bound> harmless_bound() const;
+  std::optional<LoadBound::Worst> harmless_bound() const;
 
   /// Duration of the hardest collision, by a fixed point over screenings; then the peak forces. Factors and
   /// times are booked in `decision`. False, and `problem` says why, if there is no answer.

@@ -103,31 +103,24 @@ bool SolidForce::is_spinning() const {
   return spin_stress() > kSolidSpinThatCounts * subject_.material.strength;
 }
 
-std::optional<SolidForce::Bound> SolidForce::harmless_bound() const {
+std::optional<LoadBound::Worst> SolidForce::harmless_bound() const {
   if (impact_.given_duration) return std::nullopt;
   if (are_snapshots(impact_)) return std::nullopt;  // a spring too deep holds more than there is
-  const LoadBound bound(impact_);
   const SolidModel& model = *subject_.model;
   if (!(model.width > 0.0)) return std::nullopt;
   const double spin = kSolidSpinSafety * spin_stress();
   const double per_newton = stress::bending_bound(model.width, model.width, model.reach, 1.0);
-  const double per_root_energy = stress::stress_bound(*model.stiffness, 1.0, 1.0);
+  const double per_root_joule = stress::stress_bound(*model.stiffness, 1.0, 1.0);
   // Of two stresses von Mises' is at most sqrt(3) times the greater.
   const double flow = subject_.material.yield > 0.0 ? subject_.material.yield / core::sqrt(3.0) : 1e300;
-  Bound worst;
-  for (Size c = 0; c < model.mesh.cells.size(); ++c) {
-    const double volume = model.stressed_volumes[c];
+  const auto strength_of = [&](Size c) {
     double strength = subject_.flaws->greatest_strength;
     // The weakest is the first; whether it lies in this cell of its element does not matter to a bound.
     if (const auto flaws = subject_.flaws->of_element(model.mesh.cells[c].element); !flaws.empty())
       strength = std::min(strength, flaws.front().strength);
-    strength = std::min(strength, flow);
-    const double per_root_joule = volume > 0.0 ? per_root_energy / core::sqrt(volume) : LoadBound::kBoundless;
-    const double stress = spin + bound.stress(strength, per_newton, per_root_joule);
-    if (!(stress < strength)) return std::nullopt;
-    if (stress * worst.strength >= worst.stress * strength) worst = {stress, strength};
-  }
-  return worst;
+    return std::min(strength, flow);
+  };
+  return LoadBound(impact_).harmless(model.stressed_volumes, strength_of, spin, per_newton, per_root_joule);
 }
 
 void SolidForce::find_groups() {
