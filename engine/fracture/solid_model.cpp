@@ -43,10 +43,8 @@ stress::SolidSkin make_skin(const geometry::SolidComplex& complex) {
       corners.push_back(number[at(vertex)]);
     }
     if (is_backwards) std::reverse(corners.begin(), corners.end());
-    for (Size i = 1; i + 1 < corners.size(); ++i) {
-      skin.mesh.triangles.push_back({corners[0], corners[i], corners[i + 1]});
-      skin.cells.push_back(is_backwards ? facet.cells[1] : facet.cells[0]);
-    }
+    for (Size i = 1; i + 1 < corners.size(); ++i)
+      skin.add({corners[0], corners[i], corners[i + 1]}, is_backwards ? facet.cells[1] : facet.cells[0]);
   }
   return skin;
 }

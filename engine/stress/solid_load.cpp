@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
@@ -73,38 +74,45 @@ TriangleShare share_of_triangle(const std::array<Vec3, 3>& corners, const SolidP
 
 constexpr double kSurely = 1.0 + 1e-9;  // times a squared distance: beyond its rounding
 
-/// m2, from a point to the boxes about all triangles: what is farther need not be looked at.
-std::vector<double> squared_distances_to_boxes(const SolidSkin& skin, const Vec3& point) {
-  std::vector<double> squared(skin.cells.size());
-  for (Size t = 0; t < squared.size(); ++t) {
-    const geometry::Triangle& corners = skin.mesh.triangles[t];
-    const Vec3 &a = skin.mesh.positions[at(corners[0])], &b = skin.mesh.positions[at(corners[1])],
-               &c = skin.mesh.positions[at(corners[2])];
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const double below = std::min({a[i], b[i], c[i]}) - point[i];
-      const double above = point[i] - std::max({a[i], b[i], c[i]});
-      const double apart = std::max({below, above, 0.0});
-      sum += apart * apart;
+double squared_distance(const geometry::Box& box, const Vec3& point) {
+  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
+}
+
+/// visit(triangle, corners) for those whose boxes are no farther from the point than a squared distance, m2,
+/// which visits may lessen.
+template <class Visit>
+void visit_near(const SolidSkin& skin, const Vec3& point, const double& farthest_squared,
+                const Visit& visit) {
+  for (Size block = 0; block < skin.blocks.size(); ++block) {
+    if (squared_distance(skin.blocks[block], point) > farthest_squared) continue;
+    const Size end = std::min((block + 1) * SolidSkin::kBlock, skin.cells.size());
+    for (Size t = block * SolidSkin::kBlock; t < end; ++t) {
+      const auto corners = triangle_corners(skin, static_cast<int>(t));
+      geometry::Box box;
+      for (const Vec3& corner : corners) box.include(corner);
+      if (!(squared_distance(box, point) > farthest_squared)) visit(static_cast<int>(t), corners);
     }
-    squared[t] = sum;
   }
-  return squared;
+}
+
+/// m2: some triangle is surely no farther.
+double squared_distance_of_some(const SolidSkin& skin, const Vec3& point) {
+  double least = 1e300;
+  for (const geometry::Box& block : skin.blocks)
+    least = std::min(least, (point - block.low).cwiseMax(block.high - point).squaredNorm());
+  return kSurely * least;
 }
 
 /// Triangles nearer than the radius to the centre and not turned away, that hang together with the first one;
-/// ascending. `squared` are the boxes' distances from a point that is `apart` (m) from the centre.
-std::vector<int> flood_skin(const SolidSkin& skin, int first, const SolidPatch& patch,
-                            const std::vector<double>& squared, double apart) {
+/// ascending.
+std::vector<int> flood_skin(const SolidSkin& skin, int first, const SolidPatch& patch) {
   std::vector<int> near;
-  const double farthest = kSurely * (patch.radius + apart) * (patch.radius + apart);
-  for (int t = 0; t < static_cast<int>(skin.cells.size()); ++t) {
-    if (t != first && squared[at(t)] > farthest) continue;
-    const auto corners = triangle_corners(skin, t);
-    if (twice_area_vector(corners).dot(patch.normal) <= 0.0) continue;
+  const double farthest_squared = kSurely * patch.radius * patch.radius;
+  visit_near(skin, patch.centre, farthest_squared, [&](int t, const std::array<Vec3, 3>& corners) {
+    if (twice_area_vector(corners).dot(patch.normal) <= 0.0) return;
     const auto nearest = geometry::closest_on_triangle(patch.centre, corners[0], corners[1], corners[2]);
     if (nearest.distance < patch.radius || t == first) near.push_back(t);
-  }
+  });
   core::DisjointSets sets(skin.mesh.positions.size());
   for (const int t : near)
     for (const int v : skin.mesh.triangles[at(t)]) sets.unite(v, skin.mesh.triangles[at(t)][0]);
@@ -120,14 +128,23 @@ void add_share(const geometry::SolidMesh& mesh, const SolidPatchShare& share, co
 
 }  // namespace
 
+void SolidSkin::add(const geometry::Triangle& triangle, int cell) {
+  if (cells.size() % kBlock == 0) blocks.emplace_back();
+  for (const int vertex : triangle) blocks.back().include(mesh.positions[at(vertex)]);
+  mesh.triangles.push_back(triangle);
+  cells.push_back(cell);
+}
+
 SolidSkin make_border_skin(const geometry::SolidMesh& mesh) {
   const geometry::SolidElements& elements = *mesh.elements;
+  geometry::TriangleMesh border = geometry::boundary_surface(elements.mesh, elements.topology);
   SolidSkin skin;
-  skin.mesh = geometry::boundary_surface(elements.mesh, elements.topology);
+  skin.mesh.positions = std::move(border.positions);
+  auto next = border.triangles.begin();
   // In the order of boundary_surface.
   for (Size c = 0; c < mesh.cells.size(); ++c)
     for (const int face : elements.topology.tetrahedron_faces[at(mesh.cells[c].element)])
-      if (elements.topology.face_tetrahedra[at(face)][1] < 0) skin.cells.push_back(static_cast<int>(c));
+      if (elements.topology.face_tetrahedra[at(face)][1] < 0) skin.add(*next++, static_cast<int>(c));
   return skin;
 }
 
@@ -136,17 +153,15 @@ SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& ski
   SolidPatch patch;
   patch.radius = radius;
   int first = -1;
-  double least = 0.0;
-  const std::vector<double> squared = squared_distances_to_boxes(skin, point);
-  for (int t = 0; t < static_cast<int>(skin.cells.size()); ++t) {
-    if (first >= 0 && squared[at(t)] > kSurely * least * least) continue;
-    const auto corners = triangle_corners(skin, t);
+  double least = 0.0, farthest_squared = squared_distance_of_some(skin, point);
+  visit_near(skin, point, farthest_squared, [&](int t, const std::array<Vec3, 3>& corners) {
     const auto nearest = geometry::closest_on_triangle(point, corners[0], corners[1], corners[2]);
-    if (first >= 0 && !(nearest.distance < least)) continue;
+    if (first >= 0 && !(nearest.distance < least)) return;
     first = t;
     least = nearest.distance;
+    farthest_squared = std::min(farthest_squared, kSurely * least * least);
     patch.centre = nearest.closest;
-  }
+  });
   if (first < 0) return patch;
   patch.nearest_cell = skin.cells[at(first)];
   const Vec3 area = twice_area_vector(triangle_corners(skin, first));
@@ -156,7 +171,7 @@ SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& ski
   std::map<int, TriangleShare> by_cell;
   double sum = 0.0;
   if (radius > 0.0)
-    for (const int t : flood_skin(skin, first, patch, squared, least)) {
+    for (const int t : flood_skin(skin, first, patch)) {
       const TriangleShare share = share_of_triangle(triangle_corners(skin, t), patch);
       if (!(share.weight > 0.0)) continue;
       TriangleShare& whole = by_cell[skin.cells[at(t)]];

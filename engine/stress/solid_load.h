@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/vec.h"
+#include "engine/geometry/bvh.h"
 #include "engine/geometry/solid_mesh.h"
 #include "engine/stress/solid_stiffness.h"
 
@@ -15,7 +16,12 @@ namespace shatterbox::stress {
 /// cell whose material lies behind each.
 struct SolidSkin {
   geometry::TriangleMesh mesh;
-  std::vector<int> cells;  // |T|
+  std::vector<int> cells;             // |T|
+  std::vector<geometry::Box> blocks;  // about so many triangles each, in their order
+  static constexpr std::size_t kBlock = 32;
+
+  /// A triangle of vertices that are there.
+  void add(const geometry::Triangle& triangle, int cell);
 };
 
 /// The border of an uncut mesh that ends where its elements end.

@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "engine/core/random.h"
+#include "engine/geometry/closest_points.h"
 #include "tests/engine/stress/solid_meshes.h"
 
 using namespace shatterbox;
@@ -63,6 +65,32 @@ TEST_CASE("a solid's load patch is a paraboloid about the nearest point of the s
   CHECK(second == Approx(0.16 / 3.0).epsilon(0.03));
 }
 
+TEST_CASE("a solid's load patch is about the nearest of all points of a skin of many blocks") {
+  const Solids solids = lattice_box(Vec3(0.5, 0.4, 0.3), 0.06);
+  const geometry::SolidMesh mesh = make_solid_mesh(solids);
+  const SolidSkin skin = make_border_skin(mesh);
+  REQUIRE(skin.blocks.size() == (skin.cells.size() + SolidSkin::kBlock - 1) / SolidSkin::kBlock);
+  REQUIRE(skin.blocks.size() > 20);
+  core::Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 point(random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7));
+    double least = 1e300;
+    size_t nearest = 0;
+    for (size_t t = 0; t < skin.cells.size(); ++t) {
+      const geometry::Triangle& corners = skin.mesh.triangles[t];
+      const auto found = geometry::closest_on_triangle(point, skin.mesh.positions[at(corners[0])],
+                                                       skin.mesh.positions[at(corners[1])],
+                                                       skin.mesh.positions[at(corners[2])]);
+      if (!(found.distance < least)) continue;
+      least = found.distance;
+      nearest = t;
+    }
+    const SolidPatch patch = find_load_patch(mesh, skin, point, 0.1);
+    CHECK((patch.centre - point).norm() == Approx(least));
+    CHECK(patch.nearest_cell == skin.cells[nearest]);
+  }
+}
+
 TEST_CASE("a solid's patch: all on one point if it is small, round an edge, never through a wall") {
   const Solids solids = lattice_box(Vec3(0.5, 0.5, 0.05), 0.05);
   const geometry::SolidMesh mesh = make_solid_mesh(solids);
@@ -92,7 +120,7 @@ TEST_CASE("a solid's cracked patch falls into groups that share the load") {
   const Vec3 normal = Vec3(1.0, 0.1, 0.0);
   const CutSolid cut = cut_by_plane(whole, normal, 0.03);
   SolidSkin cut_skin;
-  cut_skin.mesh = skin.mesh;
+  cut_skin.mesh.positions = skin.mesh.positions;
   for (size_t t = 0; t < skin.cells.size(); ++t) {
     Vec3 centre = Vec3::Zero();
     for (const int v : skin.mesh.triangles[t]) centre += skin.mesh.positions[at(v)] / 3.0;
@@ -103,7 +131,7 @@ TEST_CASE("a solid's cracked patch falls into groups that share the load") {
           (normal.dot(cell_centroid(cut.mesh, cut.mesh.cells[c])) > 0.03) == is_ahead)
         cell = static_cast<int>(c);
     REQUIRE(cell >= 0);
-    cut_skin.cells.push_back(cell);
+    cut_skin.add(skin.mesh.triangles[t], cell);
   }
   const SolidPatch cracked = find_load_patch(cut.mesh, cut_skin, Vec3(0.0, 0.0, 0.5), 0.25);
   const auto groups = group_patch(cut.mesh, cracked);
