@@ -208,11 +208,19 @@ void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, con
 
 void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
   if (!settings.has_sleep) return;
-  std::vector<char> is_held(bodies.size(), 0);
+  std::vector<char> is_held(bodies.size(), 0), is_parting(bodies.size(), 0);
+  // What brings bodies out of each other leaves them no speed.
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_exempt) continue;
+    for (const BodyId id : {pair.body_a, pair.body_b})
+      if (const int i = find_number(bodies, id); i >= 0) is_parting[static_cast<std::size_t>(i)] = 1;
+  }
   bool anyone_tired = false;
-  for (Body& b : bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake) continue;
-    const bool is_still = is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
+    const bool is_still =
+        !is_parting[i] && is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
     // Or it trembles in a nest, without getting anywhere.
     BodyState* memory = find_memory(state, b.id);
     const bool stays = memory != nullptr && stays_near(settings, b, memory->rest_pose);

@@ -84,6 +84,23 @@ TEST_CASE("blocks that touch, or are in each other by a micrometre, are set asid
   }
 }
 
+TEST_CASE("what begins half in the floor is brought out of it before it sleeps") {
+  test::Scene scene;
+  scene.add(test::make_plane());
+  const double half = 0.2;
+  scene.add(test::make_box(Vec3::Constant(half), Vec3(0, 0.5 * half, 0)));
+  scene.add(make_solid_block(Vec3::Constant(half), Vec3(1, 0.5 * half, 0)));
+  scene.add(test::make_sphere(half, Vec3(2, 0.25 * half, 0)));
+  for (int i = 0; i < 1200; ++i) scene.step();
+  for (std::size_t k = 1; k < scene.bodies.size(); ++k) {
+    INFO("body " << k);
+    CHECK(!scene.bodies[k].is_awake);
+    const double height = scene.bodies[k].pose.translation.y() - half;
+    CHECK(height >= 0.0);
+    CHECK(height <= 1.1 * scene.settings.kept_gap * 2.0 * scene.bodies[k].shape->bounding_radius);
+  }
+}
+
 TEST_CASE("a capsule whose axis goes through a sheet falls with it") {
   test::Scene scene;
   body::Body sheet = test::make_shell(test::square_mesh(0.1, 3));
