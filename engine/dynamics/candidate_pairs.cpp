@@ -240,9 +240,7 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
     if (!w.is_active || (!w.is_scripted && is_quiet(settings, w.velocity, w.spin, w.reach))) continue;
     const bool is_strong = could_move(settings, a_sleeps ? b : a, a_sleeps ? a : b);
     for (const Contact& c : pair.contacts) {
-      const Vec3 arm = (a_sleeps ? c.on_b : c.on_a) - w.start.translation;
-      const Vec3 towards = a_sleeps ? c.normal : Vec3(-c.normal);
-      const double closing = towards.dot(w.velocity + w.spin.cross(arm));
+      const double closing = closing_on_sleeper(w, c, a_sleeps);
       if (c.gap > 2.0 * pair.kept_gap + std::max(0.0, closing * settings.time_step)) continue;
       const bool is_hit = closing > pair.threshold;
       if (!is_hit && !is_strong) continue;

@@ -46,10 +46,11 @@ double wanted_separation(double gap, double kept_gap) {
 
 class Guard {
  public:
-  Guard(const std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
-        MotionWork& work, ContactReport& report)
+  Guard(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+        const std::vector<char>& slept, ContactState& state, MotionWork& work, ContactReport& report)
       : bodies_(bodies),
         settings_(settings),
+        slept_(slept),
         state_(state),
         work_(work),
         report_(report),
@@ -68,7 +69,11 @@ class Guard {
     bool has_hits = test();
     // One who is hit may hit the next: that is followed where hits are taken one by one.
     const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
-    for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) has_hits = test();
+    if (wakes_sleepers()) return;
+    for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) {
+      has_hits = test();
+      if (wakes_sleepers()) return;
+    }
     report_.is_unfinished = has_hits && work_.is_trial;
     if (report_.is_unfinished) return;
     has_hits = open_in_rounds(has_hits);
@@ -135,6 +140,16 @@ class Guard {
       was_hit_[p] = 1;
     }
     return !hit_.empty();
+  }
+
+  // Who is struck in his sleep by what others set in motion in this step is no wall.
+  bool wakes_sleepers() {
+    if (slept_.empty()) return false;
+    std::vector<SleeperHit> hits;
+    for (const std::size_t p : hit_)
+      for (const PathHit& hit : hits_[p]) hits.push_back({static_cast<int>(p), hit.contact});
+    find_struck_sleepers(bodies_, settings_, slept_, hits, work_);
+    return !work_.to_wake.empty();
   }
 
   // Of the pairs that are due, those whose tests cannot be recalled.
@@ -601,6 +616,7 @@ class Guard {
 
   const std::vector<body::Body>& bodies_;
   const ContactSettings& settings_;
+  const std::vector<char>& slept_;  // per body, when the step began; empty: nobody sleeps
   ContactState& state_;
   MotionWork& work_;
   ContactReport& report_;
@@ -623,9 +639,10 @@ class Guard {
 
 }  // namespace
 
-void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
-                  MotionWork& work, ContactReport& report) {
-  if (!work.pairs.empty()) Guard(bodies, settings, state, work, report).run();
+void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                  const std::vector<char>& slept, ContactState& state, MotionWork& work,
+                  ContactReport& report) {
+  if (!work.pairs.empty()) Guard(bodies, settings, slept, state, work, report).run();
 }
 
 }  // namespace shatterbox::dynamics

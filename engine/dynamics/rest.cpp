@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/step_motion.h"
 
 namespace shatterbox::dynamics {
@@ -15,6 +16,8 @@ namespace {
 using body::Body;
 using body::BodyId;
 
+constexpr double kNoticed =
+    10.0;  // times the least momentum: what gives a sleeper the speed of one who moves
 constexpr double kItAlone = std::numeric_limits<double>::min();  // kg m/s: wakes, and goes no further
 
 int find_number(const std::vector<Body>& bodies, BodyId id) {
@@ -194,6 +197,41 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
     }
   }
   rouse(bodies, settings, state, std::move(momentum));
+}
+
+double closing_on_sleeper(const WorkBody& mover, const collision::Contact& contact, bool sleeper_is_a) {
+  const Vec3 arm = (sleeper_is_a ? contact.on_b : contact.on_a) - mover.start.translation;
+  const Vec3 towards = sleeper_is_a ? contact.normal : Vec3(-contact.normal);
+  return towards.dot(mover.velocity + mover.spin.cross(arm));
+}
+
+void find_struck_sleepers(const std::vector<Body>& bodies, const ContactSettings& settings,
+                          const std::vector<char>& slept, const std::vector<SleeperHit>& hits,
+                          MotionWork& work) {
+  const auto sleeps = [&](int i) {
+    const Body& b = bodies[static_cast<std::size_t>(i)];
+    return b.is_dynamic() && !b.is_awake;
+  };
+  // Who was himself woken in this step passes on what others give him; of all others a hit alone wakes.
+  const auto note = [&](const WorkPair& pair, double closing, double momentum) {
+    const bool a_sleeps = sleeps(pair.a);
+    const Body& sleeper = bodies[static_cast<std::size_t>(a_sleeps ? pair.a : pair.b)];
+    const bool was_woken = slept[static_cast<std::size_t>(a_sleeps ? pair.b : pair.a)] != 0;
+    if (closing > pair.threshold || (was_woken && momentum > kNoticed * least_momentum(settings, sleeper)))
+      work.to_wake.push_back({sleeper.id, momentum});
+  };
+  for (const SolverContact& c : work.contacts) {
+    if (sleeps(c.a) == sleeps(c.b) || c.was_loaded) continue;
+    note(work.pairs[static_cast<std::size_t>(c.pair)], c.closing_speed, c.total.norm());
+  }
+  for (const SleeperHit& hit : hits) {
+    const WorkPair& pair = work.pairs[static_cast<std::size_t>(hit.pair)];
+    if (sleeps(pair.a) == sleeps(pair.b)) continue;
+    const WorkBody& mover = work.bodies[static_cast<std::size_t>(sleeps(pair.a) ? pair.b : pair.a)];
+    if (!(mover.inverse_mass > 0.0)) continue;
+    const double closing = closing_on_sleeper(mover, hit.contact, sleeps(pair.a));
+    note(pair, closing, std::max(0.0, closing) / mover.inverse_mass);
+  }
 }
 
 void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, const ContactState& state,

@@ -5,10 +5,14 @@
 #include <vector>
 
 #include "engine/body/body.h"
+#include "engine/collision/contact.h"
 #include "engine/dynamics/contact_settings.h"
 #include "engine/dynamics/contact_state.h"
 
 namespace shatterbox::dynamics {
+
+struct WorkBody;
+class MotionWork;
 
 /// Closing speed, m/s, that resting contact never reaches: what gravity gives within two steps, and over a
 /// few gaps.
@@ -28,6 +32,20 @@ struct Disturbance {
   body::BodyId body = 0;  // the sleeper
   double momentum = 0.0;  // kg m/s: what goes on to others; infinite of what no impulse moves
 };
+
+/// m/s: how fast a body comes down on a sleeper where they met or meet, as it moves now.
+double closing_on_sleeper(const WorkBody& mover, const collision::Contact& contact, bool sleeper_is_a);
+
+/// Notes in `work.to_wake` who is struck in his sleep in a step that was solved: the solver and the
+/// continuous pass take him for a wall, though who strikes was set in motion only in the step. `slept`: who
+/// of `bodies` slept when it began. `hits`: where pairs (numbers of them) meet on their ways.
+struct SleeperHit {
+  int pair = 0;
+  collision::Contact contact;
+};
+void find_struck_sleepers(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                          const std::vector<char>& slept, const std::vector<SleeperHit>& hits,
+                          MotionWork& work);
 
 /// Wakes the sleepers named, and from neighbour to neighbour all whom the momentum could move noticeably.
 void wake_struck(std::vector<body::Body>& bodies, const ContactSettings& settings, const ContactState& state,

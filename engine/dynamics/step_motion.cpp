@@ -375,6 +375,28 @@ std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const 
   return StepPart{part.number * finer, part.count * finer};
 }
 
+namespace {
+
+// Who may meet whom, when all are awake whom the awake come upon, and whom that could move: few rounds.
+void find_awake_pairs(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
+                      MotionWork& work) {
+  find_candidate_pairs(bodies, settings, state, work);
+  while (!work.to_wake.empty()) {
+    wake_struck(bodies, settings, state, work.to_wake);
+    find_candidate_pairs(bodies, settings, state, work);
+  }
+}
+
+// Per body; empty: nobody does.
+std::vector<char> find_sleepers(const std::vector<Body>& bodies) {
+  std::vector<char> sleeps(bodies.size(), 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) sleeps[i] = bodies[i].is_dynamic() && !bodies[i].is_awake;
+  if (std::find(sleeps.begin(), sleeps.end(), 1) == sleeps.end()) sleeps.clear();
+  return sleeps;
+}
+
+}  // namespace
+
 ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settings, const StepPart& part,
                         ContactState& state, body::ImpulseLog& log) {
   ContactSettings own = settings;
@@ -383,27 +405,33 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   own.substeps *= finer_substeps(own, state);
   begin_taking(own, part, *state.shelf);
   aim_scripted(bodies, own.time_step);
+  const std::vector<char> slept = find_sleepers(bodies);
   wake_bodies(bodies, own, state);
   ContactReport report;
   MotionWork work;
-  find_candidate_pairs(bodies, own, state, work);
-  // Few rounds: each wakes whom the bodies that are awake come upon, and all whom that could move.
-  while (!work.to_wake.empty()) {
-    wake_struck(bodies, own, state, work.to_wake);
-    find_candidate_pairs(bodies, own, state, work);
-  }
+  find_awake_pairs(bodies, own, state, work);
   // As many rounds as bodies lie in one place, at most.
   for (std::size_t round = 0; round < bodies.size(); ++round) {
     if (!part_coincident(bodies, own, state, work, report.parted)) break;
     find_candidate_pairs(bodies, own, state, work);
   }
-  if (part.may_return)
-    put_on_shelf(work, state);
-  else
-    state.shelf->pairs.clear();
-  work.is_trial = part.is_trial;
-  solve_motion(bodies, own, work);
-  guard_motion(bodies, own, state, work, report);
+  // Each round wakes somebody.
+  for (;;) {
+    if (part.may_return)
+      put_on_shelf(work, state);
+    else
+      state.shelf->pairs.clear();
+    work.is_trial = part.is_trial;
+    solve_motion(bodies, own, work);
+    ContactReport guarded = report;
+    guard_motion(bodies, own, slept, state, work, guarded);
+    if (work.to_wake.empty()) {
+      report = std::move(guarded);
+      break;
+    }
+    wake_struck(bodies, own, state, work.to_wake);
+    find_awake_pairs(bodies, own, state, work);
+  }
   const std::size_t first = log.size();
   finish_motion(bodies, state, work, log, report);
   count_near(settings, work, report);

@@ -121,9 +121,11 @@ void find_missed_pairs(const std::vector<body::Body>& bodies, const ContactSetti
                        ContactState& state, MotionWork& work);
 
 /// Stage: no vertex path may cross another surface; hits are opened again in position and tested again, at
-/// last by cutting steps short.
-void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
-                  MotionWork& work, ContactReport& report);
+/// last by cutting steps short. Ends at once, with nothing done, where somebody is struck in his sleep: who,
+/// is in `work.to_wake`. `slept`: who of `bodies` slept when the step began; empty: nobody sleeps.
+void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& settings,
+                  const std::vector<char>& slept, ContactState& state, MotionWork& work,
+                  ContactReport& report);
 
 /// Stage: writes end poses and velocities to `bodies`, impulses to `log`, warm start to `state`.
 void finish_motion(std::vector<body::Body>& bodies, ContactState& state, MotionWork& work,

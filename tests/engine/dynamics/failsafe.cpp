@@ -21,7 +21,7 @@ void step_by_failsafe(test::Scene& scene) {
   work.islands.clear();
   for (auto& body : work.bodies) body.is_free = true;
   dynamics::solve_motion(scene.bodies, settings, work);
-  dynamics::guard_motion(scene.bodies, settings, scene.state, work, scene.report);
+  dynamics::guard_motion(scene.bodies, settings, {}, scene.state, work, scene.report);
   dynamics::finish_motion(scene.bodies, scene.state, work, scene.log, scene.report);
 }
 
