@@ -8,6 +8,7 @@
 #include "engine/body/polyhedron.h"
 #include "engine/geometry/bvh.h"
 #include "engine/world/forms.h"
+#include "sandbox/scene/build_mesh.h"
 #include "sandbox/scene/parts.h"
 #include "sandbox/script/room.h"
 #include "sandbox/script/script.h"
@@ -42,6 +43,25 @@ void doubt_thickness(const scene::SceneDescription& scene, const scene::BuiltSce
                 fmt::format("the shell \"{}\" is {:.3g} m thick, and {:.3g} m across", scene.bodies[i].name,
                             shell->thickness, across),
                 "thickness is in metres, 2 mm are 0.002; what is thick throughout is kind = \"solid\"");
+  }
+}
+
+/// Sheets from files of so few triangles that they hardly bend: their stress is told far too low.
+void doubt_triangles(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                     scene::Problems& doubts) {
+  constexpr std::size_t kFewTriangles = 500;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& entry = scene.bodies[i];
+    const scene::MeshForm* form = scene::find_mesh_form(entry.form);
+    const auto* shell = std::get_if<world::ShellDescription>(&built.plan.bodies[i].description.form);
+    if (form == nullptr || shell == nullptr || !scene::can_break(entry)) continue;
+    if (!std::holds_alternative<scene::MeshFileShape>(form->shape)) continue;
+    if (shell->mesh.triangles.size() >= kFewTriangles) continue;
+    scene::book(doubts, entry.place,
+                fmt::format("\"{}\" has {} triangles: so few hardly bend, and its stress is told too low",
+                            entry.name, shell->mesh.triangles.size()),
+                fmt::format("edge_length = {:.2g} divides them into some thousands",
+                            scene::usual_edge_length(shell->mesh)));
   }
 }
 
@@ -376,6 +396,7 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
 scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
   scene::Problems doubts;
   doubt_thickness(scene, built, doubts);
+  doubt_triangles(scene, built, doubts);
   doubt_sizes(scene, built, doubts);
   doubt_criterion(scene, built, doubts);
   doubt_room(scene, built, doubts);

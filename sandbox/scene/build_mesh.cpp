@@ -6,6 +6,8 @@
 
 #include "engine/core/elementary.h"
 #include "engine/geometry/edge_topology.h"
+#include "engine/geometry/finer_triangles.h"
+#include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/geometry/mesh_diagnosis.h"
 #include "sandbox/scene/mesh_file.h"
@@ -91,6 +93,11 @@ double coarse_edge(const MeshShape& shape) {
   return 0.1 * std::min(pane.width, pane.height);
 }
 
+/// m, of so many triangles that are alike.
+double edge_length_of(const geometry::TriangleMesh& mesh, double triangles) {
+  return core::sqrt(geometry::surface_area(mesh) / triangles * 4.0 / core::sqrt(3.0));
+}
+
 core::Result<geometry::PartedMesh> generate(const MeshForm& form) {
   Generate generator;
   if (form.edge_length) {
@@ -102,10 +109,9 @@ core::Result<geometry::PartedMesh> generate(const MeshForm& form) {
   if (!coarse || std::holds_alternative<geometry::BoatSizes>(form.shape) ||
       std::holds_alternative<SlabShape>(form.shape))
     return coarse;
-  const double area = geometry::surface_area(coarse.value().mesh);
   const bool is_figure = std::holds_alternative<FigureShape>(form.shape);
-  const double triangle_area = area / (is_figure ? kTrianglesOfFigure : kUsualTriangles);
-  generator.meshing.edge_length = core::sqrt(triangle_area * 4.0 / core::sqrt(3.0));
+  generator.meshing.edge_length =
+      edge_length_of(coarse.value().mesh, is_figure ? kTrianglesOfFigure : kUsualTriangles);
   return std::visit(generator, form.shape);
 }
 
@@ -181,7 +187,26 @@ bool fit(geometry::TriangleMesh& mesh, const MeshForm& form, const Place& place,
   return false;
 }
 
+/// Makes the triangles of a file no larger than that, m.
+bool divide(double edge_length, const Place& place, BuiltMesh& built, Problems& problems) {
+  // Halving overshoots: there may be four times as many as of that length.
+  if (edge_length < edge_length_of(built.mesh, geometry::kMostTriangles / 4.0)) {
+    book(problems, place,
+         fmt::format("an edge length of {:g} m would make millions of triangles", edge_length),
+         fmt::format("with edge_length = {:.2g} there are about {:.0f}", usual_edge_length(built.mesh),
+                     kUsualTriangles));
+    return false;
+  }
+  built.mesh = geometry::divide_long_edges(built.mesh, edge_length);
+  built.parts.assign(built.mesh.triangles.size(), static_cast<std::uint8_t>(geometry::Part::body));
+  return true;
+}
+
 }  // namespace
+
+double usual_edge_length(const geometry::TriangleMesh& mesh) {
+  return edge_length_of(mesh, kUsualTriangles);
+}
 
 std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Problems& problems,
                                     std::vector<std::string>& notes) {
@@ -201,6 +226,7 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
   for (const geometry::Part part : parted->parts) built.parts.push_back(static_cast<std::uint8_t>(part));
   if (!fit(built.mesh, form, place, problems)) return std::nullopt;
   if (const auto* files = std::get_if<MeshFileShape>(&form.shape)) {
+    if (form.edge_length && !divide(*form.edge_length, files->place, built, problems)) return std::nullopt;
     const Bounds bounds = bounds_of(built.mesh.positions);
     const double across = (bounds.most - bounds.least).maxCoeff();
     if (across > kHardlyMeant)

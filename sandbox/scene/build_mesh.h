@@ -18,6 +18,9 @@ struct BuiltMesh {
   std::vector<std::uint8_t> parts;  // per triangle: geometry::Part
 };
 
+/// m: edges of about as many triangles as generated meshes have that ask for no other.
+double usual_edge_length(const geometry::TriangleMesh& mesh);
+
 /// Builds the mesh of `form`. Nothing if it cannot be had, with problems at `place`; what was mended goes to
 /// `notes`.
 std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Problems& problems,

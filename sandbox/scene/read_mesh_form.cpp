@@ -237,7 +237,12 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
   }
   if (reader.has("mesh")) {
     if (auto files = read_mesh_files(reader, scene)) form.shape = std::move(*files);
-    reader.foreign(kShapeKeys, "sizes belong to a shape; a mesh takes scale or size = [x, y, z]");
+    std::vector<std::string> foreign = kShapeKeys;
+    if (&shapes == &kShellShapes) {
+      form.edge_length = reader.number("edge_length", extent());
+      std::erase(foreign, "edge_length");
+    }
+    reader.foreign(foreign, "sizes belong to a shape; a mesh takes scale or size = [x, y, z]");
     form.size = reader.vector("size", extent());
     reader.value("shape");
   } else {

@@ -73,7 +73,8 @@ struct CapsuleForm {
 };
 struct MeshForm {
   MeshShape shape;
-  std::optional<double> edge_length;  // m, of generated meshes; nothing: kUsualTriangles, a boat 300
+  // m, of generated meshes, nothing: kUsualTriangles, a boat 300; of a shell's file at most, nothing: as it is
+  std::optional<double> edge_length;
   Vec3 scale = Vec3::Ones();
   std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
   bool up_is_z = false;      // the mesh's z axis points up in the scene

@@ -33,6 +33,17 @@ TEST_CASE("a shell that is nearly as thick as wide is doubted") {
   CHECK(doubts_of(bowl + "0.003\n").empty());
 }
 
+TEST_CASE("a sheet from a file of few triangles is doubted, until they are divided") {
+  const std::string stone = std::string("[[body]]\nname = \"tank\"\nkind = \"shell\"\nmesh = \"") +
+                            SHATTERBOX_SOURCE_DIR + "/scenes/meshes/voussoir.obj\"\nthickness = 0.003\n";
+  const std::string doubt = doubts_of(stone);
+  CHECK(has(doubt, "t.toml:1:1: \"tank\" has 12 triangles: so few hardly bend"));
+  CHECK(has(doubt, "edge_length = "));
+  CHECK(doubts_of(stone + "edge_length = 0.02\n").empty());
+  CHECK(doubts_of(stone + "breakable = false\n").empty());
+  CHECK(has(scene::describe(scene::read(stone + "edge_length = -1\n").problems), "edge_length"));
+}
+
 TEST_CASE(
     "a joint far from both whom it holds is doubted, and what waits for a break where nothing can break") {
   const std::string crate = kCrate;
