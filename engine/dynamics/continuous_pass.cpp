@@ -78,6 +78,7 @@ class Guard {
     if (report_.is_unfinished) return;
     has_hits = open_in_rounds(has_hits);
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
+    if (!work_.to_wake.empty()) return;
     content_with_less();
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
     // great shards cannot hold them apart by its mass.
@@ -195,6 +196,7 @@ class Guard {
       const bool is_last = round + 1 == settings_.continuous_rounds;
       open(is_last ? kLastOpening : kOpening, Yielding::by_mass);
       has_hits = test();
+      if (wakes_sleepers()) return false;
     }
     return has_hits;
   }

@@ -155,14 +155,16 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
                            &other = entry_of(scene, built, *inside.b);
     const bool is_floor = inside.b->shape->kind == ShapeKind::plane;
     const scene::BodyEntry& later = own.place.line > other.place.line || is_floor ? own : other;
+    const bool holds = !is_floor && inside.a->shape->bounding_radius > inside.b->shape->bounding_radius;
+    const Body &inner = holds ? *inside.b : *inside.a, &outer = holds ? *inside.a : *inside.b;
     scene::book(
         doubts, later.place,
-        fmt::format(
-            "\"{}\" begins inside {}\"{}\"{}", inside.a->name, is_floor ? "the plane " : "", inside.b->name,
-            inside.others == 0
-                ? ""
-                : fmt::format(", and {} more such pair{}", inside.others, inside.others > 1 ? "s" : "")),
-        "they pass each other until they have come apart: move one of them, or give copies more spacing");
+        fmt::format("\"{}\" begins inside {}\"{}\"{}", inner.name, is_floor ? "the plane " : "", outer.name,
+                    inside.others == 0 ? ""
+                                       : fmt::format(", and {} more such pair{}", inside.others,
+                                                     inside.others > 1 ? "s" : "")),
+        "what is solid is brought out slowly, sheets pass each other: move one of them, or give copies more "
+        "spacing");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "engine/core/random.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/step_motion.h"
+#include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 
 namespace shatterbox::test {
@@ -65,6 +66,16 @@ inline body::Body make_box(const Vec3& half, const Vec3& position, bool is_dynam
   shape->inertia = Vec3(s.y() + s.z(), s.z() + s.x(), s.x() + s.y()).asDiagonal();
   shape->inertia *= shape->mass / 3.0;
   return make_body(shape, position, is_dynamic);
+}
+
+/// The same as a solid that ends at its surface.
+inline body::Body make_solid_block(const Vec3& half, const Vec3& position, double density = 1000.0) {
+  const body::Body box = make_box(half, position, true, density);
+  auto shape = std::make_shared<body::Shape>(*box.shape);
+  shape->kind = body::ShapeKind::solid;
+  shape->surface = geometry::make_box_surface(half);
+  shape->topology = geometry::build_edge_topology(shape->surface.triangles);
+  return make_body(shape, position, true);
 }
 
 /// A shell of 2.5 kg/m2 from a mesh in the world; its centre of mass becomes the body's origin.

@@ -2,20 +2,10 @@
 // nothing.
 #include <catch2/catch.hpp>
 
-#include "engine/geometry/generators.h"
 #include "tests/engine/dynamics/bodies.h"
 
 namespace shatterbox {
 namespace {
-
-body::Body make_solid_block(const Vec3& half, const Vec3& position) {
-  const body::Body box = test::make_box(half, position);
-  auto shape = std::make_shared<body::Shape>(*box.shape);
-  shape->kind = body::ShapeKind::solid;
-  shape->surface = geometry::make_box_surface(half);
-  shape->topology = geometry::build_edge_topology(shape->surface.triangles);
-  return test::make_body(shape, position, true);
-}
 
 struct Fall {
   double least = 1e300;  // m, of the falls
@@ -61,9 +51,9 @@ TEST_CASE("blocks in each other with their sides in one plane fall as if alone")
     INFO("beside by " << beside.transpose());
     for (const bool is_box : {false, true}) {
       test::Scene scene;
-      scene.add(make_solid_block(half, Vec3(0.3, 1.0, 0.2)));
+      scene.add(test::make_solid_block(half, Vec3(0.3, 1.0, 0.2)));
       scene.add(is_box ? test::make_box(half, Vec3(0.3, 1.0, 0.2) + beside)
-                       : make_solid_block(half, Vec3(0.3, 1.0, 0.2) + beside));
+                       : test::make_solid_block(half, Vec3(0.3, 1.0, 0.2) + beside));
       check_free_fall(scene);
     }
   }
@@ -75,8 +65,8 @@ TEST_CASE("blocks that touch, or are in each other by a micrometre, are set asid
                              Vec3(0, 0.069999, 0), Vec3(0.12, 0.069999, 0)}) {
     INFO("beside by " << beside.transpose());
     test::Scene scene;
-    scene.add(make_solid_block(half, Vec3(0, 1, 0)));
-    scene.add(make_solid_block(half, Vec3(0, 1, 0) + beside));
+    scene.add(test::make_solid_block(half, Vec3(0, 1, 0)));
+    scene.add(test::make_solid_block(half, Vec3(0, 1, 0) + beside));
     const Fall fall = watch_fall(scene, 24);
     CHECK(fall.named == 0);
     CHECK(fall.parted == 1);
@@ -89,7 +79,7 @@ TEST_CASE("what begins half in the floor is brought out of it before it sleeps")
   scene.add(test::make_plane());
   const double half = 0.2;
   scene.add(test::make_box(Vec3::Constant(half), Vec3(0, 0.5 * half, 0)));
-  scene.add(make_solid_block(Vec3::Constant(half), Vec3(1, 0.5 * half, 0)));
+  scene.add(test::make_solid_block(Vec3::Constant(half), Vec3(1, 0.5 * half, 0)));
   scene.add(test::make_sphere(half, Vec3(2, 0.25 * half, 0)));
   for (int i = 0; i < 1200; ++i) scene.step();
   for (std::size_t k = 1; k < scene.bodies.size(); ++k) {

@@ -10,13 +10,16 @@ namespace {
 constexpr double kHalfSide = 0.1;  // m
 
 // A row of boxes side by side on the ground, and time for all to fall asleep.
-test::Scene sleeping_row(const std::vector<double>& densities, double friction = 0.5, double gap = 1e-4) {
+test::Scene sleeping_row(const std::vector<double>& densities, double friction = 0.5, double gap = 1e-4,
+                         bool are_solids = false) {
   test::Scene scene;
   scene.settings.overrides = {{0, 0, friction, 0.0}};
   scene.add(test::make_plane());
   double x = 0.0;
   for (const double density : densities) {
-    scene.add(test::make_box(Vec3::Constant(kHalfSide), Vec3(x, kHalfSide + 5e-5, 0), true, density));
+    const Vec3 half = Vec3::Constant(kHalfSide), place(x, kHalfSide + 5e-5, 0);
+    scene.add(are_solids ? test::make_solid_block(half, place, density)
+                         : test::make_box(half, place, true, density));
     x += 2.0 * kHalfSide + gap;
   }
   for (int i = 0; i < 300; ++i) scene.step();
@@ -74,20 +77,21 @@ TEST_CASE("a blow wakes the row to its end, and its momentum goes through") {
 }
 
 TEST_CASE("what is hit in its sleep passes it on to those who sleep beside it, however near") {
-  for (const double gap : {2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 1e-2, 2e-2}) {
-    for (const double speed : {0.2, 5.0}) {
-      INFO("gap " << gap << " m, " << speed << " m/s");
-      auto scene = sleeping_row({1000, 1000, 1000}, 0.0, gap);
-      scene.add(test::make_box(Vec3::Constant(kHalfSide), Vec3(-0.3, kHalfSide + 5e-5, 0), true, 10000));
-      scene.bodies.back().velocity = Vec3(speed, 0, 0);
-      const double before = scene.momentum().x();
-      // Until all four have met.
-      const int steps = static_cast<int>((0.2 + 4.0 * gap) / speed * 240.0) + 10;
-      for (int i = 0; i < steps; ++i) scene.step();
-      CHECK(scene.momentum().x() == Approx(before).epsilon(1e-9));
-      for (std::size_t k = 1; k < scene.bodies.size(); ++k) CHECK(scene.bodies[k].velocity.x() > 0.5 * speed);
-    }
-  }
+  for (const bool are_solids : {false, true})
+    for (const double gap : {2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 1e-2, 2e-2})
+      for (const double speed : {0.2, 5.0}) {
+        INFO("gap " << gap << " m, " << speed << " m/s, " << (are_solids ? "solids" : "boxes"));
+        auto scene = sleeping_row({1000, 1000, 1000}, 0.0, gap, are_solids);
+        scene.add(test::make_box(Vec3::Constant(kHalfSide), Vec3(-0.3, kHalfSide + 5e-5, 0), true, 10000));
+        scene.bodies.back().velocity = Vec3(speed, 0, 0);
+        const double before = scene.momentum().x();
+        // Until all four have met.
+        const int steps = static_cast<int>((0.2 + 4.0 * gap) / speed * 240.0) + 10;
+        for (int i = 0; i < steps; ++i) scene.step();
+        CHECK(scene.momentum().x() == Approx(before).epsilon(1e-9));
+        for (std::size_t k = 1; k < scene.bodies.size(); ++k)
+          CHECK(scene.bodies[k].velocity.x() > 0.5 * speed);
+      }
 }
 
 TEST_CASE("a light blow on a crowd that sleeps wakes as many as it could move, not all") {

@@ -82,6 +82,9 @@ TEST_CASE("bodies that begin in each other or in the floor are doubted, what tou
   CHECK(doubts_of(floor + crate + "repeat = {count = [2, 2, 1], spacing = 0.2}\n").empty());
   CHECK(has(doubts_of(floor + crate + "repeat = {count = 2, spacing = [0.1, 0, 0]}\n"),
             "t.toml:4:1: \"crate[1]\" begins inside \"crate[2]\""));
+  CHECK(has(doubts_of(crate + "[[body]]\nname = \"seed\"\nkind = \"sphere\"\nradius = 0.05\nposition = [0, "
+                              "0.1, 0]\n"),
+            "\"seed\" begins inside \"crate\""));
   const std::string brick =
       "[[body]]\nname = \"brick\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.1, 0.1]\nelement_size "
       "= "
