@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <numeric>
 #include <span>
 
@@ -21,6 +22,7 @@ using core::Clock;
 using core::milliseconds_since;
 using scene::SceneDescription;
 
+constexpr const char* kBlast = "a blast";
 constexpr double kPressed = 1e-3;  // m/s: what comes no faster presses
 
 /// The scene in which body number `tried` alone can break.
@@ -85,7 +87,7 @@ bool is_of(const scene::BuiltScene& built, body::BodyId id, int entry) {
 
 std::string name_of(std::span<const body::Body> bodies, body::BodyId id) {
   const auto body = std::find_if(bodies.begin(), bodies.end(), [id](const auto& b) { return b.id == id; });
-  return body == bodies.end() ? "a blast" : body->name;
+  return body == bodies.end() ? kBlast : body->name;
 }
 
 /// The hardest meeting of body number `tried`, which is whole, with anything else in the last step.
@@ -105,22 +107,39 @@ Vec3 velocity_at(std::span<const body::Body> bodies, body::BodyId id, const Vec3
   return body == bodies.end() ? Vec3(Vec3::Zero()) : body->velocity_at(point);
 }
 
-/// What broke it: whom its pieces met nearest to the place, and how fast it was there before the step. The
-/// log is of the step that was taken again, with the pieces in its place.
+/// What broke it: who gave its pieces most, and how fast it was at the place before the step. The log is of
+/// the step that was taken again, with the pieces in its place.
 void note_break(const scene::BuiltScene& built, int tried, std::span<const body::Body> before,
                 Foreseen& found) {
+  struct Met {
+    double impulse = 0.0;  // N s, in all
+    double closing = 0.0;  // m/s, of its first collision
+    double first = 1e300;  // s, of that, since the step's begin
+  };
   const world::BreakRow& broken = built.world.report().breaks.front();
   found.time = broken.time;
-  double nearest = 1e300;
+  std::map<body::BodyId, Met> met;
   for (const body::LoggedImpulse& hit : built.world.impulse_log()) {
     const bool is_a = is_of(built, hit.body_a, tried), is_b = is_of(built, hit.body_b, tried);
-    const double distance = (hit.point_world - broken.place).norm();
-    if (is_a == is_b || distance >= nearest) continue;
-    nearest = distance;
-    const body::BodyId other = is_a ? hit.body_b : hit.body_a;
+    if (is_a == is_b) continue;
+    Met& other = met[is_a ? hit.body_b : hit.body_a];
+    other.impulse += hit.impulse_world.norm();
+    if (hit.kind != body::ImpulseKind::collision || hit.time >= other.first) continue;
+    other.first = hit.time;
+    other.closing = hit.closing_speed;
+  }
+  double most = 0.0;
+  for (const auto& [other, given] : met) {
+    if (given.impulse <= most) continue;
+    most = given.impulse;
     found.other = name_of(built.world.bodies(), other);
+    const auto known = std::find_if(before.begin(), before.end(),
+                                    [id = other](const body::Body& body) { return body.id == id; });
+    // What was thrown in this very step is known by how it met.
     found.speed =
-        (velocity_at(before, broken.id, broken.place) - velocity_at(before, other, broken.place)).norm();
+        known == before.end()
+            ? given.closing
+            : (velocity_at(before, broken.id, broken.place) - known->velocity_at(broken.place)).norm();
   }
 }
 
@@ -226,7 +245,8 @@ std::string describe(const Foreseen& f) {
   if (f.copies > 1)
     who +=
         f.is_alone ? fmt::format(", one of {} alone", f.copies) : fmt::format(", the first of {}", f.copies);
-  const std::string met = f.other.empty() ? ""
+  const std::string met = f.other.empty()     ? ""
+                          : f.other == kBlast ? "is struck by a blast"
                           : f.speed < kPressed
                               ? fmt::format("is pressed by \"{}\"", f.other)
                               : fmt::format("meets \"{}\" with {:.3g} m/s", f.other, f.speed);
