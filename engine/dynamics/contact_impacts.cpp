@@ -92,6 +92,7 @@ void IslandSolver::strike() {
     }
     hardest_first();
     bounce_together();
+    joints_.hold(false);
     for (const std::size_t k : struck_) {
       keep_impulse(contact(k));
       contact(k).impulse.setZero();

@@ -319,7 +319,14 @@ void IslandSolver::keep_impulse(SolverContact& c) {
 }
 
 bool strikes_one_by_one(const Island& island, const MotionWork& work) {
-  if (island.contacts.size() > kFewContacts || !island.joints.empty()) return false;
+  if (island.contacts.size() > kFewContacts) return false;
+  // What hangs on something that stands still swings on its own; chains share a blow.
+  const auto hangs = [&](int i) {
+    const WorkJoint& joint = work.joints[at(i)];
+    return joint.joint->is_pivot &&
+           (work.bodies[at(joint.a)].inverse_mass == 0.0 || work.bodies[at(joint.b)].inverse_mass == 0.0);
+  };
+  if (!std::all_of(island.joints.begin(), island.joints.end(), hangs)) return false;
   const auto is_plain = [&](int body) {
     const WorkBody& b = work.bodies[at(body)];
     return !b.is_scripted && !body::is_mesh(b.shape->kind);

@@ -12,8 +12,9 @@ namespace shatterbox::dynamics {
 /// Of at most so many contacts a substep is cut where the first arrives.
 inline constexpr std::size_t kFewContacts = 64;
 
-/// True if a hit runs on through what touches, one after the other: where contacts are few and all bodies are
-/// spheres, boxes, capsules and planes. What may break is judged by all that a step's hit brings together.
+/// True if a hit runs on through what touches, one after the other: where contacts are few, all bodies are
+/// spheres, boxes, capsules and planes, and those that joints hold hang on points of something that stands
+/// still. What may break is judged by all that a step's hit brings together.
 bool strikes_one_by_one(const Island& island, const MotionWork& work);
 
 /// Moves the bodies of `island` through the whole step. Touches only these bodies and contacts, so that

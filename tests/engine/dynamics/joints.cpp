@@ -292,3 +292,37 @@ TEST_CASE("a ball bounces off a joined row as off one body") {
   CHECK(joined.bodies[5].velocity.y() == Approx(one.bodies[1].velocity.y()).epsilon(0.01).margin(0.01));
   CHECK(joined.bodies[2].angular_velocity.z() == Approx(one.bodies[0].angular_velocity.z()).epsilon(0.01));
 }
+
+TEST_CASE("Newton's cradle: a blow goes through balls that hang on a beam, asleep or not") {
+  for (const bool has_sleep : {true, false}) {
+    INFO("sleep " << has_sleep);
+    Scene scene;
+    scene.settings.has_sleep = has_sleep;
+    scene.settings.overrides = {{0, 0, 0.0, 1.0}};
+    constexpr double kRadius = 0.05, kLength = 0.4;  // m
+    scene.add(test::make_box(Vec3(0.5, 0.01, 0.1), Vec3(0, 0.01, 0), false));
+    for (int i = 0; i < 5; ++i) {
+      scene.add(test::make_sphere(kRadius, Vec3(0.1001 * i, -kLength, 0), 7800.0));
+      dynamics::Joint joint =
+          join_across_x(scene, static_cast<body::BodyId>(i + 2), 1, Vec3(0.1001 * i, 0, 0), 0.01, 0.01);
+      joint.is_pivot = true;
+      scene.state.joints.push_back(joint);
+    }
+    for (int i = 0; i < 240; ++i) scene.step();
+    for (std::size_t k = 1; k < 6; ++k) REQUIRE(scene.bodies[k].is_awake != has_sleep);
+    // It swings out, comes back, and hits.
+    scene.bodies[1].is_awake = true;
+    scene.bodies[1].velocity.x() = -1.0;
+    scene.bodies[1].angular_velocity.z() = -1.0 / kLength;
+    double first = 0.0, last = 0.0;
+    for (int i = 0; i < 240; ++i) {
+      first = std::max(first, scene.bodies[1].velocity.x());
+      last = std::max(last, scene.bodies[5].velocity.x());
+      scene.step();
+      if (last > 0.5 * first && first > 0.5) break;
+    }
+    CHECK(first == Approx(1.0).epsilon(0.05));
+    CHECK(last > 0.85 * first);
+    for (std::size_t k = 1; k < 5; ++k) CHECK(std::abs(scene.bodies[k].velocity.x()) < 0.12 * first);
+  }
+}
