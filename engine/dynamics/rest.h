@@ -36,13 +36,15 @@ struct Disturbance {
 /// m/s: how fast a body comes down on a sleeper where they met or meet, as it moves now.
 double closing_on_sleeper(const WorkBody& mover, const collision::Contact& contact, bool sleeper_is_a);
 
-/// Notes in `work.to_wake` who is struck in his sleep in a step that was solved: the solver and the
-/// continuous pass take him for a wall, though who strikes was set in motion only in the step. `slept`: who
-/// of `bodies` slept when it began. `hits`: where pairs (numbers of them) meet on their ways.
+/// Where two bodies (a pair, by its number) meet on their ways.
 struct SleeperHit {
   int pair = 0;
   collision::Contact contact;
 };
+
+/// Notes in `work.to_wake` who is struck in his sleep in a step that was solved: the solver and the
+/// continuous pass take him for a wall, though who strikes was set in motion only in the step. `slept`: who
+/// of `bodies` slept when it began.
 void find_struck_sleepers(const std::vector<body::Body>& bodies, const ContactSettings& settings,
                           const std::vector<char>& slept, const std::vector<SleeperHit>& hits,
                           MotionWork& work);
