@@ -60,6 +60,7 @@ struct Body {
   double quiet_time = 0.0;  // s for which the body has hardly moved
 
   bool is_dynamic() const { return inverse_mass > 0.0; }
+  bool sleeps() const { return is_dynamic() && !is_awake; }
   /// Scripted, and on its way in the step that begins here.
   bool is_driven() const {
     return motion == Motion::scripted && velocity.squaredNorm() + angular_velocity.squaredNorm() > 0.0;

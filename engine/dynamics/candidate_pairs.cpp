@@ -233,7 +233,7 @@ void find_sleepers_to_wake(const std::vector<Body>& bodies, const ContactSetting
                            MotionWork& work) {
   for (const WorkPair& pair : work.pairs) {
     const Body &a = bodies[at(pair.a)], &b = bodies[at(pair.b)];
-    const bool a_sleeps = a.is_dynamic() && !a.is_awake, b_sleeps = b.is_dynamic() && !b.is_awake;
+    const bool a_sleeps = a.sleeps(), b_sleeps = b.sleeps();
     if (a_sleeps == b_sleeps || pair.contacts.empty()) continue;
     const int mover = a_sleeps ? pair.b : pair.a;
     const WorkBody& w = work.bodies[at(mover)];

@@ -107,7 +107,7 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
   std::vector<Roused> roused;
   const auto wake = [&](int i, int origin) {
     Body& b = bodies[static_cast<std::size_t>(i)];
-    if (!b.is_dynamic() || b.is_awake) return;
+    if (!b.sleeps()) return;
     b.wake();
     roused.push_back({i, origin});
   };
@@ -121,7 +121,7 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
     double& left = momentum[static_cast<std::size_t>(origin)];
     for (const int i : neighbours[static_cast<std::size_t>(by)]) {
       const Body& b = bodies[static_cast<std::size_t>(i)];
-      if (!b.is_dynamic() || b.is_awake || left < least_momentum(settings, b)) continue;
+      if (!b.sleeps() || left < least_momentum(settings, b)) continue;
       left -= least_momentum(settings, b);
       wake(i, origin);
     }
@@ -160,7 +160,7 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
   bool has_sleepers = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& b = bodies[i];
-    if (!b.is_dynamic() || b.is_awake) continue;
+    if (!b.sleeps()) continue;
     has_sleepers = true;
     // A push, by the script or by a stage that gives impulses.
     if (b.velocity.squaredNorm() + b.angular_velocity.squaredNorm() > 0.0) momentum[i] = kAll;
@@ -208,10 +208,7 @@ double closing_on_sleeper(const WorkBody& mover, const collision::Contact& conta
 void find_struck_sleepers(const std::vector<Body>& bodies, const ContactSettings& settings,
                           const std::vector<char>& slept, const std::vector<SleeperHit>& hits,
                           MotionWork& work) {
-  const auto sleeps = [&](int i) {
-    const Body& b = bodies[static_cast<std::size_t>(i)];
-    return b.is_dynamic() && !b.is_awake;
-  };
+  const auto sleeps = [&](int i) { return bodies[static_cast<std::size_t>(i)].sleeps(); };
   // Who was himself woken in this step passes on what others give him; of all others a hit alone wakes.
   const auto note = [&](const WorkPair& pair, double closing, double momentum) {
     const bool a_sleeps = sleeps(pair.a);
@@ -246,10 +243,11 @@ void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, con
 
 void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
   if (!settings.has_sleep) return;
-  std::vector<char> is_held(bodies.size(), 0), is_parting(bodies.size(), 0);
+  std::vector<char> is_held(bodies.size(), 0), is_parting;
   // What brings bodies out of each other leaves them no speed.
   for (const PairState& pair : state.pairs) {
     if (!pair.is_exempt) continue;
+    is_parting.resize(bodies.size(), 0);
     for (const BodyId id : {pair.body_a, pair.body_b})
       if (const int i = find_number(bodies, id); i >= 0) is_parting[static_cast<std::size_t>(i)] = 1;
   }
@@ -257,8 +255,8 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake) continue;
-    const bool is_still =
-        !is_parting[i] && is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
+    const bool is_still = (is_parting.empty() || !is_parting[i]) &&
+                          is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
     // Or it trembles in a nest, without getting anywhere.
     BodyState* memory = find_memory(state, b.id);
     const bool stays = memory != nullptr && stays_near(settings, b, memory->rest_pose);

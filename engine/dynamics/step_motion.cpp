@@ -389,9 +389,9 @@ void find_awake_pairs(std::vector<Body>& bodies, const ContactSettings& settings
 
 // Per body; empty: nobody does.
 std::vector<char> find_sleepers(const std::vector<Body>& bodies) {
-  std::vector<char> sleeps(bodies.size(), 0);
-  for (std::size_t i = 0; i < bodies.size(); ++i) sleeps[i] = bodies[i].is_dynamic() && !bodies[i].is_awake;
-  if (std::find(sleeps.begin(), sleeps.end(), 1) == sleeps.end()) sleeps.clear();
+  std::vector<char> sleeps;
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.sleeps(); })) return sleeps;
+  for (const Body& b : bodies) sleeps.push_back(b.sleeps() ? 1 : 0);
   return sleeps;
 }
 

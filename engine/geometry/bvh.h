@@ -33,6 +33,11 @@ inline bool overlaps(const Box& a, const Box& b, double margin = 0.0) {
          a.low.z() <= b.high.z() + margin && b.low.z() <= a.high.z() + margin;
 }
 
+/// m2, from a point to the nearest one of the box.
+inline double squared_distance(const Box& box, const Vec3& p) {
+  return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).squaredNorm();
+}
+
 /// About all vertices.
 inline Box box_of(const TriangleMesh& mesh) {
   Box box;

@@ -7,15 +7,8 @@
 #include "engine/geometry/closest_points.h"
 
 namespace shatterbox::geometry {
-namespace {
 
 using core::at;
-
-double squared_distance(const Box& box, const Vec3& p) {
-  return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).squaredNorm();
-}
-
-}  // namespace
 
 SurfaceDistance::SurfaceDistance(const TriangleMesh& surface)
     : surface_(surface),

@@ -74,10 +74,6 @@ TriangleShare share_of_triangle(const std::array<Vec3, 3>& corners, const SolidP
 
 constexpr double kSurely = 1.0 + 1e-9;  // times a squared distance: beyond its rounding
 
-double squared_distance(const geometry::Box& box, const Vec3& point) {
-  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
-}
-
 /// visit(triangle, corners) for those whose boxes are no farther from the point than a squared distance, m2,
 /// which visits may lessen.
 template <class Visit>
@@ -153,10 +149,10 @@ SolidPatch find_load_patch(const geometry::SolidMesh& mesh, const SolidSkin& ski
   SolidPatch patch;
   patch.radius = radius;
   int first = -1;
-  double least = 0.0, farthest_squared = squared_distance_of_some(skin, point);
+  double least = 1e300, farthest_squared = squared_distance_of_some(skin, point);
   visit_near(skin, point, farthest_squared, [&](int t, const std::array<Vec3, 3>& corners) {
     const auto nearest = geometry::closest_on_triangle(point, corners[0], corners[1], corners[2]);
-    if (first >= 0 && !(nearest.distance < least)) return;
+    if (!(nearest.distance < least)) return;
     first = t;
     least = nearest.distance;
     farthest_squared = std::min(farthest_squared, kSurely * least * least);

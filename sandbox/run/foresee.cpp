@@ -102,14 +102,9 @@ void note_meetings(const scene::BuiltScene& built, int tried, Foreseen& found) {
   }
 }
 
-Vec3 velocity_at(std::span<const body::Body> bodies, body::BodyId id, const Vec3& point) {
-  const auto body = std::find_if(bodies.begin(), bodies.end(), [id](const auto& b) { return b.id == id; });
-  return body == bodies.end() ? Vec3(Vec3::Zero()) : body->velocity_at(point);
-}
-
 /// What broke it: who gave its pieces most, and how fast it was at the place before the step. The log is of
 /// the step that was taken again, with the pieces in its place.
-void note_break(const scene::BuiltScene& built, int tried, std::span<const body::Body> before,
+void note_break(const scene::BuiltScene& built, int tried, const std::vector<body::Body>& before,
                 Foreseen& found) {
   struct Met {
     double impulse = 0.0;  // N s, in all
@@ -128,18 +123,17 @@ void note_break(const scene::BuiltScene& built, int tried, std::span<const body:
     other.first = hit.time;
     other.closing = hit.closing_speed;
   }
+  const body::Body* whole = body::find_body(before, broken.id);
   double most = 0.0;
   for (const auto& [other, given] : met) {
     if (given.impulse <= most) continue;
     most = given.impulse;
     found.other = name_of(built.world.bodies(), other);
-    const auto known = std::find_if(before.begin(), before.end(),
-                                    [id = other](const body::Body& body) { return body.id == id; });
+    const body::Body* known = body::find_body(before, other);
     // What was thrown in this very step is known by how it met.
-    found.speed =
-        known == before.end()
-            ? given.closing
-            : (velocity_at(before, broken.id, broken.place) - known->velocity_at(broken.place)).norm();
+    found.speed = known == nullptr || whole == nullptr
+                      ? given.closing
+                      : (whole->velocity_at(broken.place) - known->velocity_at(broken.place)).norm();
   }
 }
 

@@ -100,7 +100,7 @@ void Recorder::finish(const world::World& world, double wall_seconds) {
   record.trace = std::move(tracer_.trace);
   for (const body::Body& body : world.bodies()) {
     ++record.bodies_end;
-    record.has_sleepers |= body.is_dynamic() && !body.is_awake;
+    record.has_sleepers |= body.sleeps();
     record.pieces += world.ancestry(body.id).parent != 0 ? 1 : 0;
     record.triangles_end += static_cast<long>(body.shape->surface.triangles.size());
   }
