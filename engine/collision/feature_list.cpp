@@ -484,8 +484,9 @@ bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius
                    double margin) {
   const TightBox path = box_of_path(centre, centre + relative_way, 0.0);
   const float reach = round_up(radius + margin), reach_squared = reach * reach * (1.0F + 1e-5F);
-  std::vector<int> stack(1, 0);
   const auto& nodes = body.collider->tree.nodes;
+  std::vector<int> stack;
+  if (!nodes.empty()) stack.push_back(0);
   while (!stack.empty()) {
     const int i = stack.back();
     stack.pop_back();

@@ -352,10 +352,11 @@ int count_parts(const std::vector<Body>& bodies, const ContactSettings& settings
     if (!b.is_dynamic() || !body::is_mesh(b.shape->kind)) continue;
     const auto known = std::lower_bound(state.bodies.begin(), state.bodies.end(), b.id,
                                         [](const BodyState& s, body::BodyId id) { return s.id < id; });
-    newborn += known == state.bodies.end() || known->id != b.id ? 1 : 0;
+    const bool is_known = known != state.bodies.end() && known->id == b.id;
+    // In the very first step all are unknown; pieces are those of another body.
+    newborn += !is_known && (!state.bodies.empty() || (b.family != 0 && b.id != b.family)) ? 1 : 0;
   }
-  return newborn >= 2 && !state.bodies.empty() ? std::max(lively_parts(settings), state.next_parts)
-                                               : state.next_parts;
+  return newborn >= 2 ? std::max(lively_parts(settings), state.next_parts) : state.next_parts;
 }
 
 bool may_be_tried(const ContactSettings& settings, const StepPart& part) {

@@ -234,18 +234,31 @@ class SurfaceBuilder {
     }
   }
 
-  void triangulate_cell(int c) {
-    const ShellCell& cell = mesh_.cells[at(c)];
-    const Triangle& element = elements_.mesh.triangles[at(cell.element)];
-    const Mat3 frame = facet_frame(elements_, cell.element);
-    const Vec3& origin = elements_.mesh.positions[at(element[0])];
-    const int begin = first_node_[at(c)];
+  /// The border of a cell in its element's plane.
+  template <class PlaceOf>
+  std::vector<Vec2> polygon_of(int c, const PlaceOf& place_of) const {
+    const int element = mesh_.cells[at(c)].element;
+    const Mat3 frame = facet_frame(elements_, element);
+    const Vec3& origin = elements_.mesh.positions[at(elements_.mesh.triangles[at(element)][0])];
     std::vector<Vec2> flat;
-    for (int n = begin; n < first_node_[at(c) + 1]; ++n) {
-      const Vec3 p = place_of_node(c, n) - origin;
+    for (int n = first_node_[at(c)]; n < first_node_[at(c) + 1]; ++n) {
+      const Vec3 p = place_of(n) - origin;
       flat.emplace_back(frame.col(0).dot(p), frame.col(1).dot(p));
     }
-    for (const Triangle& t : clip_ears(flat)) add_triangle(c, {begin + t[0], begin + t[1], begin + t[2]});
+    return flat;
+  }
+
+  void triangulate_cell(int c) {
+    const std::vector<Vec2> placed = polygon_of(c, [&](int n) { return place_of_node(c, n); });
+    std::vector<Triangle> triangles = clip_ears(placed);
+    // Beside slivers the whole may stand folded over; the material does not.
+    if (whole_ && triangles.size() + 2 < placed.size()) {
+      std::vector<Triangle> of_material =
+          clip_ears(polygon_of(c, [&](int n) { return material_of_node(c, n); }));
+      if (of_material.size() > triangles.size()) triangles = std::move(of_material);
+    }
+    const int begin = first_node_[at(c)];
+    for (const Triangle& t : triangles) add_triangle(c, {begin + t[0], begin + t[1], begin + t[2]});
   }
 
   /// The polygon's side that the straight line between two nodes lies on, -1 for a line through the inside.
@@ -292,17 +305,19 @@ class SurfaceBuilder {
                : BorderKind::crack;
   }
 
+  Vec3 material_of_node(int c, int n) const {
+    return position_in_element(elements_, mesh_.cells[at(c)].element, nodes_[at(n)].barycentric);
+  }
+
   /// Before the kerf.
   Vec3 place_of_node(int c, int n) const {
-    if (whole_) return surface_.mesh.positions[at(vertex_of_node_[at(n)])];
-    return position_in_element(elements_, mesh_.cells[at(c)].element, nodes_[at(n)].barycentric);
+    return whole_ ? surface_.mesh.positions[at(vertex_of_node_[at(n)])] : material_of_node(c, n);
   }
 
   /// Whether the whole stands back from its crack there: the lips of a slit meet at its ends, and some slits
   /// have nothing but ends.
   bool has_stood_back(int c, int n, const Vec3& inward, double kerf) const {
-    const Vec3 crack = position_in_element(elements_, mesh_.cells[at(c)].element, nodes_[at(n)].barycentric);
-    return inward.dot(place_of_node(c, n) - crack) >= kStood * kerf;
+    return inward.dot(place_of_node(c, n) - material_of_node(c, n)) >= kStood * kerf;
   }
 
   void add_normals(int c, int side, BorderKind kind, double kerf, std::vector<BorderNormal>& normals) const {

@@ -118,14 +118,34 @@ void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMe
                        std::make_move_iterator(born.end()));
 }
 
+/// Who pressed: if that has broken since, the piece of it that is nearest. Null: nobody is left, or none was
+/// there (a blast).
+body::Body* find_partner(MovingState& moving, body::BodyId id, const Vec3& point) {
+  if (body::Body* other = body::find_body(moving.bodies, id)) return other;
+  body::Body* nearest = nullptr;
+  double least = 0.0;
+  for (const auto& [heir, memory] : moving.memories) {
+    if (id == 0 || memory.charged_event != id) continue;
+    body::Body* piece = body::find_body(moving.bodies, heir);
+    if (!piece) continue;
+    const double apart = (piece->pose.translation - point).squaredNorm();
+    if (nearest && apart >= least) continue;
+    nearest = piece;
+    least = apart;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double energy,
                       body::ImpulseLog& log) {
   body::Body* struck = body::find_body(moving.bodies, impact.id);
   if (!struck || energy <= 0.0 || impact.hardest.impulse_body.squaredNorm() == 0.0) return 0.0;
-  body::Body* other = body::find_body(moving.bodies, impact.hardest.other);
   const Vec3 point = struck->pose.apply(impact.hardest.point_body);
+  body::Body* other = find_partner(moving, impact.hardest.other, point);
+  // A blast has no partner; from one that is gone nothing can be taken.
+  if (!other && impact.hardest.other != 0) return 0.0;
   const Vec3 direction = struck->pose.rotation * impact.hardest.impulse_body.normalized();
   const double mass = effective_mass(*struck, other, point, direction);
   const Vec3 other_velocity = other ? other->velocity_at(point) : Vec3::Zero();
@@ -135,9 +155,12 @@ double pay_for_cracks(MovingState& moving, const EvaluatedImpact& impact, double
   const double left = std::sqrt(std::max(0.0, closing * closing - 2.0 * paid / mass));
   const Vec3 impulse = mass * (closing - left) * direction;
   struck->push(impulse, point);
-  if (other) other->push(-impulse, point);
+  if (other) {
+    if (other->sleeps()) other->wake();
+    other->push(-impulse, point);
+  }
   body::LoggedImpulse entry =
-      body::log_impulse(body::ImpulseKind::fracture, struck->id, struck->pose, impact.hardest.other,
+      body::log_impulse(body::ImpulseKind::fracture, struck->id, struck->pose, other ? other->id : 0,
                         other ? other->pose : Pose{}, point, direction, impulse);
   entry.closing_speed = closing;
   entry.effective_mass = mass;

@@ -455,6 +455,37 @@ TEST_CASE("a narrow piece joins its neighbour over a new crack, not over one tha
   CHECK(count_faces(unaware.pieces) == 0);
 }
 
+TEST_CASE("a piece has its triangles where the whole stands folded over") {
+  // A triangle less its tip; the surface of the whole stands so that the short side there runs backwards.
+  geometry::TriangleMesh triangle;
+  triangle.positions = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+  triangle.triangles = {{0, 1, 2}};
+  fracture::ShellCutter cutter(geometry::make_shell_mesh(test::make_elements(std::move(triangle))));
+  REQUIRE(cutter.cut(0, on_side(cutter, 0, 0, 0.995), on_side(cutter, 0, 1, 0.005), SideKind::crack, 1));
+  const geometry::ShellMesh piece = fracture::split_shell(cutter.mesh()).pieces.front();
+  REQUIRE(piece.cells.size() == 1);
+  REQUIRE(piece.cells.front().corner_count == 4);
+  std::vector<Vec3> placed = geometry::extract_surface(piece, 0.0).mesh.positions;
+  int moved = 0;
+  for (Vec3& p : placed)
+    if (p.x() > 0.9 && p.y() < 1e-9) {
+      p.y() = 0.01;
+      ++moved;
+    }
+  REQUIRE(moved == 1);
+  const geometry::StandingSurface standing(piece, placed);
+  const auto surface = geometry::extract_surface(piece, 1e-4, &standing);
+  CHECK(surface.mesh.triangles.size() == 2);
+  double area = 0.0;
+  for (const auto& [a, b, c] : surface.mesh.triangles) {
+    const auto& x = surface.mesh.positions;
+    area += 0.5 * (x[static_cast<std::size_t>(b)] - x[static_cast<std::size_t>(a)])
+                      .cross(x[static_cast<std::size_t>(c)] - x[static_cast<std::size_t>(a)])
+                      .z();
+  }
+  CHECK(area == Approx(0.495).epsilon(0.01));
+}
+
 TEST_CASE("pieces of a piece that are wide enough are born apart") {
   constexpr double kKerf = 1e-5;
   int children = 0, touching = 0;

@@ -73,6 +73,27 @@ TEST_CASE("cracks cannot take more than there is, and nothing from bodies that p
   CHECK(world::pay_for_cracks(moving, make_impact(), 1.0, log) == Approx(0.0).margin(1e-12));
 }
 
+TEST_CASE("who pressed and has broken since pays with its nearest piece, or not at all") {
+  world::MovingState moving = make_pair_of_balls();
+  moving.bodies[1].id = 5;
+  moving.bodies.push_back(make_ball(6, 1.0));
+  moving.bodies[2].pose.translation = Vec3(2, 0, 0);
+  moving.memories[5].charged_event = moving.memories[6].charged_event = 2;
+  const Vec3 momentum = 2.0 * moving.bodies[0].velocity + 3.0 * moving.bodies[1].velocity;
+  body::ImpulseLog log;
+  CHECK(world::pay_for_cracks(moving, make_impact(), 1.5, log) == Approx(1.5));
+  CHECK((2.0 * moving.bodies[0].velocity + 3.0 * moving.bodies[1].velocity - momentum).norm() < 1e-14);
+  CHECK(moving.bodies[2].velocity.isZero(0.0));
+  REQUIRE(log.size() == 1);
+  CHECK(log[0].body_b == 5);
+
+  moving.memories.clear();
+  const Vec3 velocity = moving.bodies[0].velocity;
+  CHECK(world::pay_for_cracks(moving, make_impact(), 1.5, log) == 0.0);
+  CHECK(moving.bodies[0].velocity == velocity);
+  CHECK(log.size() == 1);
+}
+
 TEST_CASE("ways of bodies end where they break, and those of their pieces begin there") {
   const std::vector<body::Body> before{make_ball(1, 1.0), make_ball(2, 1.0)};
   std::vector<body::Body> after{make_ball(2, 1.0), make_ball(3, 0.5), make_ball(4, 0.5)};
