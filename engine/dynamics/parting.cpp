@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "engine/collision/analytic_contact.h"
+#include "engine/collision/feature_gap.h"
+#include "engine/collision/feature_list.h"
 #include "engine/core/index.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/shift_test.h"
@@ -29,35 +31,32 @@ class Parting {
 
   bool run(std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
     bool is_changed = false;
-    std::vector<const WorkPair*> touching;
     for (const WorkPair& pair : work_.pairs) {
       bool& is_exempt = state_.pairs[at(pair.state)].is_exempt;
       // What crosses may do so by rounding: a foot of a thousand vertices is seldom level to the last bit.
-      const bool is_in_one_place = pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
-      if (!pair.is_first_seen || pair.has_sides || (!is_exempt && !is_in_one_place)) continue;
+      if (!pair.is_first_seen || pair.has_sides || (!is_exempt && !is_in_one_place(pair))) continue;
       // Blocks that are pushed into each other with their sides in one plane only touch there. What lies in
       // each other too deep to be set aside passes, as what crosses does.
       if (overlap(pair, pair.a, bodies_[at(pair.a)].pose, 2.0 * aside(pair))) {
         is_changed = is_changed || !is_exempt;
         is_exempt = true;
       } else {
-        touching.push_back(&pair);
+        touching_.push_back(&pair);
       }
     }
-    for (const WorkPair* touched : touching) {
+    for (const WorkPair* touched : touching_) {
       const WorkPair& pair = *touched;
       if (has_moved(pair.a) || has_moved(pair.b)) continue;
       PairState& memory = state_.pairs[at(pair.state)];
       const bool crossed = memory.is_exempt;
       memory.is_exempt = false;
       const int mover = choose(pair), other = mover == pair.a ? pair.b : pair.a;
-      if (!set_aside(pair, mover)) {
+      if (!set_aside(pair, mover, other)) {
         memory.is_exempt = true;
         is_changed = is_changed || !crossed;
         continue;
       }
       is_changed = true;
-      moved_.push_back(mover);
       parted.emplace_back(bodies_[at(other)].id, bodies_[at(mover)].id);
     }
     return is_changed;
@@ -126,9 +125,7 @@ class Parting {
     return way;
   }
 
-  bool set_aside(const WorkPair& pair, int mover) {
-    const double length = aside(pair);
-    const int other = mover == pair.a ? pair.b : pair.a;
+  std::vector<Vec3> list_ways(const WorkPair& pair, int mover, int other) const {
     const Vec3 between = bodies_[at(mover)].pose.translation - bodies_[at(other)].pose.translation;
     std::vector<Vec3> ways = {up(), -up(), Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitZ()};
     if (!pair.contacts.empty()) {
@@ -138,44 +135,130 @@ class Parting {
     if (between.norm() > kSideless * pair.size) ways.push_back(between.normalized());
     for (int k = 0; k < 8; ++k)
       ways.push_back(Vec3(k & 1 ? 1.0 : -1.0, k & 2 ? 1.0 : -1.0, k & 4 ? 1.0 : -1.0).normalized());
+    return ways;
+  }
+
+  bool may_go(int i, const Vec3& way) const {
+    return bodies_[at(i)].is_dynamic() && bodies_[at(i)].locked.let_move(way) == way;
+  }
+
+  Pose shifted(int i, const Vec3& shift) const {
+    return {bodies_[at(i)].pose.rotation, bodies_[at(i)].pose.translation + shift};
+  }
+
+  void move(int i, const Vec3& shift) {
+    bodies_[at(i)].pose.translation += shift;
+    moved_.push_back(i);
+  }
+
+  bool set_aside(const WorkPair& pair, int mover, int other) {
+    const double length = aside(pair);
+    const std::vector<Vec3> ways = list_ways(pair, mover, other);
     // Rather through nobody; where every way goes through somebody, to where nobody is crossed.
-    const Pose start = bodies_[at(mover)].pose;
-    std::optional<Pose> chosen;
+    std::optional<Vec3> chosen, clear;
     for (const Vec3& way : ways) {
-      if (bodies_[at(mover)].locked.let_move(way) != way) continue;
-      const Pose pose{start.rotation, start.translation + length * way};
-      if (!is_free(mover, pose) || overlap(pair, mover, pose, kNoDistance * pair.size)) continue;
+      if (!may_go(mover, way)) continue;
+      const Pose pose = shifted(mover, length * way);
+      if (!is_free(mover, pose)) continue;
       const bool is_clear = !passes_somebody(mover, pose, length);
-      if (is_clear || !chosen) chosen = pose;
-      if (is_clear) break;
+      if (is_clear && !clear) clear = way;
+      if (!chosen && is_apart(pair, mover, pose)) chosen = way;
+      if (is_clear && is_apart(pair, mover, pose)) {
+        chosen = way;
+        break;
+      }
     }
-    if (chosen) bodies_[at(mover)].pose = *chosen;
+    if (!chosen && push_on(pair, mover, other, ways, length)) return true;
+    if (!chosen) chosen = clear;
+    if (chosen) move(mover, length * *chosen);
     return chosen.has_value();
   }
 
+  // In a row of blocks one is in the next one's way: they go along.
+  bool push_on(const WorkPair& pair, int mover, int other, const std::vector<Vec3>& ways, double length) {
+    for (const Vec3& way : ways) {
+      if (!is_apart(pair, mover, shifted(mover, length * way))) continue;
+      const std::vector<int> company = find_company(mover, other, length * way);
+      for (const int i : company) move(i, length * way);
+      if (!company.empty()) return true;
+    }
+    return false;
+  }
+
+  // The mover, and from one to the next all whom they would cross, or stay in one place with. Empty: one of
+  // them cannot go.
+  std::vector<int> find_company(int mover, int other, const Vec3& shift) const {
+    std::vector<int> company{mover};
+    for (std::size_t k = 0; k < company.size(); ++k) {
+      const int i = company[k];
+      if (i == other || !may_go(i, shift)) return {};
+      const Pose pose = shifted(i, shift);
+      for (const WorkPair& pair : work_.pairs) {
+        if (!is_asked(pair, i)) continue;
+        const int beside = pair.a == i ? pair.b : pair.a;
+        if (std::find(company.begin(), company.end(), beside) != company.end()) continue;
+        const bool is_in_way = !is_free_of(pair, i, pose);
+        if (!is_in_way && (pair.has_sides || !is_in_one_place(pair) || is_apart(pair, i, pose))) continue;
+        // What slides along something that stands still touches it as before.
+        if (is_in_way || bodies_[at(beside)].is_dynamic()) company.push_back(beside);
+      }
+    }
+    return company;
+  }
+
+  static bool is_in_one_place(const WorkPair& pair) {
+    return pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
+  }
+
+  // With the mover at that pose they are no longer in one place.
+  bool is_apart(const WorkPair& pair, int mover, const Pose& pose) const {
+    const int other = pair.a == mover ? pair.b : pair.a;
+    const auto moved = collision::place_collider(*work_.bodies[at(mover)].collider, pose),
+               still = collision::place_collider(*work_.bodies[at(other)].collider, bodies_[at(other)].pose);
+    const double least = kNoDistance * pair.size;
+    collision::FeatureList near;
+    collision::list_near_features(moved, still, least, near);
+    return std::none_of(near.begin(), near.end(), [&](const collision::FeaturePair& features) {
+      const auto points =
+          collision::gather(features, *moved.collider, moved.start, *still.collider, still.start);
+      return collision::measure(points, Vec3::UnitY()).gap <= least;
+    });
+  }
+
   bool is_asked(const WorkPair& pair, int mover) const {
-    return (pair.a == mover || pair.b == mover) && !state_.pairs[at(pair.state)].is_exempt;
+    return (pair.a == mover || pair.b == mover) &&
+           (!state_.pairs[at(pair.state)].is_exempt || is_touching(pair));
+  }
+
+  // It will be set aside, now or in the next round.
+  bool is_touching(const WorkPair& pair) const {
+    return std::find(touching_.begin(), touching_.end(), &pair) != touching_.end();
+  }
+
+  // At that pose the mover is not in the other of the pair, which stays where it is.
+  bool is_free_of(const WorkPair& pair, int mover, const Pose& pose) const {
+    const WorkBody& w = work_.bodies[at(mover)];
+    const int number = pair.a == mover ? pair.b : pair.a;
+    const WorkBody& other = work_.bodies[at(number)];
+    const Pose& there = bodies_[at(number)].pose;
+    Vec3 normal;
+    if (pair.is_analytic) return collision::analytic_gap(*w.shape, pose, *other.shape, there, normal) >= 0.0;
+    const collision::PlacedCollider placed = collision::place_collider(*w.collider, pose);
+    // What crosses by rounding may go on doing so, but no deeper.
+    if (state_.pairs[at(pair.state)].is_exempt) return !overlap(pair, mover, pose, 0.5 * aside(pair));
+    if (!pair.is_plane)
+      return !collision::crosses(placed, collision::place_collider(*other.collider, there)) &&
+             !overlap(pair, mover, pose, kNoDistance * pair.size);
+    normal = there.rotation * Vec3::UnitY();
+    const auto is_above = [&](const Vec3& v) {
+      return normal.dot(v - there.translation) >= w.collider->radius;
+    };
+    return std::all_of(placed.start.begin(), placed.start.end(), is_above);
   }
 
   bool is_free(int mover, const Pose& pose) const {
-    const WorkBody& w = work_.bodies[at(mover)];
-    const collision::PlacedCollider placed = collision::place_collider(*w.collider, pose);
     return std::all_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
-      if (!is_asked(pair, mover)) return true;
-      const int number = pair.a == mover ? pair.b : pair.a;
-      const WorkBody& other = work_.bodies[at(number)];
-      const Pose& there = bodies_[at(number)].pose;
-      if (pair.is_plane) {
-        const Vec3 normal = there.rotation * Vec3::UnitY();
-        const auto is_above = [&](const Vec3& v) {
-          return normal.dot(v - there.translation) >= w.collider->radius;
-        };
-        return std::all_of(placed.start.begin(), placed.start.end(), is_above);
-      }
-      Vec3 normal;
-      if (pair.is_analytic)
-        return collision::analytic_gap(*w.shape, pose, *other.shape, there, normal) >= 0.0;
-      return !collision::crosses(placed, collision::place_collider(*other.collider, there));
+      return !is_asked(pair, mover) || is_free_of(pair, mover, pose);
     });
   }
 
@@ -187,6 +270,7 @@ class Parting {
                after = collision::place_collider(own, pose);
     return std::any_of(work_.pairs.begin(), work_.pairs.end(), [&](const WorkPair& pair) {
       if (!is_asked(pair, mover) || pair.is_plane || pair.is_analytic) return false;
+      if (state_.pairs[at(pair.state)].is_exempt) return false;
       const int number = pair.a == mover ? pair.b : pair.a;
       const collision::Collider& other = *work_.bodies[at(number)].collider;
       return other.radius == 0.0 &&
@@ -199,6 +283,7 @@ class Parting {
   ContactState& state_;
   const MotionWork& work_;
   std::vector<int> moved_;  // in this run: their pairs are out of date
+  std::vector<const WorkPair*> touching_;
 };
 
 }  // namespace

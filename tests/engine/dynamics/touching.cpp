@@ -266,6 +266,29 @@ TEST_CASE("surfaces placed exactly in each other part without a push, and none h
   }
 }
 
+TEST_CASE("solid blocks placed edge to edge, in a row or in a slab, fall as any other body") {
+  for (const int count : {2, 3, 5})
+    for (const int deep : {1, 3})
+      for (const double half : {0.05, 0.1}) {
+        test::Scene scene;
+        for (int k = 0; k < count; ++k)
+          for (int m = 0; m < deep; ++m)
+            scene.add(
+                test::make_solid_block(Vec3(half, 0.05, 0.07), Vec3(2.0 * half * k, 1.0, 2.0 * 0.07 * m)));
+        int cut = 0, exempt = 0;
+        for (int i = 0; i < 60; ++i) {
+          scene.step();
+          cut += scene.report.failsafe_steps;
+          exempt += scene.report.crossing_pairs;
+        }
+        INFO(count << " by " << deep << " blocks " << 2.0 * half << " m wide");
+        CHECK(cut == 0);
+        CHECK(exempt == 0);
+        for (const auto& b : scene.bodies)
+          CHECK(1.0 - b.pose.translation.y() == Approx(0.5 * 9.81 * 0.25 * 0.25).epsilon(0.01));
+      }
+}
+
 TEST_CASE("sheets beside each other that touch in a point part to the sides on which they are") {
   // A fan in the plane x = 0, and one beside it whose middle vertex is in the middle of the first.
   constexpr double kRadius = 0.05, kApart = 1e-4;
