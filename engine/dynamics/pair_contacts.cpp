@@ -42,17 +42,36 @@ struct Hit {
   Contact contact;
 };
 
-void keep_first_hits(std::vector<Hit>& hits, double size, std::vector<Contact>& out) {
+bool is_sphere(const WorkBody& w) {
+  return w.shape->kind == ShapeKind::sphere;
+}
+
+// How far a has come towards b along the first contact's normal since then, m. Only of a sphere and a
+// surface: what it would meet further on, had the first not held it, it does not.
+double depth_at(const WorkBody& a, const WorkBody& b, const Hit& first, double time) {
+  const Vec3 way =
+      (a.predicted.translation - a.start.translation) - (b.predicted.translation - b.start.translation);
+  return -(time - first.time) * way.dot(first.contact.normal);
+}
+
+void keep_first_hits(const WorkBody& a, const WorkBody& b, std::vector<Hit>& hits, const WorkPair& pair,
+                     double usual_gap, std::vector<Contact>& out) {
   std::sort(hits.begin(), hits.end(), [](const Hit& x, const Hit& y) {
     return x.time < y.time || (x.time == y.time && x.contact.key < y.contact.key);
   });
+  if (is_sphere(a) || is_sphere(b)) {
+    const Hit first = hits.front();
+    std::erase_if(hits, [&](const Hit& hit) {
+      return depth_at(a, b, first, hit.time) * first.contact.normal.dot(hit.contact.normal) > usual_gap;
+    });
+  }
   std::vector<Contact> kept;
   for (const Hit& hit : hits) {
     if (hit.time > hits.front().time + kImpactWindow) break;
     kept.push_back(hit.contact);
   }
   for (const Contact& c : out) std::erase_if(kept, [&](const Contact& k) { return k.key == c.key; });
-  collision::reduce_manifold(kept, {}, 0.0, kOnSolid.radius * size, kOnSurface.cap);
+  collision::reduce_manifold(kept, {}, 0.0, kOnSolid.radius * pair.size, kOnSurface.cap);
   out.insert(out.end(), kept.begin(), kept.end());
 }
 
@@ -212,7 +231,7 @@ std::optional<NearestContacts> meet_features(const ContactSettings& settings, co
   pair.least_gap = std::min(whole.least_gap, pair.margin);
   pair.contacts = std::move(whole.contacts);
   pair.is_free_certified = !nearest && !one_turns_far && whole.is_free && whole.hits.empty();
-  if (!whole.hits.empty()) keep_first_hits(whole.hits, pair.size, pair.contacts);
+  if (!whole.hits.empty()) keep_first_hits(a, b, whole.hits, pair, usual_gap, pair.contacts);
   return nearest;
 }
 

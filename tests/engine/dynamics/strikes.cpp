@@ -128,4 +128,24 @@ TEST_CASE("only what has given an impulse is logged") {
   CHECK(given > 1000);
 }
 
+TEST_CASE("a ball that meets a sheet squarely bounces straight back, whenever in the step it arrives") {
+  // Triangles smaller than the ball, and a step in which it goes further than its radius.
+  constexpr double kRadius = 0.015;
+  for (const double speed : {2.5, 10.0, 40.0})
+    for (int phase = 0; phase < 12; ++phase) {
+      test::Scene scene;
+      scene.settings.gravity.setZero();
+      scene.add(test::make_shell(test::square_mesh(0.1, 20), false));
+      const double way = speed * scene.settings.time_step;
+      scene.add(test::make_sphere(kRadius, Vec3(0.003, kRadius + way * (2.0 + phase / 12.0), 0.002)));
+      scene.bodies[0].restitution = scene.bodies[1].restitution = 0.5;
+      scene.bodies[1].velocity = Vec3(0, -speed, 0);
+      for (int i = 0; i < 6; ++i) scene.step();
+      INFO(speed << " m/s, phase " << phase);
+      const Vec3 after = scene.bodies[1].velocity;
+      CHECK(after.y() == Approx(0.5 * speed).epsilon(1e-3));
+      CHECK(std::hypot(after.x(), after.z()) < 1e-3 * speed);
+    }
+}
+
 }  // namespace shatterbox
