@@ -28,7 +28,7 @@ struct ContactSettings {
   double warm_start = 0.95;     // share of the last impulses to begin with
   int continuous_rounds = 6;    // rounds of the continuous pass before the failsafe; 0: that at once
   bool has_sleep = true;        // what rests falls asleep
-  double sleep_time = 0.5;      // s of quiet before sleep
+  double sleep_time = 0.5;      // s of quiet before sleep, at least
   bool has_ways = false;        // ContactReport::ways is filled
   bool has_caches = true;       // feature lists are kept between steps; the results are the same without
   std::vector<PairOverride> overrides;  // the first that fits is taken

@@ -18,6 +18,7 @@ using body::BodyId;
 
 constexpr double kNoticed =
     10.0;  // times the least momentum: what gives a sleeper the speed of one who moves
+constexpr double kFallTimes = 1.57;  // of sqrt(size / g): half a second for a metre
 constexpr double kItAlone = std::numeric_limits<double>::min();  // kg m/s: wakes, and goes no further
 
 int find_number(const std::vector<Body>& bodies, BodyId id) {
@@ -34,6 +35,14 @@ BodyState* find_memory(ContactState& state, BodyId id) {
 
 double quiet_speed(const ContactSettings& settings, double reach) {
   return 0.5 * std::sqrt(settings.gravity.norm() * settings.kept_gap * 2.0 * reach);
+}
+
+// Quiet for that long it is at rest, s: what tips, or swings, needs the longer to be seen at it the larger it
+// is.
+double time_to_rest(const ContactSettings& settings, const Body& b) {
+  const double g = settings.gravity.norm();
+  const double fall = g > 0.0 ? kFallTimes * std::sqrt(2.0 * b.shape->bounding_radius / g) : 0.0;
+  return std::max(settings.sleep_time, fall);
 }
 
 // No point of the body is further from where it was at `rest` than six of its usual gaps.
@@ -262,7 +271,7 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
     const bool stays = memory != nullptr && stays_near(settings, b, memory->rest_pose);
     if (!stays && memory != nullptr) memory->rest_pose = b.pose;
     b.quiet_time = is_still || stays ? b.quiet_time + settings.time_step : 0.0;
-    anyone_tired = anyone_tired || b.quiet_time >= settings.sleep_time;
+    anyone_tired = anyone_tired || b.quiet_time >= time_to_rest(settings, b);
   }
   if (!anyone_tired) return;
   // Who touches nothing must not sleep in the air.
@@ -286,7 +295,7 @@ void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, Co
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake) continue;
-    is_restless[i] = b.quiet_time < settings.sleep_time || (!is_held[i] && !is_weightless) ? 1 : 0;
+    is_restless[i] = b.quiet_time < time_to_rest(settings, b) || (!is_held[i] && !is_weightless) ? 1 : 0;
   }
   mark_joined(bodies, state, is_restless);
   std::vector<char> is_kept_up = is_restless;

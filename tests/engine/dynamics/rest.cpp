@@ -1,6 +1,7 @@
 // Sleep and waking: who keeps whom awake, and what a disturbance reaches.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/engine/dynamics/bodies.h"
 
@@ -132,6 +133,26 @@ TEST_CASE("who sleeps on something falls when it has slipped away") {
   }
   CHECK(hanging <= 60);
   CHECK(scene.bodies[2].pose.translation.y() < kHalfSide + 2e-3);
+}
+
+TEST_CASE("a tower that begins to tip is not at rest, whatever its size") {
+  for (const double height : {0.2, 2.0, 20.0, 100.0}) {
+    test::Scene scene;
+    scene.add(test::make_plane());
+    const Vec3 half(0.1 * height, 0.5 * height, 0.1 * height);
+    body::Body tower = test::make_box(half, Vec3::Zero());
+    // One degree past where its centre is above the edge.
+    const double lean = std::atan2(half.x(), half.y()) + 0.0175;
+    tower.pose.rotation = Quat(Eigen::AngleAxisd(-lean, Vec3::UnitZ()));
+    const Vec3 edge = tower.pose.rotation * Vec3(half.x(), -half.y(), 0.0);
+    tower.pose.translation.y() = 1e-5 * height - edge.y();
+    scene.add(tower);
+    const double begin = tower.pose.translation.y();
+    const int steps = static_cast<int>(240 * 4.0 * std::max(1.0, std::sqrt(height)));
+    for (int i = 0; i < steps && scene.bodies[1].pose.translation.y() > 0.5 * begin; ++i) scene.step();
+    INFO(height << " m");
+    CHECK(scene.bodies[1].pose.translation.y() < 0.5 * begin);
+  }
 }
 
 }  // namespace shatterbox
