@@ -24,7 +24,7 @@ bool is_one_of(const std::string& name, std::initializer_list<const char*> names
 /// What a machine, a day and the names of files make of it.
 bool is_of_the_machine(const std::string& name) {
   return is_one_of(name, {"time_ms", "load_ms", "wall_seconds", "peak_memory_mb", "threads", "kept_frames",
-                          "version", "compiler", "gl_renderer", "recording", "recorded_by"});
+                          "bytes", "version", "compiler", "gl_renderer", "recording", "recorded_by"});
 }
 
 /// What is another number as soon as anything is rounded otherwise.

@@ -16,7 +16,7 @@ Json make_report() {
     "impacts": [{"time": 0.1, "stress_pa": 100.0, "ratio": 5.214, "verdict": "broke: 5.21 of its strength"},
                 {"time": 0.2, "stress_pa": 200.0, "ratio": 0.5, "verdict": "held: 0.5 of its strength"}],
     "solver": {"worst_residual": 1e-9, "solves": 3}, "time_ms": {"frame": {"median": 1}},
-    "load_ms": {}, "peak_memory_mb": 100, "contact": {"least_gap": null}})");
+    "load_ms": {}, "peak_memory_mb": 100, "parts": {"encoder": {"bytes": 2073600}}, "contact": {"least_gap": null}})");
 }
 
 std::vector<std::string> places(const ReportDifference& difference) {
@@ -37,6 +37,7 @@ TEST_CASE("what a machine makes of a report is no difference") {
   b["time_ms"]["frame"]["median"] = 7;
   b["load_ms"]["meshes"] = 3.0;
   b["peak_memory_mb"] = 1;
+  b["parts"]["encoder"]["bytes"] = 691200;
   b["threads"] = 64;
   b["version"] = "9";
   b["kept_frames"] = 5;
