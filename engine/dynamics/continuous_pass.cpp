@@ -283,7 +283,7 @@ class Guard {
     const std::vector<char> is_heaped = find_heaped();
     for (const std::size_t p : hit_) {
       const WorkPair& pair = work_.pairs[p];
-      if (is_known_[p]) continue;
+      if (is_known_[p] || pair.joint >= 0) continue;
       if (!is_first && !may_strike_on(pair, strikes_on)) continue;
       const bool can_act =
           work_.bodies[at(pair.a)].inverse_mass > 0.0 || work_.bodies[at(pair.b)].inverse_mass > 0.0;

@@ -107,6 +107,7 @@ void PathMemory::forget_ends(const FeatureSearch* search) {
     for (std::size_t i = begin; i < end; ++i) features[i].free_until = -1.0;
   }
   parts.clear();
+  part_count = 0;
 }
 
 double turn_bound(const Quat& from, const Quat& to, double reach) {

@@ -53,12 +53,14 @@ struct PathMemory {
   std::shared_ptr<const StartGaps> start_gaps;  // known before any test, or none
   // One of the straight parts of ways on which a body turns far.
   struct Part {
+    std::size_t number = 0;
     collision::FeatureList features;  // all that came within `searched` on it
     std::vector<double> free_until;   // m, per feature, as above
   };
   std::unique_ptr<Feature[]> features;  // of the search, once it was tested
   std::vector<Block> blocks;            // the same
-  std::vector<Part> parts;              // empty: nothing is known
+  std::vector<Part> parts;              // those with features, ascending
+  std::size_t part_count = 0;           // of how many; 0: nothing is known
   double moved = 0.0;
   double listed_at = 0.0;  // m: `moved` when the parts' features were listed
   double searched = 0.0;   // m: margin of what was searched for the tests of this step

@@ -83,9 +83,22 @@ bool share_pivot(const MotionWork& work, int a, int b) {
 void forget_joined_contacts(MotionWork& work) {
   if (work.joined.empty()) return;
   for (WorkPair& pair : work.pairs) {
-    if (std::binary_search(work.joined.begin(), work.joined.end(), ordered(pair.a, pair.b)))
-      pair.contacts.clear();
+    if (!std::binary_search(work.joined.begin(), work.joined.end(), ordered(pair.a, pair.b))) continue;
+    pair.contacts.clear();
+    const auto holds = [&](const WorkJoint& joint) {
+      return ordered(joint.a, joint.b) == ordered(pair.a, pair.b);
+    };
+    const auto joint = std::find_if(work.joints.begin(), work.joints.end(), holds);
+    pair.joint = static_cast<int>(joint - work.joints.begin());
   }
+}
+
+double off_at_end(const WorkJoint& joint, const MotionWork& work) {
+  const WorkBody &a = work.bodies[at(joint.a)], &b = work.bodies[at(joint.b)];
+  const Pose &in_a = joint.joint->frame_a, &in_b = joint.joint->frame_b;
+  return (b.end.apply(in_b.translation) - a.end.apply(in_a.translation)).norm() +
+         turn_bound(a.end.rotation * in_a.rotation, b.end.rotation * in_b.rotation,
+                    std::min(a.reach, b.reach));
 }
 
 core::DisjointSets join_bodies(const MotionWork& work) {

@@ -21,6 +21,9 @@ bool share_pivot(const MotionWork& work, int a, int b);
 /// from crossing like all others.
 void forget_joined_contacts(MotionWork& work);
 
+/// How far the faces that a joint holds are from where they should be at the bodies' ends, m, at most.
+double off_at_end(const WorkJoint& joint, const MotionWork& work);
+
 /// Bodies that move as one, by mortar: what no impulse moves joins nobody.
 core::DisjointSets join_bodies(const MotionWork& work);
 

@@ -160,6 +160,7 @@ struct WorkPair {
   bool looks_ahead = false;  // may go so far that what it will meet is looked for on the predicted ways
   bool needs_search = false;
   bool passes = false;             // crosses since it was first seen, and there is no side to part to
+  int joint = -1;                  // that holds them together: what they give each other is its; -1: none
   bool is_first_seen = false;      // no memory of it, or one of its bodies was put where it is
   double motion = 0.0;             // m: bound of the relative motion if nothing touches
   double margin = 0.0;             // m: contacts are felt from this gap on

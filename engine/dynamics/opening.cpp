@@ -169,6 +169,7 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   o.b = pair.b;
   o.normal = there.normal;
   o.share = knot;
+  o.is_joined = pair.joint >= 0;
   o.gap = there.gap;
   o.wanted = wanted;
   o.restitution = pair.material.restitution;
@@ -210,6 +211,7 @@ void remove_approach(const std::vector<Opening>& openings, std::optional<double>
                      body::ImpulseKind kind, int sweeps, MotionWork& work) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (const Opening& o : openings) {
+      if (o.is_joined) continue;
       const WorkBody &a = work.bodies[at(o.a)], &b = work.bodies[at(o.b)];
       const double closing =
           -o.normal.dot(a.velocity + a.spin.cross(o.arm_a) - b.velocity - b.spin.cross(o.arm_b));

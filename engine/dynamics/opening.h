@@ -20,6 +20,7 @@ struct Opening {
   double weight = 0.0;        // kg
   double impulse = 0.0;       // kg m, of the displacement
   bool bounces = false;       // a hit that nobody solved: what closes there is turned round
+  bool is_joined = false;     // only the places are mended: what is given is the joint's
   double restitution = 0.0;   // by as much, if it closes faster than
   double threshold = 0.0;     // this, m/s
 };

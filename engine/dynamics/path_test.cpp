@@ -8,6 +8,7 @@
 #include "engine/collision/feature_gap.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/dynamics/joint_work.h"
 #include "engine/dynamics/solid_touch.h"
 
 namespace shatterbox::dynamics {
@@ -21,7 +22,10 @@ constexpr double kStrayed = 0.1;  // of the slack of searches
 constexpr double kWiden = 3.0;    // times the margin of a search that did not last
 // times the kept gap: what is looked at, with what is spare and what later rounds move
 constexpr double kLooked = 3.0;
-constexpr double kAmple = 20.0;  // times the kept gap: more room than rounds take
+constexpr double kMostOff = 0.5;     // of a gap, that a joint may be off
+constexpr double kHardlyOff = 1e-4;  // the same, of the pair's size,
+constexpr double kOffByTurn = 0.05;  // and times the square of how far it turns in the step
+constexpr double kAmple = 20.0;      // times the kept gap: more room than rounds take
 
 void keep_first(std::vector<PathHit>& hits, double size) {
   std::sort(hits.begin(), hits.end(), [](const PathHit& x, const PathHit& y) {
@@ -43,6 +47,15 @@ void keep_first(std::vector<PathHit>& hits, double size) {
 bool starts_beyond(const WorkPair& pair, double reach) {
   const auto& gaps = pair.known.start_gaps;
   return pair.known.blocks.empty() && gaps && gaps->search == pair.search && gaps->least > reach;
+}
+
+// What a joint holds close together stays as close, but for what the joint is off, and more so where it
+// turns: to open that would be to pull at the joint, step after step.
+bool is_held_by_joint(const WorkPair& pair, const MotionWork& work) {
+  if (pair.joint < 0) return false;
+  const double turn = std::min(work.bodies[at(pair.a)].turn_angle, work.bodies[at(pair.b)].turn_angle);
+  const double usual = (kHardlyOff + kOffByTurn * turn * turn) * pair.size;
+  return off_at_end(work.joints[at(pair.joint)], work) <= std::max(kMostOff * pair.least_gap, usual);
 }
 
 // Where a body began is free.
@@ -127,6 +140,7 @@ std::vector<PathHit> PathTest::find_hits(std::size_t pair_number, double& spare)
   std::vector<PathHit> hits;
   spare = 0.0;
   if (stays(work_.bodies[at(pair.a)]) && stays(work_.bodies[at(pair.b)])) return hits;
+  if (is_held_by_joint(pair, work_)) return hits;
   if (looks_[pair_number] == Look::apart) {
     spare = clearances_[pair_number] - kSafe * pair.kept_gap;
   } else if (pair.is_plane) {

@@ -27,7 +27,7 @@ struct PartEnds {
 // Some features of a pair on a straight part, one after the other.
 class PartFollower {
  public:
-  PartFollower(const WorkBody& a, const WorkBody& b, const PartEnds& ends, WorkPair& pair,
+  PartFollower(const WorkBody& a, const WorkBody& b, const PartEnds& ends, const WorkPair& pair,
                PathMemory::Part& known, double spare)
       : a_(a), b_(b), ends_(ends), pair_(pair), known_(known), safe_(kSafe * pair.kept_gap), spare_(spare) {}
 
@@ -104,7 +104,7 @@ std::size_t TurningPaths::level_of(const WorkPair& pair) const {
 
 bool TurningPaths::is_listed(const WorkPair& pair) const {
   const PathMemory& known = pair.known;
-  return known.parts.size() == std::size_t{1} << level_of(pair) &&
+  return known.part_count == std::size_t{1} << level_of(pair) &&
          known.searched - (known.moved - known.listed_at) >= kNear * pair.kept_gap;
 }
 
@@ -119,7 +119,7 @@ void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
   });
   enum class Need : char { nothing, ends, boxes };
   std::vector<std::array<Need, kLevels>> needs(work_.bodies.size());
-  std::vector<std::pair<std::size_t, std::size_t>> to_list;  // pair and part
+  std::vector<std::size_t> to_list;
   for (const std::size_t p : pairs) {
     if (!are_followed_[p]) continue;
     WorkPair& pair = work_.pairs[p];
@@ -131,8 +131,9 @@ void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
     pair.known.searched =
         kNear * pair.kept_gap + std::max(kSlack * slack, std::min(kGrow * pair.known.searched, slack));
     pair.known.listed_at = pair.known.moved;
-    pair.known.parts.assign(std::size_t{1} << level, {});
-    for (std::size_t k = 0; k < pair.known.parts.size(); ++k) to_list.emplace_back(p, k);
+    pair.known.parts.clear();
+    pair.known.part_count = std::size_t{1} << level;
+    to_list.push_back(p);
   }
   core::parallel_for(work_.bodies.size(), 1, [&](std::size_t i) {
     for (std::size_t level = 0; level < kLevels; ++level) {
@@ -140,8 +141,7 @@ void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
       if (need != Need::nothing) fill_parts(work_.bodies[i], level, need == Need::boxes, bodies_[i]);
     }
   });
-  core::parallel_for(to_list.size(), 1,
-                     [&](std::size_t k) { list_part(work_.pairs[to_list[k].first], to_list[k].second); });
+  core::parallel_for(to_list.size(), 1, [&](std::size_t k) { list_parts(work_.pairs[to_list[k]]); });
 }
 
 // A body has one way, whoever it meets: where it is divided further than it turns, vertices stay on the
@@ -178,14 +178,19 @@ void TurningPaths::fill_parts(const WorkBody& w, std::size_t level, bool has_box
   }
 }
 
-void TurningPaths::list_part(WorkPair& pair, std::size_t number) const {
+void TurningPaths::list_parts(WorkPair& pair) const {
   const std::size_t level = level_of(pair);
-  const Part &a = bodies_[at(pair.a)][level][number], &b = bodies_[at(pair.b)][level][number];
   const double reach = work_.bodies[at(pair.a)].reach + work_.bodies[at(pair.b)].reach;
-  PathMemory::Part& known = pair.known.parts[number];
-  if (closest_approach(a.centre - b.centre, a.way - b.way) <= reach + pair.known.searched)
-    collision::list_swept_features(a.placed, b.placed, b.way - a.way, pair.known.searched, known.features);
-  known.free_until.assign(known.features.size(), -1.0);
+  for (std::size_t k = 0; k < pair.known.part_count; ++k) {
+    const Part &a = bodies_[at(pair.a)][level][k], &b = bodies_[at(pair.b)][level][k];
+    if (closest_approach(a.centre - b.centre, a.way - b.way) > reach + pair.known.searched) continue;
+    PathMemory::Part part;
+    part.number = k;
+    collision::list_swept_features(a.placed, b.placed, b.way - a.way, pair.known.searched, part.features);
+    if (part.features.empty()) continue;
+    part.free_until.assign(part.features.size(), -1.0);
+    pair.known.parts.push_back(std::move(part));
+  }
 }
 
 std::vector<PathHit> TurningPaths::find_hits(std::size_t pair_number, double& spare) {
@@ -193,14 +198,17 @@ std::vector<PathHit> TurningPaths::find_hits(std::size_t pair_number, double& sp
   std::vector<PathHit> hits;
   spare = pair.kept_gap;
   if (!are_followed_[pair_number]) return hits;
-  const PathMemory& known = pair.known;
+  PathMemory& known = pair.known;
   spare = known.searched - (known.moved - known.listed_at) - kSafe * pair.kept_gap;
   spare = std::min(spare, kNear * pair.kept_gap);
-  for (std::size_t k = 0; k < known.parts.size() && hits.empty(); ++k) hits = follow_part(pair, k, spare);
+  for (PathMemory::Part& part : known.parts)
+    if (hits.empty()) hits = follow_part(pair, part, spare);
   return hits;
 }
 
-std::vector<PathHit> TurningPaths::follow_part(WorkPair& pair, std::size_t number, double& spare) const {
+std::vector<PathHit> TurningPaths::follow_part(const WorkPair& pair, PathMemory::Part& known,
+                                               double& spare) const {
+  const std::size_t number = known.number;
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   const std::size_t level = level_of(pair);
   const std::vector<Part>&parts_a = bodies_[at(pair.a)][level], &parts_b = bodies_[at(pair.b)][level];
@@ -211,7 +219,6 @@ std::vector<PathHit> TurningPaths::follow_part(WorkPair& pair, std::size_t numbe
                       parts_b[number].to,
                       share * static_cast<double>(number),
                       share};
-  PathMemory::Part& known = pair.known.parts[number];
   struct Found {
     double spare = 0.0;
     std::vector<PathHit> hits;

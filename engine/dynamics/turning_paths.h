@@ -44,8 +44,8 @@ class TurningPaths {
 
   std::size_t level_of(const WorkPair& pair) const;
   void fill_parts(const WorkBody& body, std::size_t level, bool has_boxes, Divided& divided) const;
-  void list_part(WorkPair& pair, std::size_t number) const;
-  std::vector<PathHit> follow_part(WorkPair& pair, std::size_t number, double& spare) const;
+  void list_parts(WorkPair& pair) const;
+  std::vector<PathHit> follow_part(const WorkPair& pair, PathMemory::Part& known, double& spare) const;
 
   const ContactSettings& settings_;
   MotionWork& work_;

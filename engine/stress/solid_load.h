@@ -1,6 +1,6 @@
 // Loads of a solid as vectors of all degrees of freedom: a force spread over a disc of its surface about a
 // point (a point load has no limit under refinement), and the centrifugal load of a spin. Material space, SI
-// units. Gravity needs none: it accelerates all alike, and the balance takes it out.
+// units. Gravity needs none on what is free: it accelerates all alike, and the balance takes it out.
 #pragma once
 
 #include <vector>
