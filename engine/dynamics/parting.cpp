@@ -146,8 +146,15 @@ class Parting {
     return {bodies_[at(i)].pose.rotation, bodies_[at(i)].pose.translation + shift};
   }
 
+  // Joints hold it from then on where it is.
   void move(int i, const Vec3& shift) {
-    bodies_[at(i)].pose.translation += shift;
+    Body& body = bodies_[at(i)];
+    body.pose.translation += shift;
+    const Vec3 back = body.pose.rotation.conjugate() * shift;
+    for (Joint& joint : state_.joints) {
+      if (joint.body_a == body.id) joint.frame_a.translation -= back;
+      if (joint.body_b == body.id) joint.frame_b.translation -= back;
+    }
     moved_.push_back(i);
   }
 
@@ -207,7 +214,8 @@ class Parting {
   }
 
   static bool is_in_one_place(const WorkPair& pair) {
-    return pair.least_gap <= kNoDistance * pair.size && !pair.contacts.empty();
+    // What a joint holds has no contacts.
+    return pair.least_gap <= kNoDistance * pair.size && (pair.joint >= 0 || !pair.contacts.empty());
   }
 
   // With the mover at that pose they are no longer in one place.

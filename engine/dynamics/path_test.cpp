@@ -23,7 +23,7 @@ constexpr double kWiden = 3.0;    // times the margin of a search that did not l
 // times the kept gap: what is looked at, with what is spare and what later rounds move
 constexpr double kLooked = 3.0;
 constexpr double kMostOff = 0.5;     // of a gap, that a joint may be off
-constexpr double kHardlyOff = 1e-4;  // the same, of the pair's size,
+constexpr double kHardlyOff = 1e-6;  // the same, of the pair's size,
 constexpr double kOffByTurn = 0.05;  // and times the square of how far it turns in the step
 constexpr double kAmple = 20.0;      // times the kept gap: more room than rounds take
 
