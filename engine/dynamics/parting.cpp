@@ -168,12 +168,10 @@ class Parting {
       const Pose pose = shifted(mover, length * way);
       if (!is_free(mover, pose)) continue;
       const bool is_clear = !passes_somebody(mover, pose, length);
+      const bool is_parted = is_apart(pair, mover, pose);
       if (is_clear && !clear) clear = way;
-      if (!chosen && is_apart(pair, mover, pose)) chosen = way;
-      if (is_clear && is_apart(pair, mover, pose)) {
-        chosen = way;
-        break;
-      }
+      if (is_parted && (is_clear || !chosen)) chosen = way;
+      if (is_parted && is_clear) break;
     }
     if (!chosen && push_on(pair, mover, other, ways, length)) return true;
     if (!chosen) chosen = clear;
