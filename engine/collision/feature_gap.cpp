@@ -280,4 +280,13 @@ Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& star
   return c;
 }
 
+bool are_within(const PlacedCollider& a, const PlacedCollider& b, double distance) {
+  FeatureList near;
+  list_near_features(a, b, distance, near);
+  return std::any_of(near.begin(), near.end(), [&](const FeaturePair& features) {
+    return measure(gather(features, *a.collider, a.start, *b.collider, b.start), Vec3::UnitY()).gap <=
+           distance;
+  });
+}
+
 }  // namespace shatterbox::collision

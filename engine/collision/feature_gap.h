@@ -75,4 +75,8 @@ Contact contact_here(const FeaturePair& features, const FeaturePoints& here, con
 /// at the impact.
 Contact contact_at_impact(const FeaturePair& features, const FeaturePoints& start, const FeatureGap& hit);
 
+/// Whether features of the two, where they are placed, are as near as `distance` (m), radii subtracted. Needs
+/// `boxes` of both.
+bool are_within(const PlacedCollider& a, const PlacedCollider& b, double distance);
+
 }  // namespace shatterbox::collision

@@ -70,7 +70,10 @@ void list_joints(const ContactState& state, MotionWork& work) {
     w.joint = &joint;
     work.joints.push_back(w);
     if (joint.may_meet) continue;
-    (joint.is_pivot ? work.pivots : work.joined).push_back(ordered(w.a, w.b));
+    if (joint.is_pivot)
+      work.pivots.push_back(ordered(w.a, w.b));
+    else
+      work.joined.emplace_back(ordered(w.a, w.b), static_cast<int>(work.joints.size()) - 1);
   }
   std::sort(work.pivots.begin(), work.pivots.end());
   std::sort(work.joined.begin(), work.joined.end());
@@ -83,13 +86,11 @@ bool share_pivot(const MotionWork& work, int a, int b) {
 void forget_joined_contacts(MotionWork& work) {
   if (work.joined.empty()) return;
   for (WorkPair& pair : work.pairs) {
-    if (!std::binary_search(work.joined.begin(), work.joined.end(), ordered(pair.a, pair.b))) continue;
+    const std::pair key(ordered(pair.a, pair.b), 0);
+    const auto joined = std::lower_bound(work.joined.begin(), work.joined.end(), key);
+    if (joined == work.joined.end() || joined->first != key.first) continue;
     pair.contacts.clear();
-    const auto holds = [&](const WorkJoint& joint) {
-      return ordered(joint.a, joint.b) == ordered(pair.a, pair.b);
-    };
-    const auto joint = std::find_if(work.joints.begin(), work.joints.end(), holds);
-    pair.joint = static_cast<int>(joint - work.joints.begin());
+    pair.joint = joined->second;
   }
 }
 

@@ -216,7 +216,8 @@ class MotionWork {
   std::vector<std::pair<int, int>> missed_pairs;  // these, ascending
   std::vector<SolverContact> contacts;
   std::vector<WorkJoint> joints;
-  std::vector<std::pair<int, int>> joined, pivots;  // pairs of bodies, by area and about a point; ascending
+  std::vector<std::pair<std::pair<int, int>, int>> joined;  // pairs of bodies, and the joint over an area
+  std::vector<std::pair<int, int>> pivots;                  // pairs about a point; both ascending
   std::vector<Island> islands;
   std::vector<Disturbance> to_wake;  // sleepers that something comes down on
   std::vector<body::BodyId> ids;

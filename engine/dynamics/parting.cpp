@@ -6,7 +6,6 @@
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/feature_gap.h"
-#include "engine/collision/feature_list.h"
 #include "engine/core/index.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/shift_test.h"
@@ -221,14 +220,7 @@ class Parting {
     const int other = pair.a == mover ? pair.b : pair.a;
     const auto moved = collision::place_collider(*work_.bodies[at(mover)].collider, pose),
                still = collision::place_collider(*work_.bodies[at(other)].collider, bodies_[at(other)].pose);
-    const double least = kNoDistance * pair.size;
-    collision::FeatureList near;
-    collision::list_near_features(moved, still, least, near);
-    return std::none_of(near.begin(), near.end(), [&](const collision::FeaturePair& features) {
-      const auto points =
-          collision::gather(features, *moved.collider, moved.start, *still.collider, still.start);
-      return collision::measure(points, Vec3::UnitY()).gap <= least;
-    });
+    return !collision::are_within(moved, still, kNoDistance * pair.size);
   }
 
   bool is_asked(const WorkPair& pair, int mover) const {

@@ -54,12 +54,7 @@ std::vector<const Body*> find_neighbours(const Body& whole, const std::vector<Bo
 /// no direction.
 bool touch(const Placed& a, const Placed& b) {
   const double size = 2.0 * std::min(a.collider->bounding_radius, b.collider->bounding_radius);
-  collision::FeatureList features;
-  collision::list_near_features(a.placed, b.placed, dynamics::kNoDistance * size, features);
-  return std::any_of(features.begin(), features.end(), [&](const collision::FeaturePair& pair) {
-    const auto points = collision::gather(pair, *a.collider, a.placed.start, *b.collider, b.placed.start);
-    return collision::measure(points, Vec3::UnitY()).gap <= dynamics::kNoDistance * size;
-  });
+  return collision::are_within(a.placed, b.placed, dynamics::kNoDistance * size);
 }
 
 enum class Meeting { none, touch, cross };

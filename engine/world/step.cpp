@@ -38,13 +38,19 @@ double time_of_hit(const std::vector<const EvaluatedImpact*>& broken, const std:
 /// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
 constexpr int kMostPasses = 12;
 
+Vec3 momentum_of(const std::vector<body::Body>& bodies) {
+  Vec3 sum = Vec3::Zero();
+  for (const body::Body& body : bodies)
+    if (body.is_dynamic()) sum += body.shape->mass * body.velocity;
+  return sum;
+}
+
 double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
                     ConservationFigures& figures) {
-  figures.momentum = Vec3::Zero();
+  figures.momentum = momentum_of(bodies);
   figures.kinetic_energy = figures.potential_energy = 0.0;
   for (const body::Body& body : bodies) {
     if (!body.is_dynamic()) continue;
-    figures.momentum += body.shape->mass * body.velocity;
     figures.kinetic_energy += body::kinetic_energy(body);
     figures.potential_energy -= body.shape->mass * body.free_acceleration(gravity).dot(body.pose.translation);
   }
@@ -400,28 +406,26 @@ void World::inherit_stress(body::BodyId parent, const std::vector<body::BodyId>&
   stress.erase(parent);
 }
 
-void World::book_breaks(const std::vector<body::Body>& before, std::span<const body::LoggedImpulse> paid) {
+void World::book_momentum(const std::vector<body::Body>& before, std::span<const body::LoggedImpulse> log,
+                          double time_step) {
   State& s = *state_;
+  const Vec3 explained = explained_momentum(before, s.moving.bodies, log, s.settings.gravity, time_step);
+  const double error = (momentum_of(s.moving.bodies) - momentum_of(before) - explained).norm();
+  s.report.conservation.momentum_error = std::max(s.report.conservation.momentum_error, error);
+}
+
+void World::book_breaks(const std::vector<body::Body>& before, std::span<const body::LoggedImpulse> paid) {
   // What is held by an axis gives the rest of its pieces' momentum to that.
   if (std::any_of(before.begin(), before.end(), [](const body::Body& b) { return b.locked.any(); })) return;
-  ConservationFigures start, end;
-  total_energy(before, s.settings.gravity, start);
-  total_energy(s.moving.bodies, s.settings.gravity, end);
-  const Vec3 explained = explained_momentum(before, s.moving.bodies, paid, s.settings.gravity, 0.0);
-  const double error = (end.momentum - start.momentum - explained).norm();
-  s.report.conservation.momentum_error = std::max(s.report.conservation.momentum_error, error);
+  book_momentum(before, paid, 0.0);
 }
 
 void World::book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,
                               double time_step) {
   State& s = *state_;
   ConservationFigures& figures = s.report.conservation;
-  ConservationFigures start;
-  total_energy(before, s.settings.gravity, start);
   const double energy = total_energy(s.moving.bodies, s.settings.gravity, figures);
-  const Vec3 explained = explained_momentum(before, s.moving.bodies, log, s.settings.gravity, time_step);
-  const double error = (figures.momentum - start.momentum - explained).norm();
-  figures.momentum_error = std::max(figures.momentum_error, error);
+  book_momentum(before, log, time_step);
   const bool is_driven = std::any_of(s.moving.bodies.begin(), s.moving.bodies.end(), [](const body::Body& b) {
     return b.is_driven() || !b.torque.isZero(0.0);
   });

@@ -182,6 +182,8 @@ class World {
   /// Opens those that are overloaded most. True if the part must be taken again.
   bool open_joints(std::span<const JointVerdict> verdicts, MovingState& snapshot, bool may_go_back);
   void inherit_stress(body::BodyId parent, const std::vector<body::BodyId>& born);
+  void book_momentum(const std::vector<body::Body>& before, std::span<const body::LoggedImpulse> log,
+                     double time_step);
   void book_breaks(const std::vector<body::Body>& before, std::span<const body::LoggedImpulse> paid);
   void book_conservation(const std::vector<body::Body>& before, const body::ImpulseLog& log,
                          double time_step);
