@@ -108,14 +108,16 @@ void add_face_contacts(const PlacedBox& reference, int axis, const Vec3& outward
     clip(polygon, -direction, reference.shape.half_extent[side] - middle);
   }
   const double plane = outward.dot(reference.centre) + reference.shape.half_extent[axis];
+  const bool is_upper = reference.axes.col(axis).dot(outward) > 0.0;
+  const auto faces = static_cast<std::uint64_t>(2 * number + (is_upper ? 1 : 0)) << 16 |
+                     static_cast<std::uint64_t>(2 * face + (face_side > 0.0 ? 1 : 0)) << 8;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const double gap = outward.dot(polygon[i]) - plane;
     if (gap > margin) continue;
     Contact c;
     // Polygon corners keep their number while the clipping does not change: good enough to find last step's
     // impulse.
-    c.key = (static_cast<std::uint64_t>(number) << 16) | (static_cast<std::uint64_t>(face) << 8) |
-            static_cast<std::uint64_t>(i);
+    c.key = faces | static_cast<std::uint64_t>(i);
     const Vec3 on_reference = polygon[i] - gap * outward;
     c.gap = gap;
     c.normal = reference_is_a ? Vec3(-outward) : outward;
@@ -126,30 +128,35 @@ void add_face_contacts(const PlacedBox& reference, int axis, const Vec3& outward
   }
 }
 
-Vec3 edge_centre(const PlacedBox& box, int edge, const Vec3& direction) {
-  Vec3 centre = box.centre;
+// Of four parallel edges the one that lies furthest in a direction.
+struct BoxEdge {
+  Vec3 middle, half;
+  std::uint64_t number = 0;  // which of them, below 8
+};
+BoxEdge furthest_edge(const PlacedBox& box, int along, const Vec3& direction) {
+  BoxEdge edge{box.centre, box.shape.half_extent[along] * box.axes.col(along)};
   for (int i = 0; i < 3; ++i) {
-    if (i == edge) continue;
-    const double side = box.axes.col(i).dot(direction) > 0.0 ? 1.0 : -1.0;
-    centre += side * box.shape.half_extent[i] * box.axes.col(i);
+    if (i == along) continue;
+    const bool is_upper = box.axes.col(i).dot(direction) > 0.0;
+    edge.middle += (is_upper ? 1.0 : -1.0) * box.shape.half_extent[i] * box.axes.col(i);
+    if (is_upper) edge.number |= std::uint64_t{1} << i;
   }
-  return centre;
+  return edge;
 }
 
 void add_edge_contact(const PlacedBox& a, const PlacedBox& b, const Axis& axis, std::vector<Contact>& out) {
-  const int edge_a = (axis.number - 6) / 3, edge_b = (axis.number - 6) % 3;
-  const Vec3 middle_a = edge_centre(a, edge_a, -axis.normal), middle_b = edge_centre(b, edge_b, axis.normal);
-  const Vec3 half_a = a.shape.half_extent[edge_a] * a.axes.col(edge_a);
-  const Vec3 half_b = b.shape.half_extent[edge_b] * b.axes.col(edge_b);
-  const auto nearest = geometry::closest_between_segments(middle_a - half_a, middle_a + half_a,
-                                                          middle_b - half_b, middle_b + half_b);
+  const BoxEdge edge_a = furthest_edge(a, (axis.number - 6) / 3, -axis.normal);
+  const BoxEdge edge_b = furthest_edge(b, (axis.number - 6) % 3, axis.normal);
+  const auto nearest =
+      geometry::closest_between_segments(edge_a.middle - edge_a.half, edge_a.middle + edge_a.half,
+                                         edge_b.middle - edge_b.half, edge_b.middle + edge_b.half);
   Contact c;
-  c.key = static_cast<std::uint64_t>(axis.number) << 16;
+  c.key = static_cast<std::uint64_t>(2 * axis.number) << 16 | edge_a.number << 8 | edge_b.number;
   c.on_a = nearest.on_p;
   c.on_b = nearest.on_q;
   c.normal = axis.normal;
   c.gap = axis.normal.dot(c.on_a - c.on_b);
-  set_crossing_edges(half_a, half_b, c);
+  set_crossing_edges(edge_a.half, edge_b.half, c);
   out.push_back(c);
 }
 

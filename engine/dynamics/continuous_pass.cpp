@@ -35,6 +35,7 @@ constexpr double kOpening = 0.5, kLastOpening = 0.05;
 constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with the one before
 constexpr int kMostSolves = 8;        // of islands that got contacts on their ways
 constexpr int kPatience = 2;          // rounds without fewer hits
+constexpr double kTurned = 0.01;      // rad: a normal that lies otherwise is that of another meeting
 constexpr int kMostZoneRounds = 8;    // before whole steps are taken back
 constexpr int kZoneOpenings = 12;     // after bodies were united, before more are
 constexpr int kZonePatience = 4;      // of these, without fewer hits
@@ -283,7 +284,7 @@ class Guard {
     const std::vector<char> is_heaped = find_heaped();
     for (const std::size_t p : hit_) {
       const WorkPair& pair = work_.pairs[p];
-      if (is_known_[p] || pair.joint >= 0) continue;
+      if (pair.joint >= 0 || (is_known_[p] && !meets_anew(p))) continue;
       if (!is_first && !may_strike_on(pair, strikes_on)) continue;
       const bool can_act =
           work_.bodies[at(pair.a)].inverse_mass > 0.0 || work_.bodies[at(pair.b)].inverse_mass > 0.0;
@@ -303,6 +304,13 @@ class Guard {
     solve_islands(bodies_, settings_, is_dirty, work_);
     mark_due_since(before);
     return true;
+  }
+
+  // What bounced in the step may meet once more, in another place or turned another way.
+  bool meets_anew(std::size_t p) {
+    return std::any_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
+      return find_contact(static_cast<int>(p), hit.contact) == work_.contacts.end();
+    });
   }
 
   // m, by which the hits of a pair overshoot at most.
@@ -356,7 +364,7 @@ class Guard {
   void add_contact(int pair_number, const Contact& found) {
     const PairState& memory = state_.pairs[at(work_.pairs[at(pair_number)].state)];
     const SolverContact fresh = make_solver_contact(memory, work_, pair_number, found);
-    const auto same = find_contact(pair_number, found.key);
+    const auto same = find_contact(pair_number, found);
     if (same != work_.contacts.end())
       *same = fresh;
     else
@@ -364,8 +372,12 @@ class Guard {
   }
 
   // The first of them ascend by pair, as the graph gave them; behind them are those that were added here.
-  std::vector<SolverContact>::iterator find_contact(int pair_number, std::uint64_t key) {
-    const auto is_it = [&](const SolverContact& c) { return c.pair == pair_number && c.found.key == key; };
+  std::vector<SolverContact>::iterator find_contact(int pair_number, const Contact& found) {
+    const bool may_turn = work_.pairs[at(pair_number)].is_analytic;
+    const auto is_it = [&](const SolverContact& c) {
+      return c.pair == pair_number && c.found.key == found.key &&
+             !(may_turn && (c.found.normal - found.normal).norm() > kTurned);
+    };
     const auto added = work_.contacts.begin() + static_cast<std::ptrdiff_t>(first_contacts_);
     const auto by_pair = [](const SolverContact& c, int number) { return c.pair < number; };
     auto place = std::lower_bound(work_.contacts.begin(), added, pair_number, by_pair);

@@ -34,6 +34,9 @@ void log_joints(const MotionWork& work, body::ImpulseLog& log);
 /// Writes what joints gave to the state, and how fast they swing what they pull.
 void remember_joints(const MotionWork& work, ContactState& state);
 
+/// How fast, rad/s, what arrives within `time_step` (s) would swing the links that it strikes, at most.
+double find_swing_by_blows(const MotionWork& work, double time_step);
+
 /// The most that a joint is off at the ends of the ways, of the lesser reach: what was opened tears it.
 double find_torn(const MotionWork& work);
 

@@ -295,9 +295,9 @@ int finer_parts(const ContactSettings& settings, const StepPart& part) {
   return std::min(kFiner, (lively_parts(settings) + part.count - 1) / part.count);
 }
 
-// How many times as many substeps it takes to follow what joints pull taut.
-int finer_substeps(const ContactSettings& settings, const ContactState& state) {
-  const double turn = state.swing * settings.time_step / settings.substeps;
+// How many times as many substeps it takes to follow links that swing so fast, rad/s.
+int finer_substeps(const ContactSettings& settings, double swing) {
+  const double turn = swing * settings.time_step / settings.substeps;
   return turn > kSwingTurn ? static_cast<int>(std::ceil(std::min(turn / kSwingTurn, kMostFiner))) : 1;
 }
 
@@ -403,7 +403,8 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   ContactSettings own = settings;
   own.time_step /= part.count;
   own.substeps = std::max(1, settings.substeps / part.count);
-  own.substeps *= finer_substeps(own, state);
+  const int usual_substeps = own.substeps;
+  own.substeps *= finer_substeps(own, state.swing);
   begin_taking(own, part, *state.shelf);
   aim_scripted(bodies, own.time_step);
   const std::vector<char> slept = find_sleepers(bodies);
@@ -415,6 +416,14 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   for (std::size_t round = 0; round < bodies.size(); ++round) {
     if (!part_coincident(bodies, own, state, work, report.parted)) break;
     find_candidate_pairs(bodies, own, state, work);
+  }
+  // What joints bore in the step before says nothing of a blow.
+  ContactSettings struck = own;
+  struck.substeps = usual_substeps;
+  struck.substeps *= finer_substeps(struck, find_swing_by_blows(work, own.time_step));
+  if (struck.substeps > own.substeps) {
+    own = struck;
+    find_awake_pairs(bodies, own, state, work);
   }
   // Each round wakes somebody.
   for (;;) {

@@ -95,8 +95,21 @@ class Hits {
   Hit none_;
 };
 
+// What the joint gave lately, as much of it as fits in `part`: that goes on beside a collision.
+JointMemory::Load go_on(const std::vector<JointMemory::Load>& known, const PartTime& part) {
+  JointMemory::Load load{part.start, Vec3::Zero(), Vec3::Zero()};
+  if (known.empty()) return load;
+  const double share = part.length / (part.start - known.front().time);
+  for (const JointMemory::Load& one : known) {
+    load.impulse += share * one.impulse;
+    load.couple += share * one.couple;
+  }
+  return load;
+}
+
 // Adds what the joint gave in this part to its memory, as a collision's or as contact's.
 void remember(const dynamics::Joint& joint, const Hit& hit, const PartTime& part, JointMemory& memory) {
+  const JointMemory::Load before = go_on(memory.contact, part);
   const double oldest = part.start + 0.5 * part.length - part.average;
   std::erase_if(memory.contact, [&](const JointMemory::Load& load) { return load.time < oldest; });
   JointMemory::Load load{part.start, joint.impulse, joint.couple};
@@ -108,16 +121,9 @@ void remember(const dynamics::Joint& joint, const Hit& hit, const PartTime& part
   if (is_hit || memory.event_duration > 0.0) {
     if (is_hit) memory.event_time = hit.time;
     if (is_hit) memory.event_duration = std::max(memory.event_duration, hit.duration);
-    // What it bore before goes on beside the collision.
-    Vec3 impulse = Vec3::Zero(), couple = Vec3::Zero();
-    for (const JointMemory::Load& known : memory.contact) {
-      impulse += part.length / part.average * known.impulse;
-      couple += part.length / part.average * known.couple;
-    }
-    memory.event_impulse += load.impulse - impulse;
-    memory.event_couple += load.couple - couple;
-    load.impulse = impulse;
-    load.couple = couple;
+    memory.event_impulse += load.impulse - before.impulse;
+    memory.event_couple += load.couple - before.couple;
+    load = before;
   }
   memory.contact.push_back(load);
 }
