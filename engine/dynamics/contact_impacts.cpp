@@ -87,6 +87,7 @@ void IslandSolver::strike() {
     if (round > 0) leave_softer();
     for (const std::size_t k : struck_) {
       contact(k).is_arriving = true;  // though it stays a contact, to those who judge what it bears
+      joints_.feel_blow(contact(k), contact(k).impulse);
       keep_impulse(contact(k));
       contact(k).impulse.setZero();
     }
@@ -94,6 +95,7 @@ void IslandSolver::strike() {
     bounce_together();
     joints_.hold(false);
     for (const std::size_t k : struck_) {
+      joints_.feel_blow(contact(k), contact(k).impulse);
       keep_impulse(contact(k));
       contact(k).impulse.setZero();
       contact(k).arrival_speed = 0.0;

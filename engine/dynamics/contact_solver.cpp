@@ -102,6 +102,7 @@ void IslandSolver::take_part(int substeps) {
   is_before_drift_ = false;
   drift();
   kick();
+  if (has_arrivals_) joints_.keep_arrival();
   prepare(substeps);
   joints_.take_back();
   find_late_arrivals();
@@ -283,9 +284,20 @@ void IslandSolver::find_response(SolverContact& c) {
   c.has_response = true;
 }
 
+// What arrived struck with all that it gave; what was touched passes on what it gave beyond the usual.
+void IslandSolver::feel_blows() {
+  if (!has_arrivals_ || joints_.is_empty()) return;
+  for (const int i : island_.contacts) {
+    const SolverContact& c = work_.contacts[at(i)];
+    const Vec3 usual = c.is_arriving ? Vec3::Zero() : c.warm;
+    joints_.feel_blow(c, c.impulse - usual);
+  }
+}
+
 // An impact's impulse says nothing about the next substep: the bodies in it start that one from what was
 // before.
 void IslandSolver::book() {
+  feel_blows();
   joints_.book();
   for (const int i : island_.bodies) body(i).is_struck = false;
   for (const int i : island_.contacts) {

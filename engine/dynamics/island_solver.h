@@ -50,6 +50,7 @@ class IslandSolver {
   void prepare(int substeps);
   void find_response(SolverContact& c);
   static void respond_locked(const WorkBody& a, const WorkBody& b, SolverContact& c);
+  void feel_blows();
   void book();
   void keep_impulse(SolverContact& c);
 

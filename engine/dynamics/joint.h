@@ -21,6 +21,9 @@ struct Joint {
   // What it gave to a in the last part of a step, in its axes: b got the opposite, at the same point.
   Vec3 impulse = Vec3::Zero();  // N s
   Vec3 couple = Vec3::Zero();   // N m s, about the middle
+  // As much of them as answers what struck the bodies it holds together; only if something did.
+  Vec3 blow_impulse = Vec3::Zero(), blow_couple = Vec3::Zero();
+  bool is_struck = false;
 };
 
 /// Adds what decides later steps to the hash.

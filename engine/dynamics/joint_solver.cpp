@@ -73,6 +73,8 @@ void JointSolver::begin() {
     WorkJoint& joint = work_.joints[at(k)];
     joint.total = joint.total_couple = joint.total_world = joint.total_couple_world = Vec3::Zero();
     joint.given = joint.given_couple = Vec3::Zero();
+    joint.blow = joint.blow_couple = Vec3::Zero();
+    joint.is_struck = false;
     joint.most = 0.0;
     has_pivots_ = has_pivots_ || joint.joint->is_pivot;
   }
@@ -447,7 +449,46 @@ void JointSolver::take_back() {
   }
 }
 
+void JointSolver::feel_blow(const SolverContact& c, const Vec3& impulse) {
+  if (is_empty()) return;
+  if (blow_.size() == 0) blow_ = VecX::Zero(dof_count_);
+  Six force;
+  force << impulse[0] * c.normal + impulse[1] * c.tangent_u + impulse[2] * c.tangent_v, Vec3::Zero();
+  if (dof(c.a) >= 0) blow_.segment<6>(dof(c.a)) += motion_at(c.arm_a).transpose() * force;
+  if (dof(c.b) >= 0) blow_.segment<6>(dof(c.b)) -= motion_at(c.arm_b).transpose() * force;
+}
+
+void JointSolver::keep_arrival() {
+  if (is_empty()) return;
+  struck_.clear();
+  for (const int k : island_.joints) struck_.push_back(work_.joints[at(k)]);
+  std::swap(factor_, struck_factor_);
+  if (!factor_) factor_ = std::make_unique<Factor>();
+}
+
+// A blow lasts for an instant, and what swings or presses for it much longer: what joints give to hold
+// together against the blow alone is told apart. Where it met them: a chain that hangs straight bears
+// nothing along of what strikes it from the side, one that has swung by a hair much.
+void JointSolver::book_blow() {
+  if (blow_.size() == 0) return struck_.clear();
+  const bool is_kept = !struck_.empty();
+  const VecX motion = (is_kept ? struck_factor_ : factor_)->solver.solve(blow_);
+  for (std::size_t n = 0; n < island_.joints.size(); ++n) {
+    WorkJoint& joint = work_.joints[at(island_.joints[n])];
+    const WorkJoint& then = is_kept ? struck_[n] : joint;
+    Six parts = Six::Zero();  // with what speed b's end would leave a's
+    if (dof(then.b) >= 0) parts += motion_at(then.arm_b) * motion.segment<6>(dof(then.b));
+    if (dof(then.a) >= 0) parts -= motion_at(then.arm_a) * motion.segment<6>(dof(then.a));
+    joint.blow += then.axes.transpose() * (then.linear_stiffness * parts.head<3>());
+    joint.blow_couple += then.axes.transpose() * (then.turn_stiffness * parts.tail<3>());
+    joint.is_struck = true;
+  }
+  blow_.resize(0);
+  struck_.clear();
+}
+
 void JointSolver::book() {
+  book_blow();
   for (const int k : island_.joints) {
     WorkJoint& joint = work_.joints[at(k)];
     joint.total_world += joint.given;

@@ -33,6 +33,10 @@ class JointSolver {
   void note_energy();
   /// Takes what energy joints gave in this substep.
   void settle();
+  /// Before bodies are placed at the end of a substep: something arrived in it where they are yet.
+  void keep_arrival();
+  /// Notes an impulse (N s, in the contact's axes) of what arrived in this substep.
+  void feel_blow(const SolverContact& c, const Vec3& impulse);
   /// Adds what this substep gave to that of the step.
   void book();
 
@@ -47,6 +51,7 @@ class JointSolver {
   double energy() const;
   void push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple);
   void add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn, VecX& pushes) const;
+  void book_blow();
   void find_what_is_known();
   void make_stiffnesses();
   void assemble();
@@ -66,11 +71,13 @@ class JointSolver {
   std::vector<int> first_dof_;  // per body of the world; -1: nothing moves it
   int dof_count_ = 0;
   bool has_pivots_ = false;
-  double given_ = 0.0;            // J, in this substep
-  double energy_ = 0.0;           // J, at its start
-  bool knows_energy_ = false;     // nothing from without does work
-  std::vector<char> is_pressed_;  // per body of the world
-  std::unique_ptr<Factor> factor_;
+  double given_ = 0.0;             // J, in this substep
+  double energy_ = 0.0;            // J, at its start
+  bool knows_energy_ = false;      // nothing from without does work
+  std::vector<char> is_pressed_;   // per body of the world
+  VecX blow_;                      // what struck in this substep; empty: nothing did
+  std::vector<WorkJoint> struck_;  // the island's, where that arrived; empty: where they are
+  std::unique_ptr<Factor> factor_, struck_factor_;
 };
 
 }  // namespace shatterbox::dynamics

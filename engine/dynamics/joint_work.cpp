@@ -152,10 +152,17 @@ void log_joints(const MotionWork& work, body::ImpulseLog& log) {
 }
 
 void remember_joints(const MotionWork& work, ContactState& state) {
-  for (Joint& joint : state.joints) joint.impulse = joint.couple = Vec3::Zero();
+  for (Joint& joint : state.joints) {
+    joint.impulse = joint.couple = joint.blow_impulse = joint.blow_couple = Vec3::Zero();
+    joint.is_struck = false;
+  }
   for (const WorkJoint& w : work.joints) {
-    state.joints[at(w.state)].impulse = w.total;
-    state.joints[at(w.state)].couple = w.total_couple;
+    Joint& joint = state.joints[at(w.state)];
+    joint.impulse = w.total;
+    joint.couple = w.total_couple;
+    joint.blow_impulse = w.blow;
+    joint.blow_couple = w.blow_couple;
+    joint.is_struck = w.is_struck;
   }
   state.swing = find_swing(work);
 }

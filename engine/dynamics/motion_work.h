@@ -195,6 +195,8 @@ struct WorkJoint {
   // Of the whole step: in the joint's axes as they were, and in the world's.
   Vec3 total = Vec3::Zero(), total_couple = Vec3::Zero();
   Vec3 total_world = Vec3::Zero(), total_couple_world = Vec3::Zero();
+  Vec3 blow = Vec3::Zero(), blow_couple = Vec3::Zero();  // of the first, what answers arrivals alone
+  bool is_struck = false;
   double most = 0.0;  // N s, of a substep
 };
 

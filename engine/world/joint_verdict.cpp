@@ -95,7 +95,7 @@ class Hits {
   Hit none_;
 };
 
-// What the joint gave lately, as much of it as fits in `part`: that goes on beside a collision.
+// What the joint gave lately, as much of it as fits in the part: that goes on beside a collision.
 JointMemory::Load go_on(const std::vector<JointMemory::Load>& known, const PartTime& part) {
   JointMemory::Load load{part.start, Vec3::Zero(), Vec3::Zero()};
   if (known.empty()) return load;
@@ -121,9 +121,12 @@ void remember(const dynamics::Joint& joint, const Hit& hit, const PartTime& part
   if (is_hit || memory.event_duration > 0.0) {
     if (is_hit) memory.event_time = hit.time;
     if (is_hit) memory.event_duration = std::max(memory.event_duration, hit.duration);
-    memory.event_impulse += load.impulse - before.impulse;
-    memory.event_couple += load.couple - before.couple;
-    load = before;
+    const Vec3 impulse = joint.is_struck ? joint.blow_impulse : Vec3(load.impulse - before.impulse);
+    const Vec3 couple = joint.is_struck ? joint.blow_couple : Vec3(load.couple - before.couple);
+    memory.event_impulse += impulse;
+    memory.event_couple += couple;
+    load.impulse -= impulse;
+    load.couple -= couple;
   }
   memory.contact.push_back(load);
 }

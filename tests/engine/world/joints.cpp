@@ -310,6 +310,55 @@ TEST_CASE("a chain that a blow tears opens at one of its links, and another one 
   CHECK(std::count_if(rows.begin() + 6, rows.end(), is_open) == 0);
 }
 
+TEST_CASE("a pellet loads the links of a taut chain alike at any step, and the hook by what hangs on it") {
+  for (const double speed : {20.0, 150.0}) {
+    std::vector<double> hardest, hooks;  // N; as shares of the weight
+    for (const int rate : {60, 240, 960}) {
+      world::World world = make_world(rate);
+      const int steel = world.add_material(*material::find_preset("steel")).value();
+      body::BodyId last = add_brick(world, steel, Vec3(0, 3, 0), body::Motion::fixed);
+      double weight = 0.0;
+      for (int k = 0; k < 9; ++k) {
+        const bool is_ball = k == 8;
+        world::BodyDescription link;
+        link.material = steel;
+        link.form = world::CapsuleDescription{0.01, 0.09};
+        if (is_ball) link.form = world::SphereDescription{0.08};
+        link.pose.translation = Vec3(0, is_ball ? 2.02 : 2.85 - 0.1 * k, 0);
+        const body::BodyId id = world.add_body(link).value();
+        weight += 9.81 / world.bodies().back().inverse_mass;
+        world::JointDescription joint;
+        joint.body_a = last;
+        joint.body_b = id;
+        joint.form = world::PivotDescription{Vec3(0, 2.9 - 0.1 * k, 0), 1e-4};
+        joint.strength = 1e10;
+        REQUIRE(world.add_joint(joint));
+        last = id;
+      }
+      world::BodyDescription pellet;
+      pellet.material = steel;
+      pellet.form = world::SphereDescription{0.004};
+      pellet.pose.translation = Vec3(0.5, 2.47, 0);
+      pellet.velocity = Vec3(-speed, 0.2, 0);
+      world.add_body(pellet).value();
+      while (world.time() < 0.1) world.step();
+      const auto& rows = world.report().joints;
+      double most = 0.0;
+      for (const world::JointRow& row : rows) most = std::max(most, row.most_ratio);
+      hardest.push_back(most * 1e10 * 1e-4);
+      hooks.push_back(rows.front().most_ratio * 1e10 * 1e-4 / weight);
+    }
+    CAPTURE(speed, hardest[0], hardest[1], hardest[2]);
+    CHECK(hardest[0] > 500.0);
+    CHECK(hardest[0] == Approx(hardest[2]).epsilon(0.03));
+    CHECK(hardest[1] == Approx(hardest[2]).epsilon(0.03));
+    CAPTURE(hooks[0], hooks[1], hooks[2]);
+    CHECK(hooks[2] < 4.0);  // it swings, and so pulls the harder
+    CHECK(hooks[0] == Approx(hooks[2]).epsilon(0.1));
+    CHECK(hooks[1] == Approx(hooks[2]).epsilon(0.1));
+  }
+}
+
 TEST_CASE("what sleeps on joints falls as a whole when what bears it is gone or opens") {
   for (const bool is_removed : {true, false}) {
     CAPTURE(is_removed);
