@@ -41,6 +41,7 @@ struct Hit {
   double impulse = 0.0;   // N s; 0: none
   double duration = 0.0;  // s
   double time = 0.0;      // s, of the last
+  bool is_blast = false;  // one of them was a blast's, which does not arrive in the solver
 };
 
 double duration_of(const body::LoggedImpulse& hit, const std::vector<body::Body>& bodies,
@@ -76,6 +77,7 @@ class Hits {
       if (i < 0) continue;
       Hit& hit = hits_[at(joined_.find(i))];
       hit.time = std::max(hit.time, time);
+      hit.is_blast = hit.is_blast || entry.duration > 0.0;
       const double impulse = entry.impulse_world.norm();
       if (impulse <= hit.impulse) continue;
       hit.impulse = impulse;
@@ -121,8 +123,9 @@ void remember(const dynamics::Joint& joint, const Hit& hit, const PartTime& part
   if (is_hit || memory.event_duration > 0.0) {
     if (is_hit) memory.event_time = hit.time;
     if (is_hit) memory.event_duration = std::max(memory.event_duration, hit.duration);
-    const Vec3 impulse = joint.is_struck ? joint.blow_impulse : Vec3(load.impulse - before.impulse);
-    const Vec3 couple = joint.is_struck ? joint.blow_couple : Vec3(load.couple - before.couple);
+    const bool is_told = joint.is_struck && !hit.is_blast;
+    const Vec3 impulse = is_told ? joint.blow_impulse : Vec3(load.impulse - before.impulse);
+    const Vec3 couple = is_told ? joint.blow_couple : Vec3(load.couple - before.couple);
     memory.event_impulse += impulse;
     memory.event_couple += couple;
     load.impulse -= impulse;

@@ -133,6 +133,33 @@ TEST_CASE("a hit on joined bricks loads their mortar alike at any step and keeps
   CHECK(ratios[1] == Approx(ratios[2]).epsilon(0.01));
 }
 
+TEST_CASE("a blast loads mortar by its own duration though something arrives in the same step") {
+  std::vector<double> ratios;
+  for (const bool has_pellet : {false, true}) {
+    world::World world = make_world(240);
+    world.set_gravity(Vec3::Zero());
+    const int stone = world.add_material(*material::find_preset("brick")).value();
+    const auto held = add_brick(world, stone, Vec3(0, 1, 0), body::Motion::fixed);
+    const auto free = add_brick(world, stone, Vec3(kLength + 5e-4, 1, 0), body::Motion::dynamic);
+    REQUIRE(world.add_joint(mortar(held, free, 1e8)).value() == 1);
+    if (has_pellet) {
+      world::BodyDescription pellet;
+      pellet.form = world::SphereDescription{0.002};
+      pellet.material = stone;
+      pellet.pose.translation = Vec3(kLength, 1.0 + 0.5 * kHeight + 0.004, 0);
+      pellet.velocity = Vec3(0, -1.0, 0);
+      REQUIRE(world.add_body(pellet).ok());
+    }
+    world.explode({Vec3(kLength, 1, 2), 1e5, 0.0});
+    world.step();
+    CHECK(world.report().joints.front().is_struck);
+    ratios.push_back(world.report().joints.front().most_ratio);
+  }
+  CAPTURE(ratios);
+  CHECK(ratios[0] > 1e-3);
+  CHECK(ratios[1] == Approx(ratios[0]).epsilon(0.05));
+}
+
 TEST_CASE("a hit opens the mortar about it and no other and bits repeat") {
   const auto run = [](std::uint64_t& hash) {
     world::World world = make_world(240);
