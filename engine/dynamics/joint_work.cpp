@@ -168,6 +168,7 @@ void remember_joints(const MotionWork& work, ContactState& state) {
 }
 
 double find_swing_by_blows(const MotionWork& work, double time_step) {
+  if (work.joints.empty()) return 0.0;
   std::vector<char> is_link(work.bodies.size(), 0);
   for (const WorkJoint& joint : work.joints)
     if (joint.joint->is_pivot) is_link[at(joint.a)] = is_link[at(joint.b)] = 1;
