@@ -196,8 +196,14 @@ void JointSolver::add_pushes(const WorkJoint& joint, const Vec3& linear, const V
                              VecX& pushes) const {
   Six force;
   force << joint.linear_stiffness * linear, joint.turn_stiffness * turn;
-  if (dof(joint.a) >= 0) pushes.segment<6>(dof(joint.a)) += motion_at(joint.arm_a).transpose() * force;
-  if (dof(joint.b) >= 0) pushes.segment<6>(dof(joint.b)) -= motion_at(joint.arm_b).transpose() * force;
+  add_force(joint, force, pushes);
+}
+
+// A joint's, or a contact's: on a, and against b.
+template <class Between>
+void JointSolver::add_force(const Between& between, const Six& force, VecX& pushes) const {
+  if (dof(between.a) >= 0) pushes.segment<6>(dof(between.a)) += motion_at(between.arm_a).transpose() * force;
+  if (dof(between.b) >= 0) pushes.segment<6>(dof(between.b)) -= motion_at(between.arm_b).transpose() * force;
 }
 
 // How far, m, b's point would be off a's at the substep's end if the joint did not open at its start: arms
@@ -454,8 +460,7 @@ void JointSolver::feel_blow(const SolverContact& c, const Vec3& impulse) {
   if (blow_.size() == 0) blow_ = VecX::Zero(dof_count_);
   Six force;
   force << impulse[0] * c.normal + impulse[1] * c.tangent_u + impulse[2] * c.tangent_v, Vec3::Zero();
-  if (dof(c.a) >= 0) blow_.segment<6>(dof(c.a)) += motion_at(c.arm_a).transpose() * force;
-  if (dof(c.b) >= 0) blow_.segment<6>(dof(c.b)) -= motion_at(c.arm_b).transpose() * force;
+  add_force(c, force, blow_);
 }
 
 void JointSolver::keep_arrival() {
@@ -476,11 +481,9 @@ void JointSolver::book_blow() {
   for (std::size_t n = 0; n < island_.joints.size(); ++n) {
     WorkJoint& joint = work_.joints[at(island_.joints[n])];
     const WorkJoint& then = is_kept ? struck_[n] : joint;
-    Six parts = Six::Zero();  // with what speed b's end would leave a's
-    if (dof(then.b) >= 0) parts += motion_at(then.arm_b) * motion.segment<6>(dof(then.b));
-    if (dof(then.a) >= 0) parts -= motion_at(then.arm_a) * motion.segment<6>(dof(then.a));
-    joint.blow += then.axes.transpose() * (then.linear_stiffness * parts.head<3>());
-    joint.blow_couple += then.axes.transpose() * (then.turn_stiffness * parts.tail<3>());
+    const Six closing = closes_by(then, motion);
+    joint.blow -= then.axes.transpose() * (then.linear_stiffness * closing.head<3>());
+    joint.blow_couple -= then.axes.transpose() * (then.turn_stiffness * closing.tail<3>());
     joint.is_struck = true;
   }
   blow_.resize(0);

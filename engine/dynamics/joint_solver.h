@@ -50,6 +50,8 @@ class JointSolver {
   Eigen::Matrix<double, 6, 1> relative(const WorkJoint& joint) const;
   double energy() const;
   void push(const WorkJoint& joint, const Vec3& impulse, const Vec3& couple);
+  template <class Between>
+  void add_force(const Between& between, const Eigen::Matrix<double, 6, 1>& force, VecX& pushes) const;
   void add_pushes(const WorkJoint& joint, const Vec3& linear, const Vec3& turn, VecX& pushes) const;
   void book_blow();
   void find_what_is_known();

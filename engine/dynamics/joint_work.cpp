@@ -28,12 +28,6 @@ double yield_across(const WorkBody& body, const Vec3& arm) {
   return 0.5 * (uu + vv) + std::sqrt(half * half + uv * uv);
 }
 
-// By how much it gives way where a push meets it at the end of `arm`, 1/kg.
-double yield_at(const WorkBody& body, const Vec3& arm, const Vec3& direction) {
-  const Vec3 moment = arm.cross(direction);
-  return body.inverse_mass + moment.dot(body.inverse_inertia * moment);
-}
-
 // rad/s: a link that is pulled at both ends swings about its centre as a pendulum does, the faster the harder
 // it is pulled.
 double find_swing(const MotionWork& work) {
@@ -167,22 +161,26 @@ void remember_joints(const MotionWork& work, ContactState& state) {
   state.swing = find_swing(work);
 }
 
-double find_swing_by_blows(const MotionWork& work, double time_step) {
+double find_swing_by_blows(const std::vector<body::Body>& bodies, const MotionWork& work, double time_step) {
   if (work.joints.empty()) return 0.0;
-  std::vector<char> is_link(work.bodies.size(), 0);
+  std::vector<char> is_link(bodies.size(), 0);
   for (const WorkJoint& joint : work.joints)
     if (joint.joint->is_pivot) is_link[at(joint.a)] = is_link[at(joint.b)] = 1;
+  const auto mobility_of = [&](int number, const Vec3& place, const Vec3& direction) {
+    const body::Body& body = bodies[at(number)];
+    return body.mobility(body.pose.apply_inverse(place), body.pose.rotation.conjugate() * direction);
+  };
   double most = 0.0;
   for (const WorkPair& pair : work.pairs) {
     if (!is_link[at(pair.a)] && !is_link[at(pair.b)]) continue;
     const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
     for (const collision::Contact& c : pair.contacts) {
-      const Vec3 arm_a = c.on_a - a.start.translation, arm_b = c.on_b - b.start.translation;
-      const double speed = -c.normal.dot(a.velocity + a.spin.cross(arm_a) - b.velocity - b.spin.cross(arm_b));
+      const double speed = -c.normal.dot(a.velocity + a.spin.cross(c.on_a - a.start.translation) -
+                                         b.velocity - b.spin.cross(c.on_b - b.start.translation));
       if (speed <= pair.threshold || speed * time_step <= c.gap) continue;
-      const double yield_a = yield_at(a, arm_a, c.normal), yield_b = yield_at(b, arm_b, c.normal);
-      if (is_link[at(pair.a)]) most = std::max(most, speed * yield_a / (yield_a + yield_b) / a.reach);
-      if (is_link[at(pair.b)]) most = std::max(most, speed * yield_b / (yield_a + yield_b) / b.reach);
+      const double of_a = mobility_of(pair.a, c.on_a, c.normal), of_b = mobility_of(pair.b, c.on_b, c.normal);
+      if (is_link[at(pair.a)]) most = std::max(most, speed * of_a / (of_a + of_b) / a.reach);
+      if (is_link[at(pair.b)]) most = std::max(most, speed * of_b / (of_a + of_b) / b.reach);
     }
   }
   return most;

@@ -35,7 +35,7 @@ void log_joints(const MotionWork& work, body::ImpulseLog& log);
 void remember_joints(const MotionWork& work, ContactState& state);
 
 /// How fast, rad/s, what arrives within `time_step` (s) would swing the links that it strikes, at most.
-double find_swing_by_blows(const MotionWork& work, double time_step);
+double find_swing_by_blows(const std::vector<body::Body>& bodies, const MotionWork& work, double time_step);
 
 /// The most that a joint is off at the ends of the ways, of the lesser reach: what was opened tears it.
 double find_torn(const MotionWork& work);

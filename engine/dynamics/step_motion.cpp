@@ -296,8 +296,8 @@ int finer_parts(const ContactSettings& settings, const StepPart& part) {
 }
 
 // How many times as many substeps it takes to follow links that swing so fast, rad/s.
-int finer_substeps(const ContactSettings& settings, double swing) {
-  const double turn = swing * settings.time_step / settings.substeps;
+int finer_substeps(double substep, double swing) {
+  const double turn = swing * substep;
   return turn > kSwingTurn ? static_cast<int>(std::ceil(std::min(turn / kSwingTurn, kMostFiner))) : 1;
 }
 
@@ -404,7 +404,8 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   own.time_step /= part.count;
   own.substeps = std::max(1, settings.substeps / part.count);
   const int usual_substeps = own.substeps;
-  own.substeps *= finer_substeps(own, state.swing);
+  const double usual_substep = own.time_step / usual_substeps;
+  own.substeps *= finer_substeps(usual_substep, state.swing);
   begin_taking(own, part, *state.shelf);
   aim_scripted(bodies, own.time_step);
   const std::vector<char> slept = find_sleepers(bodies);
@@ -418,11 +419,10 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     find_candidate_pairs(bodies, own, state, work);
   }
   // What joints bore in the step before says nothing of a blow.
-  ContactSettings struck = own;
-  struck.substeps = usual_substeps;
-  struck.substeps *= finer_substeps(struck, find_swing_by_blows(work, own.time_step));
-  if (struck.substeps > own.substeps) {
-    own = struck;
+  const double swing_by_blows = find_swing_by_blows(bodies, work, own.time_step);
+  const int substeps_for_blows = usual_substeps * finer_substeps(usual_substep, swing_by_blows);
+  if (substeps_for_blows > own.substeps) {
+    own.substeps = substeps_for_blows;
     find_awake_pairs(bodies, own, state, work);
   }
   // Each round wakes somebody.
