@@ -44,6 +44,7 @@ const char* name_of(FindingKind kind) {
 struct Audit::Actor {
   BodyId id = 0;
   bool is_dynamic = false, is_moving = false, is_new = false;
+  bool is_scripted = false, may_break = false;
   int group = -1;
   body::BodyId family = 0;
   ShapeKind kind = ShapeKind::shell;
@@ -135,6 +136,8 @@ Audit::Actor Audit::make_actor(const body::Body& body, const body::Way* way, std
   Actor actor;
   actor.id = body.id;
   actor.is_dynamic = body.is_dynamic();
+  actor.is_scripted = body.motion == body::Motion::scripted;
+  actor.may_break = body.may_break;
   actor.group = body.group;
   actor.family = body.family;
   actor.kind = body.shape->kind;
@@ -197,12 +200,13 @@ std::vector<Audit::Actor> Audit::make_actors(std::span<const body::Body> bodies,
   return actors;
 }
 
-/// Pairs with a dynamic body whose ways' boxes meet, in ascending order. Pairs in which nothing moved and
-/// nothing is new stand as they stood.
+/// Pairs with a dynamic body, and of scripted ones with what can break, whose ways' boxes meet, in ascending
+/// order. Pairs in which nothing moved and nothing is new stand as they stood.
 std::vector<std::pair<int, int>> Audit::find_pairs(const std::vector<Actor>& actors) const {
   std::vector<std::pair<int, int>> pairs;
   const auto is_wanted = [&](const Actor& a, const Actor& b) {
-    if (!a.is_dynamic && !b.is_dynamic) return false;
+    const bool strikes = (a.is_scripted && b.may_break) || (b.is_scripted && a.may_break);
+    if (!a.is_dynamic && !b.is_dynamic && !strikes) return false;
     if (!a.is_moving && !b.is_moving && !a.is_new && !b.is_new) return crossing_.count({a.id, b.id}) > 0;
     return a.kind != ShapeKind::plane || b.kind != ShapeKind::plane;
   };

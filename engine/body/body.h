@@ -21,12 +21,15 @@ using BodyId = std::uint32_t;
 enum class Motion : std::uint8_t { fixed, scripted, dynamic };
 
 /// How a scripted body follows its path. Who was in its way holds it up; then it comes on slowly, until it
-/// has caught up with where it is to be.
+/// has caught up with where it is to be. Who comes at full pace upon what can break and cannot give way
+/// strikes it, as a free body of its mass and velocity would.
 struct Script {
   std::shared_ptr<const ScriptedPath> path;  // none: it goes on at its velocity
   double time = 0.0;                         // s since it began
   double pace = 1.0;                         // share of its top speed that it may go at
   double wait = 0.0;                         // s until it tries again
+  int blows = 0;                             // that it gave since it last went at full pace
+  bool strikes = false;                      // this part of the step it goes as a free body: it is dynamic
 };
 
 struct Body {
@@ -38,8 +41,8 @@ struct Body {
   Pose pose;                             // of the centre of mass, world from body
   Vec3 velocity = Vec3::Zero();          // of the centre of mass, m/s
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, world
-  double inverse_mass = 0.0;             // 1/kg; 0 unless dynamic
-  Mat3 inverse_inertia = Mat3::Zero();   // body space, 1/(kg m2); 0 unless dynamic
+  double inverse_mass = 0.0;             // 1/kg; 0 unless dynamic, or scripted and striking
+  Mat3 inverse_inertia = Mat3::Zero();   // body space, 1/(kg m2); 0 as well
   Vec3 force = Vec3::Zero();             // N, world, at the centre of mass, all the time; of dynamic bodies
   Vec3 torque = Vec3::Zero();            // N m, world
   LockedAxes locked;                     // of dynamic bodies
@@ -65,6 +68,10 @@ struct Body {
   bool is_driven() const {
     return motion == Motion::scripted && velocity.squaredNorm() + angular_velocity.squaredNorm() > 0.0;
   }
+  /// Scripted, on its way, and the other stands still and would break rather than let it pass.
+  bool comes_upon(const Body& other) const {
+    return is_driven() && other.motion == Motion::fixed && other.may_break;
+  }
   /// False for bodies of one group, unless they are pieces of one body, which collide in any case.
   bool collides_with(const Body& other) const {
     return group < 0 || group != other.group || (family != 0 && family == other.family);
@@ -73,6 +80,7 @@ struct Body {
   Mat3 inverse_inertia_world() const;
   /// m/s2, of the centre of mass, where nothing touches.
   Vec3 free_acceleration(const Vec3& gravity) const {
+    if (script.strikes) return Vec3::Zero();  // what drives it carries it
     return locked.let_move(is_forced() ? Vec3(gravity + inverse_mass * force) : gravity);
   }
   bool is_forced() const { return force.squaredNorm() + torque.squaredNorm() > 0.0; }

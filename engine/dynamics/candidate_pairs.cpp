@@ -91,7 +91,7 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   w.placed.collider = w.collider;
   w.may_break = b.may_break;
   w.is_quiet = is_quiet(settings, b.velocity, b.angular_velocity, w.reach);
-  if (b.motion == body::Motion::scripted) {
+  if (b.motion == body::Motion::scripted && !b.script.strikes) {
     w.is_scripted = true;
     w.velocity = b.velocity;
     w.spin = b.angular_velocity;

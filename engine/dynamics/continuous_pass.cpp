@@ -70,14 +70,15 @@ class Guard {
     bool has_hits = test();
     // One who is hit may hit the next: that is followed where hits are taken one by one.
     const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
-    if (wakes_sleepers()) return;
+    if (wakes_sleepers() || strikes(find_held())) return;
     for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) {
       has_hits = test();
-      if (wakes_sleepers()) return;
+      if (wakes_sleepers() || strikes(find_held())) return;
     }
     report_.is_unfinished = has_hits && work_.is_trial;
     if (report_.is_unfinished) return;
     has_hits = open_in_rounds(has_hits);
+    if (!work_.to_wake.empty() || (has_hits && strikes(find_pressed()))) return;
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
     if (!work_.to_wake.empty()) return;
     content_with_less();
@@ -200,6 +201,30 @@ class Guard {
       if (wakes_sleepers()) return false;
     }
     return has_hits;
+  }
+
+  // Of these (flags), scripted ones strike the others, if one of those can break: all is taken again with
+  // them as free bodies. False if nobody does.
+  bool strikes(const std::vector<char>& is_pressed) {
+    if (!work_.has_scripted) return false;
+    bool may_break = false;
+    for (std::size_t i = 0; i < is_pressed.size(); ++i)
+      may_break = may_break || (is_pressed[i] && work_.bodies[i].may_break);
+    for (std::size_t i = 0; may_break && i < is_pressed.size(); ++i)
+      if (is_pressed[i] && can_strike(bodies_[i])) work_.to_strike.push_back(work_.ids[i]);
+    return !work_.to_strike.empty();
+  }
+
+  // Flags: scripted ones, and what stands still, that meet.
+  std::vector<char> find_held() const {
+    std::vector<char> is_held(work_.bodies.size(), 0);
+    if (!work_.has_scripted) return is_held;
+    for (const std::size_t p : hit_) {
+      const int a = work_.pairs[p].a, b = work_.pairs[p].b;
+      if (bodies_[at(a)].comes_upon(bodies_[at(b)]) || bodies_[at(b)].comes_upon(bodies_[at(a)]))
+        is_held[at(a)] = is_held[at(b)] = 1;
+    }
+    return is_held;
   }
 
   // Scripted bodies that press on what finds no room stop where they first met it, or before, and all is

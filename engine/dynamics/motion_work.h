@@ -221,7 +221,8 @@ class MotionWork {
   std::vector<std::pair<std::pair<int, int>, int>> joined;  // pairs of bodies, and the joint over an area
   std::vector<std::pair<int, int>> pivots;                  // pairs about a point; both ascending
   std::vector<Island> islands;
-  std::vector<Disturbance> to_wake;  // sleepers that something comes down on
+  std::vector<Disturbance> to_wake;     // sleepers that something comes down on
+  std::vector<body::BodyId> to_strike;  // scripted ones that come upon what can break and cannot give way
   std::vector<body::BodyId> ids;
   std::vector<char> is_new;         // per body: new, reshaped, or moved by hand since the last step
   body::ImpulseLog continuous_log;  // impulses of the continuous pass

@@ -31,7 +31,7 @@ geometry::Box box_at(const WorkBody& w, const Pose& pose) {
 }
 
 bool may_meet(const Body& a, const Body& b, const WorkBody& wa, const WorkBody& wb) {
-  if (!a.is_dynamic() && !b.is_dynamic()) return false;
+  if (!a.is_dynamic() && !b.is_dynamic() && !a.comes_upon(b) && !b.comes_upon(a)) return false;
   if (!wa.is_active && !wb.is_active) return false;
   return a.collides_with(b);
 }

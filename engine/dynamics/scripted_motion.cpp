@@ -13,7 +13,11 @@ using body::Body;
 
 constexpr double kWait = 1.0 / 60.0;  // s, after it was held up
 constexpr double kLeastPace = 0.02;   // with which it comes on then,
+constexpr double kPaceKept = 0.5;     // or share of the one that it struck with,
 constexpr double kPaceTime = 0.1;     // and s until it has its full pace again
+constexpr double kBlowPace = 0.25;    // no less, then,
+constexpr int kMostDoublings = 8;     // and twice as heavy each time, as what drives it pushes on
+constexpr double kUnslowed = 0.5;     // of its speed: who lost no more was not stopped
 constexpr double kOnPath = 1e-9;      // of size and place: what is so near its path is on it
 constexpr double kRounding = 1e-12;   // of size and place: what is so near is there
 
@@ -45,7 +49,13 @@ void aim(Body& b, double time_step) {
   if (way.norm() + reach * turn.norm() <= rounding) share = 1.0;
   b.velocity = way * (share / time_step);
   b.angular_velocity = turn * (share / time_step);
+  if (script.pace >= 1.0) script.blows = 0;
   script.pace = std::min(1.0, script.pace + time_step / kPaceTime);
+}
+
+void be_held_up(body::Script& script, double pace) {
+  script.wait = kWait;
+  script.pace = std::max(pace, kLeastPace);
 }
 
 }  // namespace
@@ -117,8 +127,40 @@ void end_scripted(const WorkBody& w, Body& b) {
   if (w.gone >= 1.0) return;
   b.velocity *= w.gone;
   b.angular_velocity *= w.gone;
-  b.script.wait = kWait;
-  b.script.pace = kLeastPace;
+  be_held_up(b.script, kLeastPace);
+}
+
+bool can_strike(const Body& b) {
+  return b.is_driven() && b.script.path && b.shape->mass > 0.0;
+}
+
+void begin_strike(Body& b) {
+  const double weight = std::exp2(std::min(b.script.blows, kMostDoublings));
+  b.script.strikes = true;
+  b.inverse_mass = 1.0 / (weight * b.shape->mass);
+  b.inverse_inertia = b.shape->inertia.inverse() / weight;
+  if (b.angular_velocity.isZero(0.0)) b.locked.turns.fill(true);
+}
+
+void end_blow(const WorkBody& w, Body& b) {
+  if ((w.velocity - w.velocity_start).norm() <= kUnslowed * w.velocity_start.norm()) return;
+  be_held_up(b.script, std::max(kBlowPace, kPaceKept * b.script.pace));
+  ++b.script.blows;
+}
+
+void end_strikes(std::vector<Body>& bodies) {
+  for (Body& b : bodies) {
+    if (!b.script.strikes) continue;
+    b.script.strikes = false;
+    b.inverse_mass = 0.0;
+    b.inverse_inertia.setZero();
+    b.locked = {};
+  }
+}
+
+void forget_blows(const std::vector<Body>& struck, std::vector<Body>& bodies) {
+  for (const Body& b : struck)
+    if (b.script.strikes) body::find_body(bodies, b.id)->script.blows = 0;
 }
 
 double distance_behind(const Body& b) {

@@ -1,5 +1,5 @@
 // Bodies that follow a path of their own whatever they meet, until something that cannot give way is in it:
-// then they stop, and come on when they can.
+// that they strike, or stop at, and come on when they can.
 #pragma once
 
 #include <vector>
@@ -22,6 +22,22 @@ void hold_up(WorkBody& body, int substeps);
 
 /// What became of a scripted body's step: its velocity, and how it comes on after it was held up.
 void end_scripted(const WorkBody& work, body::Body& body);
+
+/// Whether it comes at full pace, as something that has a mass.
+bool can_strike(const body::Body& body);
+
+/// Makes a scripted body a free one, of its mass and the velocity that its path gave it, in a part of a step.
+/// Where its path does not turn it nothing does.
+void begin_strike(body::Body& body);
+
+/// What became of one that struck: it was held up by what it met, and will be heavier next time.
+void end_blow(const WorkBody& work, body::Body& body);
+
+/// Those that struck are driven again.
+void end_strikes(std::vector<body::Body>& bodies);
+
+/// Those of `bodies` that strike in `struck`, which broke of it, press on no harder for it.
+void forget_blows(const std::vector<body::Body>& struck, std::vector<body::Body>& bodies);
 
 /// How far the farthest point of the body is from where it is to be, m, at most; 0 unless it has a path.
 double distance_behind(const body::Body& body);

@@ -245,6 +245,7 @@ void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& w
     state.bodies[i].last_pose = w.end;
     state.bodies[i].travelled += travelled_at_most(w, w.end);
     if (w.is_scripted) end_scripted(w, bodies[i]);
+    if (bodies[i].script.strikes) end_blow(w, bodies[i]);
     if (!bodies[i].is_dynamic()) continue;
     bodies[i].velocity = w.velocity;
     bodies[i].angular_velocity = w.spin;
@@ -425,7 +426,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     own.substeps = substeps_for_blows;
     find_awake_pairs(bodies, own, state, work);
   }
-  // Each round wakes somebody.
+  // Each round wakes somebody, or lets him strike.
   for (;;) {
     if (part.may_return)
       put_on_shelf(work, state);
@@ -435,11 +436,12 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     solve_motion(bodies, own, work);
     ContactReport guarded = report;
     guard_motion(bodies, own, slept, state, work, guarded);
-    if (work.to_wake.empty()) {
+    if (work.to_wake.empty() && work.to_strike.empty()) {
       report = std::move(guarded);
       break;
     }
     wake_struck(bodies, own, state, work.to_wake);
+    for (const body::BodyId id : work.to_strike) begin_strike(*body::find_body(bodies, id));
     find_awake_pairs(bodies, own, state, work);
   }
   const std::size_t first = log.size();
@@ -495,8 +497,10 @@ ContactReport step_motion(std::vector<Body>& bodies, const ContactSettings& sett
                           body::ImpulseLog& log) {
   ContactReport step;
   StepPart part{0, count_parts(bodies, settings, state)};
-  for (; part.number < part.count; ++part.number)
+  for (; part.number < part.count; ++part.number) {
     add_part(part, move_part(bodies, settings, part, state, log), step);
+    end_strikes(bodies);
+  }
   end_step(settings, step, part.count, state);
   return step;
 }

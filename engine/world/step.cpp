@@ -38,10 +38,15 @@ double time_of_hit(const std::vector<const EvaluatedImpact*>& broken, const std:
 /// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
 constexpr int kMostPasses = 12;
 
+/// Scripted ones that strike are driven.
+bool is_free(const body::Body& body) {
+  return body.is_dynamic() && body.motion == body::Motion::dynamic;
+}
+
 Vec3 momentum_of(const std::vector<body::Body>& bodies) {
   Vec3 sum = Vec3::Zero();
   for (const body::Body& body : bodies)
-    if (body.is_dynamic()) sum += body.shape->mass * body.velocity;
+    if (is_free(body)) sum += body.shape->mass * body.velocity;
   return sum;
 }
 
@@ -50,7 +55,7 @@ double total_energy(const std::vector<body::Body>& bodies, const Vec3& gravity,
   figures.momentum = momentum_of(bodies);
   figures.kinetic_energy = figures.potential_energy = 0.0;
   for (const body::Body& body : bodies) {
-    if (!body.is_dynamic()) continue;
+    if (!is_free(body)) continue;
     figures.kinetic_energy += body::kinetic_energy(body);
     figures.potential_energy -= body.shape->mass * body.free_acceleration(gravity).dot(body.pose.translation);
   }
@@ -63,9 +68,9 @@ Vec3 explained_momentum(const std::vector<body::Body>& before, const std::vector
                         std::span<const body::LoggedImpulse> log, const Vec3& gravity, double time_step) {
   const auto moved = [&](body::BodyId id) -> const body::Body* {
     if (const body::Body* body = body::find_body(bodies, id))
-      return body->is_dynamic() && body->is_awake ? body : nullptr;
+      return is_free(*body) && body->is_awake ? body : nullptr;
     const body::Body* broken = body::find_body(before, id);
-    return broken && broken->is_dynamic() ? broken : nullptr;
+    return broken && is_free(*broken) ? broken : nullptr;
   };
   Vec3 sum = Vec3::Zero();
   for (const body::Body& body : before)
@@ -194,6 +199,8 @@ World::MovedPart World::move_part(const dynamics::StepPart& part, int pass) {
   tell_watcher("acts", part, pass);
   done.before = state_->moving.bodies;
   done.moved = move_bodies(part, done.log);
+  for (const body::Body& body : state_->moving.bodies)
+    if (body.script.strikes) dynamics::begin_strike(*body::find_body(done.before, body.id));
   done.given.insert(done.given.end(), done.log.begin(), done.log.end());
   tell_watcher("motion", part, pass);
   return done;
@@ -261,6 +268,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     end = may_break ? judge_part(done, snapshot, part, contact) : PartEnd::stands;
     if (end == PartEnd::broken) ++pass;
     if (end != PartEnd::stands) continue;
+    dynamics::end_strikes(s.moving.bodies);
     book_conservation(done.before, done.log, s.contact_settings.time_step / part.count);
     s.log.insert(s.log.end(), done.given.begin(), done.given.end());
     dynamics::add_part(part, std::move(done.moved), contact);
@@ -367,6 +375,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact* const> broken, MovingS
   if (goes_back) {
     for (const EvaluatedImpact* impact : broken)
       snapshot.memories[impact->id].generation = s.moving.memories[impact->id].generation;
+    dynamics::forget_blows(s.moving.bodies, snapshot.bodies);
     s.moving = std::move(snapshot);
   }
   const std::vector<body::Body> before = s.moving.bodies;

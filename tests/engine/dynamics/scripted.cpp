@@ -1,4 +1,5 @@
-// Bodies that follow a path: they carry, lift, sweep and press, and where there is no room they yield.
+// Bodies that follow a path: they carry, lift, sweep and press; where there is no room they yield, and
+// what stands there and can break they strike.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -176,6 +177,88 @@ TEST_CASE("a press yields to a crate on the floor, rises with its path, and goes
     CHECK(scene.bodies[1].pose.translation.y() == Approx(0.2).epsilon(1e-9));
     CHECK(audit.report().crossings == 0);
     CHECK(audit.report().passages == 0);
+  }
+}
+
+TEST_CASE("a ram strikes what stands still and can break as a free ball of its mass, and pushes on") {
+  constexpr double kSpeed = 3.0, kRadius = 0.1, kBounce = 0.4;
+  for (const int rate : {30, 60, 240, 960}) {
+    for (const double from : {0.5037, 0.61}) {
+      test::Scene scene;
+      scene.settings.time_step = 1.0 / rate;
+      auto& held = scene.add(test::make_shell(test::square_mesh(0.5, 4), false));
+      held.may_break = true;
+      held.restitution = kBounce;
+      auto& ram = scene.add(test::make_sphere(kRadius, Vec3::Zero()));
+      ram.restitution = kBounce;
+      follow(ram, {at(0, Vec3(0.05, from, 0)), at(1, Vec3(0.05, from - kSpeed, 0))}, Between::straight);
+      audit::Audit audit;
+      double given = 0.0, before = 0.0, fastest = 0.0;
+      int steps = 0;
+      // Until it was stopped: then it has been told to wait.
+      while (scene.bodies[1].script.blows == 0 && ++steps < rate) {
+        step(scene, audit);
+        for (const auto& entry : scene.log) given += entry.impulse_world.norm();
+      }
+      INFO(rate << " steps a second from " << from << " m");
+      CHECK(std::abs(steps - (from - kRadius) / kSpeed * rate) < 2.0);
+      CHECK(given == Approx(scene.bodies[1].shape->mass * kSpeed * (1.0 + kBounce)).epsilon(0.02));
+      CHECK(scene.bodies[1].velocity.y() == Approx(kBounce * kSpeed).epsilon(0.05));
+      CHECK_FALSE(scene.bodies[1].is_dynamic());
+      // It does not pass, and each blow is that of something twice as heavy.
+      for (int i = 0; i < rate; ++i) {
+        step(scene, audit);
+        double blow = 0.0;
+        for (const auto& entry : scene.log) blow += entry.impulse_world.norm();
+        fastest = std::max(fastest, scene.bodies[1].velocity.norm());
+        if (scene.bodies[1].script.blows > 3 && before == 0.0) before = given;
+        given += blow;
+        CHECK(scene.bodies[1].pose.translation.y() > kRadius);
+      }
+      CHECK(before > 0.0);
+      CHECK(given > 4.0 * before);
+      CHECK(fastest <= kSpeed * (1.0 + 1e-8));
+      CHECK(audit.report().crossings == 0);
+      CHECK(audit.report().passages == 0);
+      // What cannot break is of no concern to it: it goes on through it, as before, to where it is to be.
+      scene.bodies.erase(scene.bodies.begin());
+      for (int i = 0; i < 3 * rate; ++i) scene.step();
+      CHECK(dynamics::distance_behind(scene.bodies[0]) < 1e-12);
+      CHECK(scene.bodies[0].script.blows == 0);
+    }
+  }
+}
+
+TEST_CASE("a ram strikes what stands against a wall as a free block of its mass would") {
+  // A crate that can break between a ram and a wall: the blow, in N s, that the crate gets from the ram.
+  const auto blow_of = [](int rate, bool is_scripted) {
+    test::Scene scene;
+    scene.settings.time_step = 1.0 / rate;
+    scene.settings.gravity.setZero();
+    scene.add(test::make_box(Vec3(1, 1, 0.1), Vec3(0, 0, -0.3001), false));
+    auto& crate = scene.add(test::make_shell(crate_mesh(Vec3::Constant(0.2), Vec3::Zero())));
+    crate.may_break = true;
+    auto& ram = scene.add(test::make_box(Vec3::Constant(0.15), Vec3(0, 0, 0.7037)));
+    ram.locked.turns = {true, true, true};
+    ram.velocity = Vec3(0, 0, -3.0);
+    if (is_scripted) {
+      ram.locked = {};
+      follow(ram, {at(0, Vec3(0, 0, 0.7037)), at(1, Vec3(0, 0, 0.7037 - 3.0))}, Between::straight);
+    }
+    double given = 0.0;
+    for (int i = 0; i < rate / 5 && given == 0.0; ++i) {
+      scene.step();
+      for (const auto& entry : scene.log)
+        if (entry.body_a == 3 || entry.body_b == 3) given += entry.impulse_world.norm();
+    }
+    return given / (scene.bodies[2].shape->mass * 3.0);
+  };
+  for (const int rate : {60, 240, 960}) {
+    INFO(rate << " steps a second");
+    const double scripted = blow_of(rate, true);
+    CHECK(scripted == Approx(blow_of(rate, false)).epsilon(0.05));
+    CHECK(scripted > 1.0);  // it comes to rest,
+    CHECK(scripted < 2.0);  // or bounces
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/geometry/generators.h"
+#include "tests/engine/world/audited.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/untrapped.h"
 
@@ -324,6 +325,52 @@ TEST_CASE("a scripted body follows its path through the door, and goes it once w
       *std::find_if(w.bodies().begin(), w.bodies().end(), [&](const auto& b) { return b.id == id; });
   CHECK(now.script.time == Approx(w.time()).epsilon(1e-12));
   for (const world::BreakRow& row : w.report().breaks) CHECK(row.body != "plate");
+}
+
+TEST_CASE("a scripted ram breaks a held pane at any rate, and goes through it to the end of its path") {
+  const std::vector<int> rates = test::kIsSanitized ? std::vector{60} : std::vector{60, 240};
+  for (const int rate : rates) {
+    world::WorldSettings settings;
+    settings.steps_per_second = rate;
+    world::World w(settings);
+    const int glass = w.add_material(*material::find_preset("glass")).value();
+    const int steel = w.add_material(*material::find_preset("steel")).value();
+    geometry::Meshing meshing;
+    meshing.edge_length = 0.03;
+    world::ShellDescription shell;
+    shell.mesh = geometry::make_pane(0.4, 0.4, meshing).value();
+    shell.thickness = 3e-3;
+    for (std::size_t v = 0; v < shell.mesh.positions.size(); ++v)
+      if (shell.mesh.positions[v].head<2>().cwiseAbs().maxCoeff() > 0.1999)
+        shell.clamped.push_back(static_cast<int>(v));
+    world::BodyDescription pane, ram;
+    pane.name = "pane";
+    pane.form = shell;
+    pane.material = glass;
+    REQUIRE(w.add_body(pane).ok());
+    ram.name = "ram";
+    ram.form = world::BoxDescription{Vec3(0.05, 0.05, 0.1)};
+    ram.motion = body::Motion::scripted;
+    ram.material = steel;
+    ram.path = world::PathDescription{
+        {{0.0, Vec3(0, 0, 0.25), Vec3::Zero()}, {0.25, Vec3(0, 0, -0.5), Vec3::Zero()}}};
+    ram.path->between = body::Between::straight;
+    REQUIRE(w.add_body(ram).ok());
+    const audit::AuditReport audit = test::run_audited(w, 0.75);
+    INFO(rate << " steps a second");
+    CHECK(audit.crossings == 0);
+    CHECK(audit.passages == 0);
+    REQUIRE_FALSE(w.report().breaks.empty());
+    const world::BreakRow& first = w.report().breaks.front();
+    CHECK(first.body == "pane");
+    CHECK(first.time == Approx(0.05).margin(1.5 / rate));
+    // What it had at its speed of 3 m/s.
+    const double energy = 0.5 * w.bodies()[0].shape->mass * 9.0;
+    CHECK(first.elastic_energy > 0.5 * energy);
+    CHECK(first.elastic_energy < 1.3 * energy);
+    CHECK(w.report().scripted.at(0).behind < 1e-9);
+    CHECK(w.report().conservation.momentum_error < 1e-9);
+  }
 }
 
 TEST_CASE("a path that cannot be gone is refused with a reason") {
