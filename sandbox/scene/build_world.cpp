@@ -231,7 +231,6 @@ std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uin
   return poses;
 }
 
-/// The path of one copy, which stands at `pose`: its first key is there.
 world::PathDescription path_of(const BodyEntry& body, const Pose& pose) {
   world::PathDescription path{body.path->keys, body.path->between, pose.rotation * body.rotation.conjugate(),
                               body.path->pivot};

@@ -55,6 +55,9 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
 /// jitter depends on (seed, number of the body, number of the copy) only.
 std::vector<Pose> copy_poses(const BodyEntry& body, std::uint64_t seed, std::uint64_t body_number);
 
+/// The path of one copy, which stands at `pose`: its first key is there.
+world::PathDescription path_of(const BodyEntry& body, const Pose& pose);
+
 /// What copy number `copy` of body number `entry` is called: "boats", or "boats[3]" where there are several.
 std::string copy_name(const BodyEntry& body, int copy);
 

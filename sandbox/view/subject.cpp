@@ -1,36 +1,30 @@
 #include "sandbox/view/subject.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <variant>
 
 #include "engine/geometry/bvh.h"
 #include "sandbox/view/framing.h"
+#include "sandbox/view/ways.h"
 
 namespace shatterbox::sandbox::view {
 namespace {
 
-using Corners = std::array<Vec3, 8>;
-
 constexpr double kRoomForPieces = 2.0;   // times as wide as what fell
 constexpr double kWorthGoing = 1.3;      // times as far the eye would have to be, to see all of the fall
+constexpr double kSideways = 0.5;        // m/s: what goes aside faster does not just fall
 constexpr double kRoomForScenery = 1.0;  // on each side, of the size of what moves or breaks
-
-Corners corners_of(const geometry::Box& box, const Pose& pose) {
-  Corners corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec3 corner((i & 1) != 0 ? box.high.x() : box.low.x(), (i & 2) != 0 ? box.high.y() : box.low.y(),
-                      (i & 4) != 0 ? box.high.z() : box.low.z());
-    corners[i] = pose.apply(corner);
-  }
-  return corners;
-}
 
 // What neither moves nor breaks, nor comes in later.
 bool is_scenery(const scene::BodyEntry& body) {
   return body.motion == body::Motion::fixed && !body.is_held_back && !scene::can_break(body);
+}
+
+bool can_fall(const scene::BodyEntry& body, bool is_hung) {
+  return body.motion == body::Motion::dynamic && !is_hung && !is_on_axle(body);
 }
 
 // A box in axes of which the second goes down.
@@ -87,14 +81,17 @@ Vec3 way_down(const scene::SceneDescription& scene, const Scenery& scenery, cons
   return nearest < std::numeric_limits<double>::max() ? Vec3(nearest * gravity) : Vec3(Vec3::Zero());
 }
 
+// s, in which something with this velocity falls that way.
+double fall_time(const Vec3& gravity, const Vec3& velocity, const Vec3& way) {
+  const double g = gravity.norm(), speed = velocity.dot(gravity) / g;
+  return (std::sqrt(speed * speed + 2.0 * g * way.norm()) - speed) / g;
+}
+
 // How far something with this velocity gets to the side while it falls that way.
 Vec3 way_aside(const Vec3& gravity, const Vec3& velocity, const Vec3& way) {
-  const double g = gravity.norm();
   if (way.isZero(0.0)) return way;
-  const Vec3 down = gravity / g;
-  const double speed = velocity.dot(down);
-  const double time = (std::sqrt(speed * speed + 2.0 * g * way.norm()) - speed) / g;
-  return time * (velocity - speed * down);
+  const Vec3 down = gravity.normalized();
+  return fall_time(gravity, velocity, way) * (velocity - velocity.dot(down) * down);
 }
 
 // What fell, on the floor, with room for pieces around it.
@@ -111,26 +108,32 @@ Corners spread_out(Corners corners, const Vec3& way) {
   return corners;
 }
 
-void add(const Corners& corners, std::vector<Vec3>& all) {
+void add(std::span<const Vec3> corners, std::vector<Vec3>& all) {
   all.insert(all.end(), corners.begin(), corners.end());
 }
 
-// Of scenery what is about the others, so that a cup on a long table is not lost on it; all of it if there
-// are no others.
-void add_scenery(const Scenery& scenery, std::vector<Vec3>& points) {
-  if (points.empty()) {
-    for (const Corners& corners : scenery.corners) add(corners, points);
-    return;
-  }
+// The room about these points, in which others are looked at as well.
+geometry::Box room_about(const std::vector<Vec3>& points) {
   geometry::Box about;
   for (const Vec3& p : points) about.include(p);
   const Vec3 room = Vec3::Constant(kRoomForScenery * (about.high - about.low).maxCoeff());
-  about = {about.low - room, about.high + room};
-  for (const Corners& corners : scenery.corners) {
-    geometry::Box box;
-    for (const Vec3& corner : corners) box.include(corner);
-    if (!geometry::overlaps(box, about)) continue;
-    for (const Vec3& corner : corners) points.push_back(corner.cwiseMax(about.low).cwiseMin(about.high));
+  return {about.low - room, about.high + room};
+}
+
+void add_within(const geometry::Box& room, const Corners& corners, std::vector<Vec3>& points) {
+  for (const Vec3& corner : corners) points.push_back(corner.cwiseMax(room.low).cwiseMin(room.high));
+}
+
+// Of others what is about the points, so that a cup on a long table is not lost on it; all of them if there
+// are no points.
+void add_about(const std::vector<Corners>& others, std::vector<Vec3>& points) {
+  if (points.empty()) {
+    for (const Corners& corners : others) add(corners, points);
+    return;
+  }
+  const geometry::Box about = room_about(points);
+  for (const Corners& corners : others) {
+    if (geometry::overlaps(box_about(corners), about)) add_within(about, corners, points);
   }
 }
 
@@ -178,7 +181,6 @@ std::vector<char> find_hung(const scene::SceneDescription& scene) {
 // or comes in later.
 std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene::ScenePlan& plan,
                               const Scenery& scenery, const std::vector<char>& is_hung) {
-  constexpr double kSideways = 0.5;  // m/s
   Fall fall;
   fall.acceleration = scene.world.gravity.norm();
   if (!(fall.acceleration > 0.0)) return std::nullopt;
@@ -191,7 +193,7 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
     if (body.is_held_back && !find_entrances(scene, i).empty()) return std::nullopt;
     if (body.is_held_back) continue;  // thrown
     if (plan.bodies[i].reach <= 0.0 || is_scenery(body)) continue;
-    const bool is_falling = body.motion == body::Motion::dynamic && is_hung[i] == 0;
+    const bool is_falling = can_fall(body, is_hung[i] != 0);
     const double speed = body.velocity.dot(down);
     if (is_falling && (speed < 0.0 || (body.velocity - speed * down).norm() > kSideways)) return std::nullopt;
     for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i)) {
@@ -200,15 +202,41 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
       add(corners, fall.from);
       add(spread_out(corners, way), fall.to);
       for (const Vec3& corner : corners) landed.push_back(corner + way);
+      if (!is_on_axle(body)) continue;
+      for (auto* points : {&fall.from, &fall.to}) add(corners_on_axle(body, plan.bodies[i], pose), *points);
     }
     if (!is_falling) continue;
     fall.speed = moves ? std::min(fall.speed, speed) : speed;
     moves = true;
   }
   if (!moves) return std::nullopt;
-  for (std::vector<Vec3>* points : {&fall.from, &fall.to, &landed}) add_scenery(scenery, *points);
+  for (std::vector<Vec3>* points : {&fall.from, &fall.to, &landed}) add_about(scenery.corners, *points);
   fall.way = (middle_of(landed) - middle_of(fall.from)).norm();
   return fall;
+}
+
+// About all that is there when something is thrown; planes are everywhere.
+std::vector<geometry::Box> find_targets(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
+  std::vector<geometry::Box> targets;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (plan.bodies[i].bounding_radius <= 0.0 || scene.bodies[i].is_held_back) continue;
+    for (const Pose& pose : scene::copy_poses(scene.bodies[i], scene.world.seed, i))
+      targets.push_back(box_about(corners_of(plan.bodies[i].box, pose)));
+  }
+  return targets;
+}
+
+// How far what is thrown flies until it comes upon something, before it lands; nothing if it is not thrown,
+// or meets nothing.
+std::optional<Vec3> find_target(const scene::SceneDescription& scene, const scene::BodyEntry& body,
+                                const Corners& corners, const Vec3& way,
+                                const std::vector<geometry::Box>& targets) {
+  const Vec3& gravity = scene.world.gravity;
+  const Vec3 along = gravity.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(gravity.normalized());
+  if ((body.velocity - body.velocity.dot(along) * along).norm() <= kSideways) return std::nullopt;
+  double seconds = scene.seconds;
+  if (!way.isZero(0.0)) seconds = std::min(seconds, fall_time(gravity, body.velocity, way));
+  return find_meeting(box_about(corners), body.velocity, gravity, targets, seconds);
 }
 
 }  // namespace
@@ -217,6 +245,8 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
   Subject subject;
   const std::vector<char> is_hung = find_hung(scene);
   const Scenery scenery = find_scenery(scene, plan);
+  const std::vector<geometry::Box> targets = find_targets(scene, plan);
+  std::vector<Corners> thrown;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodyEntry& body = scene.bodies[i];
     const scene::BodyPlan& planned = plan.bodies[i];
@@ -225,23 +255,26 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
       for (const Pose& own : scene::copy_poses(body, scene.world.seed, i)) {
         const Pose pose{own.rotation, own.translation + shift};
         const Corners corners = corners_of(planned.box, pose);
-        add(corners, subject.corners);
-        if (body.path) {  // in any attitude
-          const Vec3 reach = Vec3::Constant(planned.bounding_radius);
-          for (const body::Keyframe& key : body.path->keys)
-            add(corners_of({-reach, reach},
-                           {Quat::Identity(), pose.translation + key.position - body.position}),
-                subject.corners);
+        const bool flies = can_fall(body, is_hung[i] != 0);
+        const Vec3 way = flies ? way_down(scene, scenery, corners) : Vec3(Vec3::Zero());
+        if (const auto met = flies ? find_target(scene, body, corners, way, targets) : std::nullopt) {
+          for (const Vec3& corner : corners) subject.corners.push_back(corner + *met);
+          thrown.push_back(corners);
+          continue;
         }
-        if (body.motion != body::Motion::dynamic || is_hung[i] != 0) continue;
-        const Vec3 way = way_down(scene, scenery, corners);
+        add(corners, subject.corners);
+        if (body.path) add(corners_on_path(body, planned, pose, scene.seconds), subject.corners);
+        if (is_on_axle(body)) add(corners_on_axle(body, planned, pose), subject.corners);
         if (way.isZero(0.0)) continue;
         const Vec3 aside = way_aside(scene.world.gravity, body.velocity, way);
         for (const Vec3& corner : spread_out(corners, way)) subject.corners.push_back(corner + aside);
       }
     }
   }
-  add_scenery(scenery, subject.corners);
+  // They come in from where there is still room.
+  const geometry::Box room = room_about(subject.corners);
+  for (const Corners& corners : thrown) add_within(room, corners, subject.corners);
+  add_about(scenery.corners, subject.corners);
   if (subject.corners.empty())
     add(corners_of({Vec3::Constant(-1.0), Vec3::Constant(1.0)}, Pose()), subject.corners);
   subject.centre = middle_of(subject.corners);

@@ -25,8 +25,8 @@ struct Subject {
 };
 
 /// Corners of all bodies that have an end, where they are at the start, go along paths, are dropped, and will
-/// land on planes below; of what neither moves nor breaks, as far as it is about the others; around the origin
-/// if nothing has an end.
+/// land on planes below; of what neither moves nor breaks, as far as it is about the others; around the
+/// origin if nothing has an end.
 Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePlan& plan);
 
 }  // namespace shatterbox::sandbox::view

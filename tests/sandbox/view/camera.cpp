@@ -186,3 +186,49 @@ TEST_CASE("a camera without a place goes down with what falls, and stands where 
     CHECK(look.at(0.0).position == look.at(1.0).position);
   }
 }
+
+TEST_CASE("a camera without a place sees where something thrown meets its aim, and not where it would land") {
+  const std::string target =
+      "[[body]]\nkind = \"plane\"\n[[body]]\nkind = \"box\"\nsize = [0.2, 0.4, 0.2]\nposition = [0,0.2,0]\n";
+  const std::string ball = "[[body]]\nkind = \"sphere\"\nradius = 0.05\n";
+  const Look alone = look_at(target);
+  const auto distance = [](const Look& look) { return (look.at(0.0).position - look.at(0.0).target).norm(); };
+  for (const char* start : {"position = [-6, 0.5, 0]\nvelocity = [12, 1.5, 0]\n",
+                            "position = [0, 0.5, 40]\nvelocity = [0, 2, -80]\n"}) {
+    INFO(start);
+    const Look look = look_at(target + ball + start);
+    CHECK(distance(look) < 3.0 * distance(alone));
+    CHECK(spread(look.at(0.0), alone.subject.corners, Vec3::UnitY()).maxCoeff() < 0.76);
+    // It comes from there: with room on that side.
+    const Vec3 shift = look.at(0.0).target - alone.at(0.0).target;
+    CHECK(std::abs(shift.x()) + std::abs(shift.z()) > 0.02);
+  }
+  // Past its aim it lands: all of its way is in the picture.
+  const Look missed = look_at(target + ball + "position = [-6, 0.5, 3]\nvelocity = [12, 1.5, 0]\n");
+  CHECK(spread(missed.at(0.0), {Vec3(-6, 0.5, 3), Vec3(-0.5, 0.0, 3)}, Vec3::UnitY()).maxCoeff() < 0.76);
+}
+
+TEST_CASE(
+    "a camera without a place sees all of a turn about an axle, and of a path what is gone in the scene") {
+  const Look wheel = look_at(
+      "[[body]]\nkind = \"box\"\nsize = [1.2, 0.1, 0.05]\nposition = [0,1,0]\nangular_velocity = [0,0,6]\n"
+      "fixed = [\"x\",\"y\",\"z\",\"rx\",\"ry\"]\n");
+  const std::vector<Vec3> tips{Vec3(-0.6, 1, 0), Vec3(0.6, 1, 0), Vec3(0, 0.4, 0), Vec3(0, 1.6, 0)};
+  CHECK(spread(wheel.at(0.0), tips, Vec3::UnitY()).maxCoeff() < 0.76);
+  CHECK(spread(wheel.at(0.0), tips, Vec3::UnitY()).maxCoeff() > 0.6);
+  // A hammer on a pivot, a quarter of a turn in the second that the scene lasts.
+  const std::string hammer =
+      "[[body]]\nkind = \"box\"\nsize = [0.1, 0.1, 0.1]\nposition = [1,0,0]\nmotion = \"scripted\"\n"
+      "pivot = [-1,0,0]\nkeyframes = [{at = 0, position = [0,0,0]}, {at = 1, rotation = [0,0,90]}, "
+      "{at = 2, rotation = [0,0,180]}]\n";
+  const auto highest = [](const Look& look, int axis, double sign) {
+    double most = -1e300;
+    for (const Vec3& p : look.subject.corners) most = std::max(most, sign * p[axis]);
+    return most;
+  };
+  const Look one = look_at("[scene]\nseconds = 1\n" + hammer),
+             two = look_at("[scene]\nseconds = 2\n" + hammer);
+  CHECK(highest(one, 1, 1.0) == Approx(1.05).epsilon(0.01));
+  CHECK(highest(one, 0, -1.0) == Approx(0.05).epsilon(0.01));
+  CHECK(highest(two, 0, -1.0) == Approx(1.05).epsilon(0.01));
+}
