@@ -131,7 +131,7 @@ void end_scripted(const WorkBody& w, Body& b) {
 }
 
 bool can_strike(const Body& b) {
-  return b.is_driven() && b.script.path && b.shape->mass > 0.0;
+  return b.is_driven() && !b.script.strikes && b.script.path && b.shape->mass > 0.0;
 }
 
 void begin_strike(Body& b) {

@@ -23,7 +23,7 @@ void hold_up(WorkBody& body, int substeps);
 /// What became of a scripted body's step: its velocity, and how it comes on after it was held up.
 void end_scripted(const WorkBody& work, body::Body& body);
 
-/// Whether it comes at full pace, as something that has a mass.
+/// Whether it is on a path, as something that has a mass, and does not strike yet.
 bool can_strike(const body::Body& body);
 
 /// Makes a scripted body a free one, of its mass and the velocity that its path gave it, in a part of a step.

@@ -57,8 +57,9 @@ std::string break_lines(const RunRecord& record) {
     const bool is_much = row.elastic_energy >= 1.0;
     const double scale = is_much ? 1.0 : 1e3;
     text += fmt::format(
-        "  {:7.3f} s  {:<16} {:>4} {}, {:.3g} cm2 of new area{}, {:.3g} of {:.3g} {} spent{}{}\n", row.time,
-        row.body, row.pieces, row.pieces == 1 ? "piece" : "pieces", 1e4 * row.new_area,
+        "  {:7.3f} s  {:<16} {}, {:.3g} cm2 of new area{}, {:.3g} of {:.3g} {} spent{}{}\n", row.time,
+        row.body, row.pieces == 1 ? "cracked, in one piece" : fmt::format("{:>4} pieces", row.pieces),
+        1e4 * row.new_area,
         row.grain_share > 0.0 ? fmt::format(" ({:.0f} % on grain boundaries)", 100.0 * row.grain_share) : "",
         scale * row.fracture_energy, scale * row.elastic_energy, is_much ? "J" : "mJ",
         row.energy_guard_active ? ", stopped by the energy" : "",

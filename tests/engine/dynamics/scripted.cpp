@@ -229,6 +229,28 @@ TEST_CASE("a ram strikes what stands still and can break as a free ball of its m
   }
 }
 
+TEST_CASE("two rams that meet on one held plate strike it from both sides, and a turning one glances off") {
+  for (const int rate : {60, 240}) {
+    test::Scene scene;
+    scene.settings.time_step = 1.0 / rate;
+    scene.add(test::make_shell(test::square_mesh(0.5, 4), false)).may_break = true;
+    follow(scene.add(test::make_sphere(0.1, Vec3::Zero())),
+           {at(0, Vec3(0.02, 0.4, 0)), at(0.3, Vec3(0.02, -0.4, 0))});
+    follow(scene.add(test::make_box(Vec3::Constant(0.08), Vec3::Zero())),
+           {at(0, Vec3(0.05, -0.4, 0)), at(0.3, Vec3(0.05, 0.4, 0))}, Between::straight);
+    follow(scene.add(test::make_box(Vec3(0.3, 0.02, 0.02), Vec3::Zero())),
+           {at(0, Vec3(0.4, 0.2, 0.1)), at(1, Vec3(0.4, -0.1, 0.1), Vec3(0, 0, 12))});
+    audit::Audit audit;
+    for (int i = 0; i < rate; ++i) step(scene, audit);
+    INFO(rate << " steps a second");
+    CHECK(scene.bodies[1].pose.translation.y() > 0.1);
+    CHECK(scene.bodies[2].pose.translation.y() < -0.08);
+    for (std::size_t k = 1; k < 4; ++k) CHECK(scene.bodies[k].script.blows > 0);
+    CHECK(audit.report().crossings == 0);
+    CHECK(audit.report().passages == 0);
+  }
+}
+
 TEST_CASE("a ram strikes what stands against a wall as a free block of its mass would") {
   // A crate that can break between a ram and a wall: the blow, in N s, that the crate gets from the ram.
   const auto blow_of = [](int rate, bool is_scripted) {
