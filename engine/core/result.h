@@ -1,6 +1,7 @@
 // Result<T>: a value, or a sentence that says why there is none. For bad input, never for our own faults.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,9 +22,15 @@ class [[nodiscard]] Result {
   bool ok() const { return std::holds_alternative<T>(value_); }
   explicit operator bool() const { return ok(); }
 
-  /// The value; only when ok().
-  T& value() { return std::get<T>(value_); }
-  const T& value() const { return std::get<T>(value_); }
+  /// The value; only when ok(): else throws std::logic_error with the reason.
+  T& value() {
+    if (!ok()) throw std::logic_error(error());
+    return *std::get_if<T>(&value_);
+  }
+  const T& value() const {
+    if (!ok()) throw std::logic_error(error());
+    return *std::get_if<T>(&value_);
+  }
   /// The reason; only when not ok().
   const std::string& error() const { return std::get<Error>(value_).message; }
 

@@ -4,6 +4,7 @@
 
 #include "engine/core/hash.h"
 #include "engine/world/forms.h"
+#include "engine/world/limits.h"
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
@@ -19,17 +20,30 @@ std::string find_path_fault(const BodyDescription& description) {
     if (!(keys[k].time > keys[k - 1].time)) return "the keys of a path must go forward in time";
     if (is_plane && keys[k].angles != keys[0].angles) return "a plane cannot turn";
   }
+  for (const body::Keyframe& key : keys)
+    if (!std::isfinite(key.time) || !is_within(key.position, kMostLength) || !key.angles.allFinite())
+      return "a key of its path is not finite, or not within 1e6 m";
+  const body::ScriptedPath path(keys, description.path->between);
+  if (!(path.top_speed() <= kMostSpeed) || !(path.top_spin() <= kMostSpin))
+    return "its path is quicker than 1e9 m/s or 1e5 rad/s";
   return {};
 }
 
 std::string find_number_fault(const BodyDescription& description) {
   if (description.density && !(*description.density > 0.0 && std::isfinite(*description.density)))
     return "the density must be above zero";
+  if (description.contact_duration && !is_positive(*description.contact_duration))
+    return "its contact_duration must be above zero";
   const Quat& rotation = description.pose.rotation;
   if (!rotation.coeffs().allFinite() || !(rotation.norm() > 0.0)) return "its rotation is none";
-  for (const Vec3& v : {description.pose.translation, description.velocity, description.angular_velocity,
-                        description.force, description.torque})
-    if (!v.allFinite()) return "its place, velocity or force is not finite";
+  if (!is_within(description.pose.translation, kMostLength))
+    return "its place is not finite, or not within 1e6 m";
+  if (!is_within(description.velocity, kMostSpeed))
+    return "its velocity is not finite, or not within 1e9 m/s";
+  if (!is_within(description.angular_velocity, kMostSpin))
+    return "its spin is not finite, or not within 1e5 rad/s";
+  if (!is_within(description.force, kMostForce) || !is_within(description.torque, kMostForce))
+    return "its force or torque is not finite, or not within 1e9 N, or N m";
   return {};
 }
 

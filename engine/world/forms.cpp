@@ -9,10 +9,12 @@
 #include "engine/fracture/shell_subject.h"
 #include "engine/fracture/space_grains.h"
 #include "engine/geometry/mass_properties.h"
+#include "engine/geometry/mesh_diagnosis.h"
 #include "engine/geometry/shell_surface.h"
 #include "engine/geometry/solid_kerf.h"
 #include "engine/geometry/solid_surface.h"
 #include "engine/geometry/tetrahedralise.h"
+#include "engine/world/limits.h"
 
 namespace shatterbox::world {
 namespace {
@@ -58,7 +60,17 @@ std::string find_mesh_fault(const geometry::TriangleMesh& mesh, const std::vecto
     for (const int v : t)
       if (v < 0 || v >= count) return "a triangle names a vertex that is not there; mend the mesh first";
   for (const Vec3& p : mesh.positions)
-    if (!p.allFinite()) return "a vertex of the mesh is at no finite place";
+    if (!is_within(p, kMostLength)) return "a vertex of the mesh is at no finite place within 1e6 m";
+  return {};
+}
+
+/// A sentence, or nothing, if mending would leave the mesh as it is.
+std::string find_unmended(const geometry::TriangleMesh& mesh) {
+  geometry::MendOptions options;
+  options.allow_loose_parts = true;
+  for (const geometry::MeshFinding& finding : geometry::diagnose(mesh, options).findings)
+    if (finding.severity != geometry::Severity::noted)
+      return "the mesh was not mended (geometry::mend does that): " + finding.sentence;
   return {};
 }
 
@@ -170,20 +182,20 @@ double element_size_of(const SolidDescription& solid) {
 
 std::string find_form_fault(const BodyDescription& description) {
   if (const auto* box = std::get_if<BoxDescription>(&description.form))
-    if (!(box->half_extent.minCoeff() > 0.0) || !box->half_extent.allFinite())
-      return "a box needs an extent above zero along every axis";
+    if (!(box->half_extent.minCoeff() > 0.0) || !is_within(box->half_extent, kMostLength))
+      return "a box needs an extent above zero along every axis, and no more than 1e6 m";
   if (const auto* sphere = std::get_if<SphereDescription>(&description.form))
-    if (!(sphere->radius > 0.0) || !std::isfinite(sphere->radius))
-      return "a sphere needs a radius above zero";
+    if (!is_positive(sphere->radius, kMostLength))
+      return "a sphere needs a radius above zero, and no more than 1e6 m";
   if (const auto* capsule = std::get_if<CapsuleDescription>(&description.form)) {
     if (!(capsule->radius > 0.0)) return "a capsule needs a radius above zero";
-    if (!(capsule->length > 2.0 * capsule->radius) || !std::isfinite(capsule->length))
-      return "a capsule is longer than twice its radius";
+    if (!(capsule->length > 2.0 * capsule->radius) || !(capsule->length <= kMostLength))
+      return "a capsule is longer than twice its radius, and no longer than 1e6 m";
   }
   if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
     std::string fault = find_mesh_fault(shell->mesh, shell->parts, "shell");
     if (!fault.empty()) return fault;
-    if (!(shell->thickness > 0.0)) return "a shell needs a thickness above zero";
+    if (!is_positive(shell->thickness, kMostLength)) return "a shell needs a thickness above zero";
     const int count = static_cast<int>(shell->mesh.positions.size());
     for (const int v : shell->clamped)
       if (v < 0 || v >= count) return "the support names a vertex that is not there";
@@ -235,6 +247,7 @@ std::shared_ptr<const body::Shape> make_analytic_shape(const BodyDescription& de
 }
 
 core::Result<SharedForm> make_form(const ShellDescription& shell, const Substance& substance) {
+  if (const std::string fault = find_unmended(shell.mesh); !fault.empty()) return core::Error{fault};
   const double density = substance.density;
   auto elements = std::make_shared<geometry::ShellElements>();
   const geometry::MassProperties mass = geometry::shell_mass_properties(shell.mesh, shell.thickness, density);
@@ -262,6 +275,7 @@ core::Result<SharedForm> make_form(const ShellDescription& shell, const Substanc
 }
 
 core::Result<SharedForm> make_form(const SolidDescription& solid, const Substance& substance) {
+  if (const std::string fault = find_unmended(solid.mesh); !fault.empty()) return core::Error{fault};
   const double density = substance.density;
   auto shape = std::make_shared<body::Shape>();
   const geometry::MassProperties mass = geometry::solid_mass_properties(solid.mesh, density);

@@ -8,6 +8,7 @@
 #include "engine/collision/feature_list.h"
 #include "engine/core/index.h"
 #include "engine/world/acts.h"
+#include "engine/world/limits.h"
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
@@ -122,14 +123,16 @@ core::Result<int> World::add_joint(const JointDescription& description) {
   JointNature nature{0, description.name, description.strength, description.shear_strength, 0.0, {}};
   Pose place;
   if (const auto* pivot = std::get_if<PivotDescription>(&description.form)) {
-    if (!(pivot->area > 0.0)) return refuse("its area must be more than 0 m2");
+    if (!is_positive(pivot->area)) return refuse("its area must be more than 0 m2");
+    if (!is_within(pivot->point, kMostLength)) return refuse("its point is not within 1e6 m");
     place.translation = pivot->point;
     joint.is_pivot = true;
     joint.may_meet = are_apart(*a, *b);
     joint.area = pivot->area;
   } else {
-    const geometry::FacingArea face =
-        find_mortar_area(*a, *b, std::get<MortarDescription>(description.form).gap);
+    const double gap = std::get<MortarDescription>(description.form).gap;
+    if (!is_positive(gap, kMostLength)) return refuse("its gap must be more than 0 m");
+    const geometry::FacingArea face = find_mortar_area(*a, *b, gap);
     if (!(face.area > 0.0)) return 0;
     place = {Quat(face.axes), face.centre};
     joint.area = face.area;

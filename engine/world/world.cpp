@@ -4,13 +4,25 @@
 #include <stdexcept>
 
 #include "engine/material/tempering.h"
+#include "engine/world/limits.h"
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
 
+namespace {
+
+constexpr double kMostFriction = 1e3;
+
+}  // namespace
+
 World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) {
-  if (settings.steps_per_second < 1 || settings.substeps < 1 || !settings.gravity.allFinite())
-    throw std::invalid_argument("a world needs a step a second, a substep and a finite gravity");
+  if (settings.steps_per_second < 1 || settings.substeps < 1 || !is_within(settings.gravity, kMostGravity))
+    throw std::invalid_argument("a world needs a step a second, a substep and a gravity within 1e9 m/s2");
+  if (settings.crack_generations < 1 || settings.piece_generations < 1 || settings.most_generations < 0)
+    throw std::invalid_argument("a world needs a generation of cracks, and none fewer of breaking than 0");
+  if ((settings.stress_window && !is_positive(*settings.stress_window)) ||
+      !is_positive(settings.paper_duration) || !is_positive(settings.solve_residual))
+    throw std::invalid_argument("a world's durations and residuals are above zero");
   state_->settings = settings;
   state_->contact_settings.time_step = 1.0 / settings.steps_per_second;
   state_->contact_settings.gravity = settings.gravity;
@@ -38,6 +50,9 @@ core::Result<int> World::add_material(const material::Material& material) {
 }
 
 void World::add_pair(const PairOverride& pair) {
+  if (!(pair.friction.value_or(0.0) >= 0.0 && pair.friction.value_or(0.0) <= kMostFriction) ||
+      !(pair.restitution.value_or(0.0) >= 0.0 && pair.restitution.value_or(0.0) <= 1.0))
+    throw std::invalid_argument("a pair's friction is 0 to 1e3, its restitution 0 to 1");
   const material::Material& a = material(pair.material_a);
   const material::Material& b = material(pair.material_b);
   body::Body body_a, body_b;
@@ -73,13 +88,18 @@ bool World::remove_body(body::BodyId id) {
 bool World::push_body(body::BodyId id, const Vec3& impulse, const Vec3& point) {
   body::Body* body = body::find_body(state_->moving.bodies, id);
   if (!body || !body->is_dynamic()) return false;
-  body->push(impulse, point);
+  if (!impulse.allFinite() || !is_within(point, kMostLength)) return false;
+  body::Body pushed = *body;
+  pushed.push(impulse, point);
+  if (!is_within(pushed.velocity, kMostSpeed) || !is_within(pushed.angular_velocity, kMostSpin)) return false;
+  *body = std::move(pushed);
   body->wake();
   state_->is_disturbed = true;
   return true;
 }
 
 void World::set_gravity(const Vec3& gravity) {
+  if (!is_within(gravity, kMostGravity)) throw std::invalid_argument("gravity is within 1e9 m/s2");
   state_->settings.gravity = state_->contact_settings.gravity = gravity;
   for (body::Body& body : state_->moving.bodies) {
     if (!body.is_dynamic()) continue;
@@ -88,13 +108,18 @@ void World::set_gravity(const Vec3& gravity) {
   state_->is_disturbed = true;
 }
 
-void World::explode(const dynamics::Blast& blast) {
+bool World::explode(const dynamics::Blast& blast) {
+  if (!is_within(blast.centre, kMostLength) || !is_positive(blast.energy, kMostEnergy) ||
+      !(blast.duration >= 0.0 && blast.duration < 1e300))
+    return false;
   state_->blasts.push_back(blast);
+  return true;
 }
 
 int World::grab(body::BodyId id, const Vec3& point, double most_force) {
   const body::Body* body = body::find_body(state_->moving.bodies, id);
   if (!body || !body->is_dynamic()) return 0;
+  if (!is_within(point, kMostLength) || !is_positive(most_force, kMostForce)) return 0;
   dynamics::Hand hand;
   hand.number = state_->next_hand++;
   hand.body = id;
@@ -107,6 +132,7 @@ int World::grab(body::BodyId id, const Vec3& point, double most_force) {
 }
 
 bool World::move_hand(int number, const Vec3& place) {
+  if (!is_within(place, kMostLength)) return false;
   const auto hand = std::find_if(state_->hands.begin(), state_->hands.end(),
                                  [number](const dynamics::Hand& h) { return h.number == number; });
   if (hand == state_->hands.end() || !body::find_body(state_->moving.bodies, hand->body)) return false;

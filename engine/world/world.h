@@ -50,7 +50,8 @@ struct Ancestry {
 
 class World {
  public:
-  /// Throws std::invalid_argument: less than one step a second or substep, or a gravity that is not finite.
+  /// Throws std::invalid_argument: less than one step a second, substep or generation, durations that are
+  /// none, a gravity beyond limits.h.
   explicit World(const WorldSettings& settings);
   ~World();
   World(World&&) noexcept;
@@ -62,35 +63,38 @@ class World {
 
   /// Adds a material and returns its number. Reasons for refusal: a value out of its range.
   core::Result<int> add_material(const material::Material& material);
-  /// Both materials must be there: std::out_of_range.
+  /// Both materials must be there: std::out_of_range; friction is not negative, restitution 0 to 1:
+  /// std::invalid_argument.
   void add_pair(const PairOverride& pair);
 
   /// Adds a body now: before the first step, or between two steps (the script's drop and projectile). Reasons
-  /// for refusal: an unknown material, a form without extent, a mesh that was not mended.
+  /// for refusal: an unknown material, a form without extent, a mesh that geometry::mend would change,
+  /// numbers beyond limits.h.
   core::Result<body::BodyId> add_body(const BodyDescription& description);
 
   /// Joins two bodies where they are now, until what they bear opens it. Returns its number; 0 if nothing
-  /// moves, or mortar finds no faces so near. Reasons for refusal: no such body, no strength.
+  /// moves, or mortar finds no faces so near. Reasons for refusal: no such body, no strength, gap or place.
   core::Result<int> add_joint(const JointDescription& description);
 
   /// Removes a body; false if there is none of that id.
   bool remove_body(body::BodyId id);
 
   /// Gives an impulse (N s) at a point (m, world) and wakes the body; false if it is not there or not
-  /// dynamic.
+  /// dynamic, or would be quicker than limits.h has it.
   bool push_body(body::BodyId id, const Vec3& impulse, const Vec3& point);
 
-  /// From the coming step on, m/s2. Wakes everything.
+  /// From the coming step on, m/s2. Wakes everything. Beyond limits.h: std::invalid_argument.
   void set_gravity(const Vec3& gravity);
 
-  /// An explosion in the coming step (dynamics/blast.h).
-  void explode(const dynamics::Blast& blast);
+  /// An explosion in the coming step (dynamics/blast.h). False if it has no energy, or is beyond limits.h.
+  bool explode(const dynamics::Blast& blast);
 
   /// A hand takes hold of a body at a point (m, world), with at most that force (N), and keeps it there and
-  /// as it is turned (dynamics/hand.h). Returns its number; 0 if the body is not there or not dynamic.
+  /// as it is turned (dynamics/hand.h). Returns its number; 0 if the body is not there or not dynamic, or
+  /// place or force are none.
   int grab(body::BodyId id, const Vec3& point, double most_force);
   /// Where a hand is at the end of the coming step, m; from then on it rests there. False if there is no such
-  /// hand, or what it held is gone.
+  /// hand or place, or what it held is gone.
   bool move_hand(int hand, const Vec3& place);
   void release(int hand);
 

@@ -1,6 +1,8 @@
 // What a picture is made of: plain data in, no GL and no engine types. World space, metres, right-handed, y
 // up. Colours are linear light (Rec. 709 primaries, 0..1 for surfaces) unless a name says srgb.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -32,6 +34,14 @@ struct Camera {
   glm::vec3 target{0.0F};
   glm::vec3 up{0.0F, 1.0F, 0.0F};
   float vertical_fov = 35.0F;  // degrees
+  // Width over height: narrower pictures see as much at the sides as one of this, and more above and below.
+  float least_aspect = 0.0F;
+
+  /// How far a picture of this aspect sees above and below, per distance.
+  float slope(float aspect) const {
+    const float half = 0.5F * glm::radians(std::clamp(vertical_fov, 1.0F, 150.0F));
+    return std::tan(half) * std::max(1.0F, least_aspect / aspect);
+  }
 };
 
 // Sun, sky and two studio soft boxes that only glossy things reflect.

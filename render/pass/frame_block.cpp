@@ -76,7 +76,7 @@ FrameBlock make_frame_block(const Frame& frame, int width, int height) {
   const glm::vec3 forward = unit_or(camera.target - camera.position, {0.0F, 0.0F, -1.0F});
   glm::vec3 up = unit_or(camera.up, {0.0F, 1.0F, 0.0F});
   if (std::abs(glm::dot(up, forward)) > 0.999F) up = {0.0F, 0.0F, -1.0F};
-  const float slope = std::tan(0.5F * glm::radians(std::clamp(camera.vertical_fov, 1.0F, 150.0F)));
+  const float slope = camera.slope(w / h);
 
   const float near = 0.02F * distance;
   const float far = 20.0F * distance + 2.0F * (frame.ground ? frame.ground->fade_to : 0.0F);

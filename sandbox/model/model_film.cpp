@@ -127,11 +127,12 @@ void ModelFilm::add_camera(const render::Camera& camera) {
     camera_ = Actor();
     camera_->name = "camera";
     const double away = glm::distance(camera.position, camera.target);
-    file_.json["cameras"] = Json::array({{{"type", "perspective"},
-                                          {"perspective",
-                                           {{"aspectRatio", aspect_},
-                                            {"yfov", camera.vertical_fov * core::kPi / 180.0},
-                                            {"znear", kNearestSeen * away}}}}});
+    file_.json["cameras"] =
+        Json::array({{{"type", "perspective"},
+                      {"perspective",
+                       {{"aspectRatio", aspect_},
+                        {"yfov", 2.0 * core::atan2(camera.slope(static_cast<float>(aspect_)), 1.0)},
+                        {"znear", kNearestSeen * away}}}}});
   }
   camera_->add(frame_, camera.position, to_quaternion(turn_of(camera)));
 }

@@ -21,8 +21,9 @@ void pass_look(Archive& archive, Look& look) {
 
 template <class Archive, class Camera>
 void pass_camera(Archive& archive, Camera& camera) {
-  static_assert(sizeof(render::Camera) == 40);
-  archive(camera.position), archive(camera.target), archive(camera.up), archive(camera.vertical_fov);
+  static_assert(sizeof(render::Camera) == 44);
+  archive(camera.position), archive(camera.target), archive(camera.up);
+  archive(camera.vertical_fov), archive(camera.least_aspect);
 }
 
 template <class Archive, class Lights>

@@ -21,7 +21,7 @@ namespace shatterbox::sandbox::recording {
 using namespace std::string_view_literals;
 
 inline constexpr std::string_view kMagic = "\x89SBREC\r\n"sv, kEnd = "SBRECEND"sv;
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::size_t kHeadSize = 12, kTailSize = 16;           // of the file, bytes
 inline constexpr std::size_t kPartHeadSize = 9, kPartTailSize = 8;     // of a part
 inline constexpr int kMostPanels = 16, kMostFramesPerSecond = 100000;  // far beyond what a run takes

@@ -14,13 +14,17 @@
 #include "sandbox/scene/build_mesh.h"
 #include "sandbox/scene/clean_solid.h"
 #include "sandbox/scene/limits.h"
+#include "sandbox/scene/wall_thickness.h"
 
 namespace shatterbox::sandbox::scene {
 
 namespace {
 
-constexpr double kMostDice = 2000.0;  // that are played without a word
-constexpr double kFinestGrain = 1.8;  // elements that it takes to tell a grain
+constexpr double kMostDice = 2000.0;   // that are played without a word
+constexpr double kFinestGrain = 1.8;   // elements that it takes to tell a grain
+constexpr double kThinnestWall = 2.0;  // the same of a wall,
+constexpr double kThinnestTold = 0.9;  // and where their size is told
+constexpr double kOwnWall = 0.1;       // of the size of a closed sheet: it is no vessel, but a wall
 
 /// About the frame's origin and about the centre of mass, which is known.
 void measure_mesh(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
@@ -29,6 +33,20 @@ void measure_mesh(const geometry::TriangleMesh& mesh, BodyPlan& plan) {
     plan.bounding_radius = std::max(plan.bounding_radius, p.norm());
     plan.reach = std::max(plan.reach, (p - plan.centre).norm());
   }
+}
+
+/// Of a file: a mesh with an inside and an outside, each of which would be a sheet.
+void note_own_wall(const BodyEntry& body, const ShellForm& form, const geometry::TriangleMesh& mesh,
+                   double thickness, std::vector<std::string>& notes) {
+  if (!std::holds_alternative<MeshFileShape>(form.shape)) return;
+  if (!geometry::diagnose(mesh, {.allow_loose_parts = true}).is_closed) return;
+  const geometry::Box box = geometry::box_of(mesh);
+  const double wall = wall_thickness(mesh);
+  if (wall > kOwnWall * (box.high - box.low).norm()) return;
+  notes.push_back(fmt::format(
+      "the mesh of \"{}\" has a wall of its own, {:.2g} m thick, both sides of which are sheets of {:.2g} "
+      "m here: kind = \"solid\" takes the wall as it is, and a sheet is one side alone",
+      body.name, wall, thickness));
 }
 
 std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, const ShellForm& form,
@@ -51,6 +69,7 @@ std::optional<world::ShellDescription> describe_shell(const BodyEntry& body, con
           body.name, dice, 1e6 * die));
   }
   measure_mesh(built->mesh, plan);
+  note_own_wall(body, form, built->mesh, shell.thickness, notes);
   shell.mesh = std::move(built->mesh);
   shell.parts = std::move(built->parts);
   return shell;
@@ -67,6 +86,19 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
         fmt::format("the grains of \"{}\" are {:.3g} m wide and its elements {:.3g} m: cracks cannot tell "
                     "them; element_size = {:.2g} can",
                     body.name, grain, size, grain / kFinestGrain / solid.grading));
+}
+
+/// Bent across one element it is too stiff. Who tells the size of elements has made up his mind, up to one.
+void note_thin_wall(const BodyEntry& body, const world::SolidDescription& solid,
+                    std::vector<std::string>& notes) {
+  if (!solid.is_breakable) return;
+  const double size = world::element_size_of(solid), wall = wall_thickness(solid.mesh);
+  if (wall >= (solid.element_size > 0.0 ? kThinnestTold : kThinnestWall) * size) return;
+  notes.push_back(
+      fmt::format("the wall of \"{}\" is {:.2g} m thick and its elements {:.2g} m: its stress is told too "
+                  "low; element_size "
+                  "= {:.2g} is finer, and a sheet (kind = \"shell\", thickness = {:.2g}) needs none across",
+                  body.name, wall, size, wall / kThinnestWall, wall));
 }
 
 void measure(const world::SolidDescription& solid, BodyPlan& plan) {
@@ -101,6 +133,7 @@ std::optional<world::SolidDescription> describe_solid(const BodyEntry& body, con
   measure(solid, plan);
   solid.held = find_held(solid.mesh, body.rotation, body.support, body.place, problems);
   note_fine_grains(body, solid, scene, notes);
+  note_thin_wall(body, solid, notes);
   return solid;
 }
 

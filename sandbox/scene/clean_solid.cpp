@@ -17,8 +17,9 @@ namespace {
 constexpr double kSpacing = 0.5;        // of an element
 constexpr double kUsualElements = 1e4;  // in the box about a mesh whose elements are not told
 constexpr double kFinest = 5e-3;        // of its size, is a spacing then
+constexpr int kMostFinerSpacing = 3;    // times, where it cannot be made so
 
-core::Result<std::string> remake(world::SolidDescription& solid, double spacing) {
+core::Result<std::string> remake_once(world::SolidDescription& solid, double spacing) {
   if (std::any_of(solid.parts.begin(), solid.parts.end(), [](int part) { return part != 0; }))
     return core::Error{"it has parts of different looks"};
   auto made = geometry::remake_surface(solid.mesh, spacing);
@@ -35,6 +36,14 @@ core::Result<std::string> remake(world::SolidDescription& solid, double spacing)
       made.value().lost_share > 0.0
           ? fmt::format(", {:.2g} % of the mesh, too thin for it, is lost", 100.0 * made.value().lost_share)
           : "");
+}
+
+/// Parts that hardly reach into each other need it finer.
+core::Result<std::string> remake(world::SolidDescription& solid, double spacing) {
+  core::Result<std::string> done = remake_once(solid, spacing);
+  for (int finer = 2; !done && finer <= kMostFinerSpacing; ++finer)
+    if (auto again = remake_once(solid, spacing / finer)) done = std::move(again);
+  return done;
 }
 
 }  // namespace

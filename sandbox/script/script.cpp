@@ -37,8 +37,11 @@ std::string push_bodies(const scene::Push& push, scene::BodyRef who, scene::Buil
     least = distance;
     shares = {{part->id, push.impulse, *push.point}};
   }
-  for (const Share& share : shares) built.world.push_body(share.id, share.impulse, share.point);
-  return shares.empty() ? "its body is not there" : "";
+  if (shares.empty()) return "its body is not there";
+  bool is_felt = false;
+  for (const Share& share : shares)
+    is_felt = built.world.push_body(share.id, share.impulse, share.point) || is_felt;
+  return is_felt ? "" : "its body cannot move, or would be quicker than 1e9 m/s";
 }
 
 /// A sentence if there is nothing to remove.

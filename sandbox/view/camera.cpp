@@ -60,7 +60,7 @@ Viewpoint viewpoint_at(const scene::CameraEntry& camera, const Subject& subject,
   const Viewpoint from = frame_points(subject.fall->from, framing),
                   to = frame_points(subject.fall->to, framing);
   return {from.position + share * (to.position - from.position),
-          from.target + share * (to.target - from.target), camera.fov};
+          from.target + share * (to.target - from.target), camera.fov, from.least_aspect};
 }
 
 }  // namespace shatterbox::sandbox::view

@@ -28,7 +28,10 @@ void CameraRig::apply(Shot& shot, double film, const Whereabouts& where, Viewpoi
   switch (change.move) {
     case scene::CameraMove::cut:
     case scene::CameraMove::dolly:
-      if (change.position) go(view.position, *change.position, share);
+      if (change.position) {
+        go(view.position, *change.position, share);
+        view.least_aspect *= 1.0 - share;
+      }
       if (change.target) go(view.target, *change.target, share);
       if (change.fov) view.fov += share * (*change.fov - view.fov);
       break;
@@ -80,6 +83,7 @@ render::Camera CameraRig::at(const Moment& moment, const Whereabouts& where) {
   camera.position = to_glm(view.position);
   camera.target = to_glm(view.target);
   camera.vertical_fov = static_cast<float>(view.fov);
+  camera.least_aspect = static_cast<float>(view.least_aspect);
   return camera;
 }
 

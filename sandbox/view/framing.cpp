@@ -9,9 +9,10 @@
 namespace shatterbox::sandbox::view {
 namespace {
 
-constexpr double kFilled = 0.75;       // of the picture's width and height
-constexpr double kAspect = 4.0 / 3.0;  // of the narrowest picture that has all
-constexpr double kFromBeside = 0.45;   // of the way that the eye is in front
+constexpr double kFilled = 0.75;  // of the picture's width and height
+constexpr double kAspect =
+    4.0 / 3.0;                        // of the picture that they fill; narrower ones see more above and below
+constexpr double kFromBeside = 0.45;  // of the way that the eye is in front
 constexpr double kFromAbove = 0.35;
 constexpr double kMuchDeeper = 1.5;     // times as deep as wide is looked at from the side
 constexpr double kLeastDistance = 0.1;  // of the size of it all, from what is nearest
@@ -79,7 +80,7 @@ Viewpoint frame_points(const std::vector<Vec3>& points, const Framing& framing) 
   }
   const double size = std::max((box.high - box.low).norm(), kLeastSize);
   const double distance = std::max(back, nearest + kLeastDistance * size) - target.dot(away);
-  return {target + distance * away, target, framing.fov};
+  return {target + distance * away, target, framing.fov, kAspect};
 }
 
 }  // namespace shatterbox::sandbox::view

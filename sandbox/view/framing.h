@@ -11,6 +11,7 @@ namespace shatterbox::sandbox::view {
 struct Viewpoint {
   Vec3 position = Vec3::Zero(), target = Vec3::Zero();  // m
   double fov = 35.0;                                    // degrees, vertical
+  double least_aspect = 0.0;                            // as of render::Camera
 };
 
 struct Framing {
@@ -20,7 +21,7 @@ struct Framing {
 };
 
 /// From in front of the wider side of the points (m, at least one), a little from the right and from above:
-/// as near as all of them are in the middle of the picture with some room, if that is 4 : 3 or wider.
+/// as near as all of them are in the middle of the picture with some room.
 Viewpoint frame_points(const std::vector<Vec3>& points, const Framing& framing);
 
 }  // namespace shatterbox::sandbox::view

@@ -156,6 +156,18 @@ std::vector<Vec3> find_entrances(const scene::SceneDescription& scene, std::size
   return shifts;
 }
 
+// By how much from its own place hands carry a body whose centre is there, m.
+std::vector<Vec3> find_carries(const scene::SceneDescription& scene, std::size_t number, const Vec3& centre) {
+  std::vector<Vec3> shifts;
+  Vec3 grip = centre;
+  for (const scene::EventEntry& event : scene.events) {
+    if (event.who.body != static_cast<int>(number)) continue;
+    if (const auto* grab = std::get_if<scene::Grab>(&event.action)) grip = grab->point.value_or(centre);
+    if (const auto* carry = std::get_if<scene::Carry>(&event.action)) shifts.emplace_back(carry->to - grip);
+  }
+  return shifts;
+}
+
 // Of each body whether joints hold it to something that does not fall.
 std::vector<char> find_hung(const scene::SceneDescription& scene) {
   std::vector<char> is_hung(scene.bodies.size(), 0);
@@ -191,6 +203,7 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
     const scene::BodyEntry& body = scene.bodies[i];
     if (body.path || body.repeat.every > 0.0) return std::nullopt;
     if (body.is_held_back && !find_entrances(scene, i).empty()) return std::nullopt;
+    if (!find_carries(scene, i, body.position).empty()) return std::nullopt;
     if (body.is_held_back) continue;  // thrown
     if (plan.bodies[i].reach <= 0.0 || is_scenery(body)) continue;
     const bool is_falling = can_fall(body, is_hung[i] != 0);
@@ -265,6 +278,11 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
         add(corners, subject.corners);
         if (body.path) add(corners_on_path(body, planned, pose, scene.seconds), subject.corners);
         if (is_on_axle(body)) add(corners_on_axle(body, planned, pose), subject.corners);
+        for (const Vec3& carried : find_carries(scene, i, pose.apply(planned.centre))) {
+          const Corners there = corners_of(planned.box, {pose.rotation, pose.translation + carried});
+          add(there, subject.corners);
+          add(spread_out(there, way_down(scene, scenery, there)), subject.corners);
+        }
         if (way.isZero(0.0)) continue;
         const Vec3 aside = way_aside(scene.world.gravity, body.velocity, way);
         for (const Vec3& corner : spread_out(corners, way)) subject.corners.push_back(corner + aside);

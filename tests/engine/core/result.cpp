@@ -23,6 +23,7 @@ TEST_CASE("a result is a value or a sentence") {
   const auto bad = half_of(7);
   CHECK_FALSE(bad.ok());
   CHECK(bad.error() == "7 is odd");
+  CHECK_THROWS_WITH(bad.value(), "7 is odd");
 }
 
 }  // namespace shatterbox::core

@@ -373,6 +373,103 @@ TEST_CASE("a scripted ram breaks a held pane at any rate, and goes through it to
   }
 }
 
+TEST_CASE("a mesh that was not mended is refused with what is wrong with it") {
+  world::World w{world::WorldSettings{}};
+  const int glass = w.add_material(*material::find_preset("glass")).value();
+  const auto fault_of = [&](const geometry::TriangleMesh& mesh) {
+    world::BodyDescription ball;
+    world::ShellDescription shell;
+    shell.mesh = mesh;
+    ball.form = shell;
+    ball.material = glass;
+    const auto added = w.add_body(ball);
+    return added ? std::string() : added.error();
+  };
+  geometry::Meshing meshing;
+  meshing.edge_length = 0.02;
+  const geometry::TriangleMesh sphere = geometry::make_sphere(0.05, meshing).value();
+  CHECK(fault_of(sphere).empty());
+  using Spoil = void (*)(geometry::TriangleMesh&);
+  const std::vector<std::pair<const char*, Spoil>> spoils{
+      {"no area", [](geometry::TriangleMesh& m) { m.triangles[3][1] = m.triangles[3][0]; }},
+      {"",
+       [](geometry::TriangleMesh& m) { std::fill(m.positions.begin(), m.positions.end(), Vec3(1, 2, 3)); }},
+      {"", [](geometry::TriangleMesh& m) { std::swap(m.triangles[3][1], m.triangles[3][0]); }},
+      {"", [](geometry::TriangleMesh& m) { m.triangles.push_back(m.triangles[7]); }},
+      {"", [](geometry::TriangleMesh& m) {
+         m.positions.emplace_back(0.2, 0.2, 0.2);
+         m.triangles.push_back(
+             {m.triangles[0][0], m.triangles[0][1], static_cast<int>(m.positions.size()) - 1});
+       }}};
+  for (const auto& [word, spoil] : spoils) {
+    geometry::TriangleMesh mesh = sphere;
+    spoil(mesh);
+    const std::string fault = fault_of(mesh);
+    CAPTURE(fault);
+    CHECK(fault.find("was not mended") != std::string::npos);
+    CHECK(fault.find(word) != std::string::npos);
+  }
+}
+
+TEST_CASE("numbers that are none or beyond all measure are refused and change nothing") {
+  const test::Untrapped untrapped;
+  const double nan = std::nan("");
+  world::World w = make_drop(0.0), same = make_drop(0.0);
+  const body::BodyId ball = w.bodies()[1].id;
+  const Vec3 bad(nan, 0, 0), here(0, 0.06, 0);
+  for (const Vec3& impulse : {bad, Vec3(0, 1e200, 0), Vec3(1e12, 0, 0)})
+    CHECK_FALSE(w.push_body(ball, impulse, here));
+  CHECK_FALSE(w.push_body(ball, Vec3(0, 0, 1e-3), bad));
+  for (const double energy : {nan, 1e30, 0.0, -1.0}) CHECK_FALSE(w.explode({here, energy, 0.0}));
+  CHECK_FALSE(w.explode({bad, 1.0, 0.0}));
+  CHECK(w.grab(ball, bad, 10.0) == 0);
+  CHECK(w.grab(ball, here, nan) == 0);
+  CHECK_THROWS_AS(w.set_gravity(bad), std::invalid_argument);
+  CHECK_THROWS_AS(w.add_pair({0, 0, nan, {}}), std::invalid_argument);
+  CHECK_THROWS_AS(w.add_pair({0, 0, {}, 1.5}), std::invalid_argument);
+  CHECK_FALSE(w.add_joint({"pivot", w.bodies()[0].id, ball, world::PivotDescription{bad}}));
+  CHECK_FALSE(w.add_joint({"mortar", w.bodies()[0].id, ball, world::MortarDescription{nan}}));
+  world::BodyDescription body;
+  for (const double radius : {nan, 1e300, -1.0}) {
+    body.form = world::SphereDescription{radius};
+    CHECK_FALSE(w.add_body(body));
+  }
+  body.form = world::SphereDescription{0.1};
+  body.velocity = Vec3(0, 2e9, 0);
+  CHECK_FALSE(w.add_body(body));
+  body.velocity.setZero();
+  body.contact_duration = -1.0;
+  CHECK_FALSE(w.add_body(body));
+  body.contact_duration.reset();
+  body.motion = body::Motion::scripted;
+  body.path =
+      world::PathDescription{{{0.0, Vec3::Zero(), Vec3::Zero()}, {1e-12, Vec3(1, 0, 0), Vec3::Zero()}}};
+  CHECK(w.add_body(body).error().find("quicker") != std::string::npos);
+  body.path->keys[1].position = bad;
+  CHECK_FALSE(w.add_body(body));
+  for (int i = 0; i < 20; ++i) {
+    w.step();
+    same.step();
+  }
+  CHECK(w.state_hash() == same.state_hash());
+  // Some hundred kilometres a second, and steps go on.
+  CHECK(same.push_body(ball, Vec3(0, 1e4, 1e3), same.bodies()[1].pose.translation));
+  for (int i = 0; i < 3; ++i) same.step();
+  const int hand = w.grab(ball, w.bodies()[1].pose.translation, 10.0);
+  CHECK(hand != 0);
+  CHECK_FALSE(w.move_hand(hand, bad));
+  for (const auto& spoil : std::vector<void (*)(world::WorldSettings&)>{
+           [](world::WorldSettings& s) { s.stress_window = 0.0; },
+           [](world::WorldSettings& s) { s.stress_window = std::nan(""); },
+           [](world::WorldSettings& s) { s.crack_generations = -1; },
+           [](world::WorldSettings& s) { s.most_generations = -5; },
+           [](world::WorldSettings& s) { s.gravity = Vec3(0, 1e10, 0); }}) {
+    world::WorldSettings settings;
+    spoil(settings);
+    CHECK_THROWS_AS(world::World(settings), std::invalid_argument);
+  }
+}
+
 TEST_CASE("a path that cannot be gone is refused with a reason") {
   world::World w{world::WorldSettings{}};
   const int number = w.add_material(material::Material{}).value();

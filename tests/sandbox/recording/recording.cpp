@@ -226,9 +226,9 @@ TEST_CASE("a recording with any byte changed or any end missing is refused in wo
     CHECK_FALSE(complaint_about(file).empty());
     put_byte(file, i, good[i]);
   }
+  put_byte(file, 8, 3);
+  CHECK(complaint_about(file).find("version 3") != std::string::npos);
   put_byte(file, 8, 2);
-  CHECK(complaint_about(file).find("version 2") != std::string::npos);
-  put_byte(file, 8, 1);
   REQUIRE(complaint_about(file).empty());
   for (std::size_t size = good.size(); size-- > 0;) {
     sandbox::run::fs::resize_file(file, size);

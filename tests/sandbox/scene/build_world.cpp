@@ -11,6 +11,7 @@
 #include "engine/geometry/generators.h"
 #include "engine/material/material.h"
 #include "sandbox/scene/build_mesh.h"
+#include "sandbox/scene/wall_thickness.h"
 #include "tests/sandbox/scene/mesh_file_folder.h"
 #include "tests/sandbox/scene/reading.h"
 
@@ -121,6 +122,52 @@ TEST_CASE("a solid's small hole is closed, and parts that overlap are united, wi
   REQUIRE(built.has_value());
   REQUIRE_FALSE(built->plan.notes.empty());
   CHECK(built->plan.notes.back().find("pass through each other") != std::string::npos);
+}
+
+TEST_CASE("walls of hardly an element are noted, and closed meshes of files that are walls and no sheets") {
+  const auto notes_of = [](const std::string& keys) {
+    const Reading reading = read("[[body]]\nname = \"it\"\nmaterial = \"glass\"\n" + keys);
+    INFO(reading.text);
+    REQUIRE(reading.scene.has_value());
+    Problems problems;
+    const auto plan = plan_bodies(*reading.scene, problems);
+    REQUIRE(plan.has_value());
+    std::string all;
+    for (const std::string& note : plan->notes) all += note + "\n";
+    return all;
+  };
+  const std::string vase = "kind = \"solid\"\nshape = \"vase\"\nwall = 0.006\n";
+  CHECK(notes_of(vase).find("the wall of \"it\" is 0.00") != std::string::npos);
+  CHECK(notes_of(vase + "element_size = 0.008\n").find("element_size = 0.00") != std::string::npos);
+  CHECK(notes_of(vase + "element_size = 0.006\n").find("the wall of") == std::string::npos);
+  CHECK(notes_of(vase + "breakable = false\n").find("the wall of") == std::string::npos);
+  CHECK(notes_of("kind = \"solid\"\nshape = \"slab\"\nsize = [1, 0.2, 0.3]\n").find("the wall of") ==
+        std::string::npos);
+  // A plate of two sides, and a cube.
+  const MeshFileFolder folder;
+  const auto sheet_from = [&](const std::string& name, double height) {
+    std::string text;
+    for (int i = 0; i < 8; ++i) text += fmt::format("v {} {} {}\n", i & 1, (i & 2) / 2 * height, (i & 4) / 4);
+    text += "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n";
+    return notes_of("kind = \"shell\"\nthickness = 0.003\nmesh = \"" + folder.write(name, text).string() +
+                    "\"\n");
+  };
+  CHECK(sheet_from("plate.obj", 0.02).find("a wall of its own, 0.02 m thick") != std::string::npos);
+  CHECK(sheet_from("cube.obj", 1.0).find("a wall of its own") == std::string::npos);
+}
+
+TEST_CASE("half of all lines straight in through a closed mesh are no longer than its wall") {
+  geometry::Meshing meshing;
+  meshing.edge_length = 0.02;
+  geometry::TriangleMesh ball = geometry::make_sphere(0.1, meshing).value();
+  CHECK(wall_thickness(ball) == Approx(0.2).epsilon(0.03));
+  const geometry::TriangleMesh inner = geometry::make_sphere(0.09, meshing).value();
+  const int first = static_cast<int>(ball.positions.size());
+  ball.positions.insert(ball.positions.end(), inner.positions.begin(), inner.positions.end());
+  for (const geometry::Triangle& t : inner.triangles)
+    ball.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
+  CHECK(wall_thickness(ball) == Approx(0.01).epsilon(0.1));
+  CHECK(wall_thickness({}) == 0.0);
 }
 
 TEST_CASE("a mesh that is beyond mending is refused with what is wrong") {

@@ -8,6 +8,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/random.h"
+#include "sandbox/view/camera_rig.h"
 #include "tests/sandbox/scene/reading.h"
 
 using namespace shatterbox;
@@ -231,4 +232,36 @@ TEST_CASE(
   CHECK(highest(one, 1, 1.0) == Approx(1.05).epsilon(0.01));
   CHECK(highest(one, 0, -1.0) == Approx(0.05).epsilon(0.01));
   CHECK(highest(two, 0, -1.0) == Approx(1.05).epsilon(0.01));
+}
+
+TEST_CASE("a camera without a place sees where hands carry something") {
+  const std::string box =
+      "[[body]]\nkind = \"plane\"\n[[body]]\nname = \"b\"\nkind = \"box\"\nsize = 0.2\nposition = "
+      "[0,0.1,0]\n";
+  const Look look = look_at(box +
+                            "[[event]]\nat = 0\ndo = \"grab\"\nbody = \"b\"\npoint = [0,0.2,0]\n"
+                            "[[event]]\nat = 0.1\ndo = \"move\"\nbody = \"b\"\nto = [0.5,1.5,0]\n");
+  CHECK(
+      spread(look.at(0.0), {Vec3(0.6, 1.5, 0), Vec3(0.4, 1.3, 0), Vec3(0, 0, 0)}, Vec3::UnitY()).maxCoeff() <
+      0.76);
+  CHECK(spread(look_at(box).at(0.0), {Vec3(0.4, 0.4, 0)}, Vec3::UnitY()).maxCoeff() > 1.0);
+}
+
+TEST_CASE(
+    "pictures narrower than 4 : 3 see all that a camera without a place has, and no other camera changes") {
+  const std::string row =
+      "[[body]]\nkind = \"box\"\nsize = 0.2\nposition = [-1,0.1,0]\n[[body]]\nkind = \"box\"\nsize = "
+      "0.2\nposition = [1,0.1,0]\n";
+  const auto camera_of = [](const std::string& text) {
+    const Look look = look_at(text);
+    view::CameraRig rig(look.scene.camera, look.subject);
+    const view::Moment moment{0.0, 0.0, 1.0, {}};
+    return rig.at(moment, [](scene::BodyRef) { return std::optional<Vec3>(); });
+  };
+  const render::Camera chosen = camera_of(row), placed = camera_of(row + "[camera]\nposition = [0,1,5]\n");
+  const float usual = placed.slope(16.0F / 9.0F);
+  CHECK(chosen.slope(16.0F / 9.0F) == Approx(usual));
+  CHECK(chosen.slope(4.0F / 3.0F) == Approx(usual));
+  CHECK(chosen.slope(9.0F / 16.0F) * 9.0F / 16.0F == Approx(usual * 4.0F / 3.0F));
+  CHECK(placed.slope(9.0F / 16.0F) == Approx(usual));
 }
