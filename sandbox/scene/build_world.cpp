@@ -23,7 +23,7 @@ namespace {
 constexpr double kMostDice = 2000.0;   // that are played without a word
 constexpr double kFinestGrain = 1.8;   // elements that it takes to tell a grain
 constexpr double kThinnestWall = 2.0;  // the same of a wall,
-constexpr double kThinnestTold = 0.9;  // and where their size is told
+constexpr double kThinnestTold = 0.5;  // and where their size is told
 constexpr double kOwnWall = 0.1;       // of the size of a closed sheet: it is no vessel, but a wall
 
 /// About the frame's origin and about the centre of mass, which is known.
@@ -88,7 +88,8 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
                     body.name, grain, size, grain / kFinestGrain / solid.grading));
 }
 
-/// Bent across one element it is too stiff. Who tells the size of elements has made up his mind, up to one.
+/// Bent across one element it is too stiff. Who tells the size of elements has chosen, up to
+/// twice the wall.
 void note_thin_wall(const BodyEntry& body, const world::SolidDescription& solid,
                     std::vector<std::string>& notes) {
   if (!solid.is_breakable) return;

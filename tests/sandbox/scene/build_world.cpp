@@ -138,8 +138,8 @@ TEST_CASE("walls of hardly an element are noted, and closed meshes of files that
   };
   const std::string vase = "kind = \"solid\"\nshape = \"vase\"\nwall = 0.006\n";
   CHECK(notes_of(vase).find("the wall of \"it\" is 0.00") != std::string::npos);
-  CHECK(notes_of(vase + "element_size = 0.008\n").find("element_size = 0.00") != std::string::npos);
-  CHECK(notes_of(vase + "element_size = 0.006\n").find("the wall of") == std::string::npos);
+  CHECK(notes_of(vase + "element_size = 0.014\n").find("element_size = 0.00") != std::string::npos);
+  CHECK(notes_of(vase + "element_size = 0.011\n").find("the wall of") == std::string::npos);
   CHECK(notes_of(vase + "breakable = false\n").find("the wall of") == std::string::npos);
   CHECK(notes_of("kind = \"solid\"\nshape = \"slab\"\nsize = [1, 0.2, 0.3]\n").find("the wall of") ==
         std::string::npos);
