@@ -78,7 +78,8 @@ class Guard {
     report_.is_unfinished = has_hits && work_.is_trial;
     if (report_.is_unfinished) return;
     has_hits = open_in_rounds(has_hits);
-    if (!work_.to_wake.empty() || (has_hits && strikes(find_pressed()))) return;
+    // What is pressed, and gave way in part, is struck by what comes upon it; later it is only pressed.
+    if (!work_.to_wake.empty() || (has_hits && strikes(find_pressed(), 1.0))) return;
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
     if (!work_.to_wake.empty()) return;
     content_with_less();
@@ -205,13 +206,14 @@ class Guard {
 
   // Of these (flags), scripted ones strike the others, if one of those can break: all is taken again with
   // them as free bodies. False if nobody does.
-  bool strikes(const std::vector<char>& is_pressed) {
+  bool strikes(const std::vector<char>& is_pressed, double least_pace = 0.0) {
     if (!work_.has_scripted) return false;
     bool may_break = false;
     for (std::size_t i = 0; i < is_pressed.size(); ++i)
       may_break = may_break || (is_pressed[i] && work_.bodies[i].may_break);
     for (std::size_t i = 0; may_break && i < is_pressed.size(); ++i)
-      if (is_pressed[i] && can_strike(bodies_[i])) work_.to_strike.push_back(work_.ids[i]);
+      if (is_pressed[i] && can_strike(bodies_[i]) && bodies_[i].script.pace >= least_pace)
+        work_.to_strike.push_back(work_.ids[i]);
     return !work_.to_strike.empty();
   }
 
