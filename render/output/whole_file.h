@@ -1,5 +1,7 @@
 // Files that are found whole under their name, or not at all.
 #pragma once
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -13,10 +15,11 @@ namespace shatterbox::render {
 inline Status write_whole_file(const std::filesystem::path& path, const std::string& bytes) {
   const std::filesystem::path part = path.string() + ".part";
   {
+    errno = 0;
     std::ofstream file(part, std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
-    if (!file) return {path.string() + ": cannot be written"};
+    if (!file) return {path.string() + " cannot be written: " + std::strerror(errno)};
   }
   std::error_code problem;
   std::filesystem::rename(part, path, problem);

@@ -21,10 +21,14 @@ Film::Film(fs::path path) : path_(std::move(path)) {
     error_ = fmt::format("{}: there is no such file or folder", path_.string());
   } else if (fs::is_directory(path_, code)) {
     has_names_ = true;
-    for (const auto& entry : fs::directory_iterator(path_, code))
-      if (entry.is_regular_file() && render::lower_case_ending(entry.path()) == ".png")
-        files_.push_back(entry.path());
-    std::sort(files_.begin(), files_.end());
+    std::error_code ignored;
+    auto entry =
+        fs::recursive_directory_iterator(path_, fs::directory_options::follow_directory_symlink, code);
+    for (; !code && entry != fs::recursive_directory_iterator(); entry.increment(code))
+      if (entry->is_regular_file(ignored) && render::lower_case_ending(entry->path()) == ".png")
+        files_.push_back(entry->path());
+    std::sort(files_.begin(), files_.end(),
+              [this](const fs::path& a, const fs::path& b) { return name_of(a) < name_of(b); });
     if (code) error_ = fmt::format("{}: {}", path_.string(), code.message());
     if (!code && files_.empty()) error_ = fmt::format("{}: the folder holds no PNG", path_.string());
   } else if (render::lower_case_ending(path_) == ".png") {
@@ -49,7 +53,11 @@ std::optional<Film::Shot> Film::next() {
   const fs::path& file = files_[count_++];
   auto image = render::read_image(file, &error_);
   if (!image) return std::nullopt;
-  return Shot{file.filename().string(), std::move(*image)};
+  return Shot{name_of(file), std::move(*image)};
+}
+
+std::string Film::name_of(const fs::path& file) const {
+  return has_names_ ? file.lexically_relative(path_).generic_string() : file.filename().string();
 }
 
 }  // namespace shatterbox::sandbox::compare

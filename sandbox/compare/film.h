@@ -14,11 +14,12 @@ namespace shatterbox::sandbox::compare {
 
 class Film {
  public:
-  /// A folder's PNGs come in the order of their names. error() says what cannot be read.
+  /// The PNGs of a folder and of those in it come in the order of their names. error() says what cannot be
+  /// read.
   explicit Film(std::filesystem::path path);
 
   struct Shot {
-    std::string name;  // the file's, or "frame 12" of a video
+    std::string name;  // the file's, seen from the folder ("sub/1.png"), or "frame 12" of a video
     render::Image image;
   };
   /// The next picture; nothing after the last one, or once error() is not empty.
@@ -28,6 +29,8 @@ class Film {
   bool has_names() const { return has_names_; }
 
  private:
+  std::string name_of(const std::filesystem::path& file) const;
+
   std::filesystem::path path_;
   std::vector<std::filesystem::path> files_;  // PNGs
   std::unique_ptr<render::VideoReader> video_;

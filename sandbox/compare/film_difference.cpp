@@ -14,7 +14,15 @@ namespace {
 
 std::string file_name(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
-  return std::filesystem::path(name).stem().string() + ".png";
+  return std::filesystem::path(name).replace_extension(".png").string();
+}
+
+/// One of a subfolder goes to a subfolder.
+render::Status write_picture(const std::filesystem::path& file, const render::Image& picture) {
+  std::error_code code;
+  std::filesystem::create_directories(file.parent_path(), code);
+  return code ? render::Status{file.parent_path().string() + ": " + code.message()}
+              : render::write_png(file, picture);
 }
 
 /// Puts the pictures of two films side by side.
@@ -87,7 +95,7 @@ FilmDifference compare_films(Film& expected, Film& actual, const Tolerance& tole
       render::Image picture = render::difference_picture(a->image, b->image, tolerance.levels);
       if (!pictures_folder.empty()) {
         const auto status =
-            render::write_png(std::filesystem::path(pictures_folder) / file_name(frame.name), picture);
+            write_picture(std::filesystem::path(pictures_folder) / file_name(frame.name), picture);
         if (!status) result.error = status.error;
       }
       if (frame.difference.pixels_beyond > most_beyond) {

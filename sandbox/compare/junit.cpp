@@ -36,14 +36,17 @@ std::string escaped(const std::string& text) {
 std::string make_junit(const std::string& suite, const std::vector<TestCase>& cases) {
   const auto failures =
       std::count_if(cases.begin(), cases.end(), [](const TestCase& one) { return !one.failure.empty(); });
+  const auto errors =
+      std::count_if(cases.begin(), cases.end(), [](const TestCase& one) { return !one.error.empty(); });
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += fmt::format("<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n", escaped(suite),
-                      cases.size(), failures);
+  text += fmt::format("<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n", escaped(suite),
+                      cases.size(), failures, errors);
   for (const TestCase& one : cases) {
     text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escaped(suite), escaped(one.name));
-    text += one.failure.empty()
-                ? "/>\n"
-                : fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", escaped(one.failure));
+    std::string found;
+    if (!one.failure.empty()) found = fmt::format("    <failure message=\"{}\"/>\n", escaped(one.failure));
+    if (!one.error.empty()) found += fmt::format("    <error message=\"{}\"/>\n", escaped(one.error));
+    text += found.empty() ? "/>\n" : ">\n" + found + "  </testcase>\n";
   }
   return text + "</testsuite>\n";
 }

@@ -6,9 +6,10 @@
 
 namespace shatterbox::sandbox::compare {
 
-/// One test of a suite: it passes without a failure.
+/// One test of a suite: it passes without a failure and an error.
 struct TestCase {
   std::string name, failure;
+  std::string error{};  // why it could not be made
 };
 
 /// One suite, as Jenkins, GitLab and their like read it.

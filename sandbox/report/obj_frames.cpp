@@ -1,14 +1,12 @@
 #include "sandbox/report/obj_frames.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include "engine/body/polyhedron.h"
 #include "engine/geometry/generators.h"
+#include "sandbox/report/text_file.h"
 
 namespace shatterbox::sandbox::report {
 
@@ -42,13 +40,7 @@ std::string make_obj(std::span<const body::Body> bodies, double time) {
 
 std::string write_obj_frame(const std::string& folder, int number, std::span<const body::Body> bodies,
                             double time) {
-  const std::string path = fmt::format("{}/frame_{:06}.obj", folder, number);
-  errno = 0;
-  std::ofstream stream(path, std::ios::binary);
-  stream << make_obj(bodies, time);
-  stream.close();
-  if (!stream) return fmt::format("{} cannot be written: {}", path, std::strerror(errno));
-  return {};
+  return write_text(fmt::format("{}/frame_{:06}.obj", folder, number), make_obj(bodies, time));
 }
 
 }  // namespace shatterbox::sandbox::report

@@ -49,6 +49,19 @@ TEST_CASE("folders are compared by name: a missing picture does not shift the re
   CHECK(d.first()->name == "frame_2.png");
 }
 
+TEST_CASE("pictures in folders of a folder are compared too") {
+  const Folder folder;
+  for (const char* name : {"a/x.png", "a/s/y.png", "b/x.png"}) write(folder, name, plain(100));
+  write(folder, "b/s/y.png", plain(200));
+  Film a(folder / "a"), b(folder / "b");
+  const FilmDifference d = compare_films(a, b, {}, (folder / "d").string());
+  REQUIRE(d.frames.size() == 2);
+  CHECK(d.differing() == 1);
+  CHECK(d.worst == "s/y.png");
+  CHECK(std::filesystem::exists(folder / "d/s/y.png"));
+  CHECK(d.first()->name == "s/y.png");
+}
+
 TEST_CASE("a difference of size is told with both sizes, what cannot be read with its name") {
   const Folder folder;
   write(folder, "a/x.png", plain(50));
@@ -141,5 +154,8 @@ TEST_CASE("reports: JSON has each frame's numbers, JUnit its failures, with noth
   const std::string xml = make_junit("a & b", {{"<1>", ""}, {"2", "\"far\" < apart\n"}});
   CHECK(xml.find("<testsuite name=\"a &amp; b\" tests=\"2\" failures=\"1\"") != std::string::npos);
   CHECK(xml.find("name=\"&lt;1&gt;\"/>") != std::string::npos);
+  CHECK(make_junit("a", {{"1", "", "<broken>"}}).find("errors=\"1\"") != std::string::npos);
+  CHECK(make_junit("a", {{"1", "", "<broken>"}}).find("<error message=\"&lt;broken&gt;\"/>") !=
+        std::string::npos);
   CHECK(xml.find("<failure message=\"&quot;far&quot; &lt; apart \"/>") != std::string::npos);
 }
