@@ -5,9 +5,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
+#include <thread>
 
+#include <fmt/format.h>
+
+#include "sandbox/run/interrupt.h"
 #include "sandbox/run/options.h"
 
 namespace shatterbox::sandbox::run {
@@ -41,8 +48,17 @@ pid_t start(const std::vector<std::string>& arguments, const Prepare& prepare) {
 }  // namespace
 
 WorkFolder::WorkFolder() {
-  std::string name = (fs::temp_directory_path() / "shatterbox-XXXXXX").string();
-  if (mkdtemp(name.data()) != nullptr) path_ = name;
+  std::error_code code;
+  const fs::path folder = fs::temp_directory_path(code);
+  std::string name = (folder / "shatterbox-XXXXXX").string();
+  if (!code && mkdtemp(name.data()) != nullptr) {
+    path_ = name;
+    return;
+  }
+  const char* const asked = std::getenv("TMPDIR");
+  fault_ = fmt::format("no folder for what is written meanwhile can be made in {}: {}\n    {}",
+                       asked != nullptr ? asked : folder.string(),
+                       code ? code.message() : std::strerror(errno), "TMPDIR names the folder for that");
 }
 
 WorkFolder::~WorkFolder() {
@@ -62,8 +78,18 @@ pid_t start_again(const std::vector<std::string>& arguments, const fs::path& fol
 
 int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
   const pid_t child = start(arguments, [&log] { say_to(log); });
+  if (child < 0) return kFailed;
   int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) < 0) return kFailed;
+  bool is_told = false;
+  for (pid_t ended = 0; ended == 0;) {
+    ended = waitpid(child, &status, WNOHANG);
+    if (ended < 0) return kFailed;
+    if (ended == 0 && is_interrupted() && !is_told) {
+      kill(child, SIGINT);
+      is_told = true;
+    }
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
 }
 

@@ -18,9 +18,12 @@ class WorkFolder {
   WorkFolder& operator=(const WorkFolder&) = delete;
   /// Empty if none could be made.
   const std::filesystem::path& path() const { return path_; }
+  /// Why none could be made; else empty.
+  const std::string& fault() const { return fault_; }
 
  private:
   std::filesystem::path path_;
+  std::string fault_;
 };
 
 /// Starts this program in a folder; what it says goes to `log`. Its process, negative if there is none.
@@ -28,7 +31,8 @@ class WorkFolder {
 pid_t start_again(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const std::filesystem::path& log);
 
-/// Runs this program with these arguments. Its exit status; what it says goes to `log`.
+/// Runs this program with these arguments. Its exit status; what it says goes to `log`. When this process is
+/// interrupted, it is too.
 int run_again(const std::vector<std::string>& arguments, const std::filesystem::path& log);
 
 }  // namespace shatterbox::sandbox::run

@@ -224,7 +224,18 @@ int run_batch(const BatchOptions& options) {
     rows.push_back({std::move(run), folder, std::move(words), -1, {}});
   }
   if (!problems.empty()) return refuse(problems);
-  for (const Row& row : rows) make_folder("-o", row.folder.string(), problems);
+  Outputs outputs, rooms;  // rooms are the runs' own, who may say that they write there
+  outputs.write_folder("-o", options.folder);
+  for (const Row& row : rows) rooms.write_folder("-o", row.folder.string());
+  outputs.check(problems);
+  rooms.check(problems);
+  if (problems.empty()) outputs.take(problems);
+  for (const Row& row : rows) {
+    std::error_code code;
+    if (problems.empty() && !fs::create_directories(row.folder, code) && code)
+      scene::book(problems, scene::Place{"-o", 0, 0},
+                  fmt::format("folder {} cannot be made: {}", row.folder.string(), code.message()));
+  }
   if (!problems.empty()) return refuse(problems);
   for (const LeftOut& left : plan.left_out)
     fmt::print(stderr, "left out: {} (takes {}); --with {} takes it in\n", left.name, left.takes, left.name);

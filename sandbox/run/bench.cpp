@@ -180,8 +180,7 @@ int run_bench(const BenchOptions& options) {
   }
   const WorkFolder folder;
   if (folder.path().empty()) {
-    fmt::print(stderr, "failed: no folder for reports can be made in {}\n",
-               fs::temp_directory_path().string());
+    fmt::print(stderr, "failed: {}\n", folder.fault());
     return kFailed;
   }
   catch_interrupts();

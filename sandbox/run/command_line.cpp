@@ -190,6 +190,23 @@ bool is_known_verb(const std::string& verb) {
   return false;
 }
 
+/// "golden make", as it is called.
+std::string words_of(const CLI::App& verb) {
+  const CLI::App* above = verb.get_parent();
+  return above == nullptr || above->get_parent() == nullptr ? verb.get_name()
+                                                            : words_of(*above) + " " + verb.get_name();
+}
+
+/// An option of a file or a folder that is given an empty name would be as if it were not there.
+void refuse_empty_names(CLI::App& app) {
+  const CLI::Validator has_name(
+      [](std::string& name) { return name.empty() ? std::string("an empty name is none") : std::string(); },
+      "");
+  for (CLI::Option* option : app.get_options())
+    if (option->get_type_name() == "FILE" || option->get_type_name() == "DIR") option->check(has_name);
+  for (CLI::App* verb : app.get_subcommands({})) refuse_empty_names(*verb);
+}
+
 /// What is left over on the command line, in words, with the nearest option that there is.
 int refuse_rest(const CLI::App& app, const std::vector<std::string>& rest) {
   const CLI::App* verb = &app;
@@ -203,11 +220,11 @@ int refuse_rest(const CLI::App& app, const std::vector<std::string>& rest) {
       std::find_if(rest.begin(), rest.end(), [](const std::string& word) { return word[0] == '-'; });
   if (stranger != rest.end())
     std::fprintf(
-        stderr, "%s has no option %s\n    %s\n", verb->get_name().c_str(), stranger->c_str(),
+        stderr, "%s has no option %s\n    %s\n", words_of(*verb).c_str(), stranger->c_str(),
         scene::hint_for_name(stranger->substr(0, stranger->find('=')), known, "its options").c_str());
   else
     std::fprintf(stderr, "%s is one word too many for %s\n    shatterbox %s --help tells what it takes\n",
-                 rest.front().c_str(), verb->get_name().c_str(), verb->get_name().c_str());
+                 rest.front().c_str(), words_of(*verb).c_str(), words_of(*verb).c_str());
   return kBadInput;
 }
 
@@ -264,6 +281,7 @@ int run_command_line(int argc, char** argv) {
   plan_command->add_option("SCENE", options.scene, "a .toml file, or a scene's name")->required();
   for (CLI::App* command : {run_command, check_command, plan_command}) add_scene_options(*command, options);
   for (CLI::App* command : {run_command, plan_command}) add_run_options(*command, options);
+  refuse_empty_names(app);
   // What stands behind -- is for the runs of a batch.
   int own = argc;
   if (argc > 1 && std::string(argv[1]) == "batch") {

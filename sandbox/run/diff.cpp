@@ -15,12 +15,11 @@
 
 namespace shatterbox::sandbox::run {
 
-void prepare_findings(const FindingOptions& options, scene::Problems& problems) {
-  Options outputs;
-  outputs.report = options.report;
-  outputs.frames_folder = options.pictures_folder;
-  prepare_outputs(outputs, problems);
-  check_file("--junit", options.junit, problems);
+namespace fs = std::filesystem;
+
+void add_outputs(const FindingOptions& options, Outputs& outputs) {
+  outputs.write_file("--report", options.report);
+  outputs.write_file("--junit", options.junit);
 }
 
 std::string write_findings(const FindingOptions& options, const nlohmann::ordered_json& report,
@@ -52,6 +51,27 @@ int tell(const Difference& difference, const DiffOptions& options) {
   return kFailed;
 }
 
+/// What is compared stays, whatever is written; `folder_names` of the files in --pictures.
+void add_paths(const DiffOptions& options, std::vector<std::string> folder_names, Outputs& outputs) {
+  for (const auto& [option, path] : {std::pair("EXPECTED", options.expected), {"ACTUAL", options.actual}}) {
+    std::error_code code;
+    if (fs::is_directory(path, code))
+      outputs.read_folder(option, path, ".png");
+    else
+      outputs.read_file(option, path);
+  }
+  outputs.write_file("--picture", options.picture);
+  outputs.write_folder("--pictures", options.findings.pictures_folder, std::move(folder_names));
+  add_outputs(options.findings, outputs);
+}
+
+/// A report beside something else is no pair.
+std::string pair_fault(const std::string& report, const std::string& other) {
+  std::error_code code;
+  if (!compare::is_report_name(report) || !fs::is_directory(other, code)) return {};
+  return fmt::format("{} is a folder and {} a report: compare two folders, or two reports", other, report);
+}
+
 int diff_reports(const DiffOptions& options) {
   std::string problem;
   const auto tolerance = compare::parse_report_tolerance(options.findings.tolerance, problem);
@@ -60,10 +80,17 @@ int diff_reports(const DiffOptions& options) {
   if (!(options.picture + options.findings.pictures_folder).empty())
     scene::book(problems, scene::Place{"--picture, --pictures", 0, 0}, "reports have no pictures",
                 "leave them out");
-  prepare_findings(options.findings, problems);
+  for (const std::string& fault :
+       {pair_fault(options.expected, options.actual), pair_fault(options.actual, options.expected)})
+    if (!fault.empty()) scene::book(problems, scene::Place{"diff", 0, 0}, fault);
+  if (!problems.empty()) return refuse(problems);
+  Outputs outputs;
+  add_paths(options, {}, outputs);
+  outputs.check(problems);
   const auto expected = compare::read_report(options.expected), actual = compare::read_report(options.actual);
   if (!expected) scene::book(problems, scene::Place{options.expected, 0, 0}, expected.error());
   if (!actual) scene::book(problems, scene::Place{options.actual, 0, 0}, actual.error());
+  if (problems.empty()) outputs.take(problems);
   if (!problems.empty()) return refuse(problems);
   return tell(compare::compare_reports(expected.value(), actual.value(), *tolerance), options);
 }
@@ -77,10 +104,17 @@ int run_diff(const DiffOptions& options) {
   const auto tolerance = compare::parse_tolerance(options.findings.tolerance, problem);
   if (!tolerance) return refuse_tolerance(problem);
   scene::Problems problems;
-  prepare_findings(options.findings, problems);
-  check_file("--picture", options.picture, problems);
-  if (!problems.empty()) return refuse(problems);
+  Outputs outputs;
+  add_paths(options, {"frame_*.png", fs::path(options.expected).stem().string() + ".png"}, outputs);
+  outputs.check(problems);
   compare::Film expected(options.expected), actual(options.actual);
+  for (const compare::Film* film : {&expected, &actual})
+    if (problems.empty() && !film->error().empty()) {
+      fmt::print(stderr, "{}\n", film->error());
+      return kBadInput;
+    }
+  if (problems.empty()) outputs.take(problems);
+  if (!problems.empty()) return refuse(problems);
   const compare::FilmDifference difference =
       compare::compare_films(expected, actual, *tolerance, options.findings.pictures_folder);
   if (!difference.error.empty()) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sandbox/compare/difference_report.h"
-#include "sandbox/scene/problem.h"
+#include "sandbox/run/outputs.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -25,8 +25,8 @@ struct DiffOptions {
   FindingOptions findings;
 };
 
-/// Finds out, before any work, what cannot be written, and makes the folder.
-void prepare_findings(const FindingOptions& options, scene::Problems& problems);
+/// What is written of findings in files of their own; the pictures are not among them.
+void add_outputs(const FindingOptions& options, Outputs& outputs);
 
 /// Writes JSON and JUnit where they were asked for; a sentence if that fails, else empty.
 std::string write_findings(const FindingOptions& options, const nlohmann::ordered_json& report,

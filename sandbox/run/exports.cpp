@@ -50,14 +50,9 @@ void check_exports(const Options& options, scene::Problems& problems) {
     scene::book(problems, scene::Place{"--export", 0, 0},
                 fmt::format("{}: the name of a model must end in .glb", options.model),
                 "that is glTF 2.0 in one file; most programs that read .gltf read it too");
-  check_file("--export", options.model, problems);
-  check_file("--record", options.recording, problems);
   if (!options.recording.empty() && !options.stills.empty())
     scene::book(problems, scene::Place{"--stills", 0, 0}, "a recording holds the whole film",
                 "leave --stills out; shatterbox render RECORDING --frames 30:31 draws one frame of it");
-  make_folder("--meshes", options.meshes_folder, problems);
-  make_folder("--tables", options.tables_folder, problems);
-  make_folder("--truth", options.truth_folder, problems);
 }
 
 }  // namespace shatterbox::sandbox::run

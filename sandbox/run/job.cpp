@@ -46,6 +46,33 @@ void describe_job(const Job& job, report::RunRecord& record) {
 
 }  // namespace
 
+void add_inputs(const std::string& file, const std::optional<scene::SceneDescription>& scene,
+                const std::string& script, Outputs& outputs) {
+  outputs.read_file("SCENE", file);
+  outputs.read_file("--script", script);
+  if (!scene) return;
+  for (const scene::BodyEntry& body : scene->bodies) {
+    const scene::MeshForm* form = scene::find_mesh_form(body.form);
+    const auto* meshes = form == nullptr ? nullptr : std::get_if<scene::MeshFileShape>(&form->shape);
+    if (meshes == nullptr) continue;
+    for (const std::string& mesh : meshes->files)
+      outputs.read_file(fmt::format("the body \"{}\" of SCENE", body.name), mesh);
+  }
+}
+
+void add_outputs(const Options& options, Outputs& outputs) {
+  outputs.write_file("-o", options.video);
+  outputs.write_folder("--frames", options.frames_folder, {"frame_*.png"});
+  outputs.write_folder("--meshes", options.meshes_folder, {"frame_*.obj"});
+  outputs.write_file("--export", options.model);
+  outputs.write_folder("--tables", options.tables_folder,
+                       {"bodies.csv", "bodies.json", "trajectories.csv", "trajectories.json", "impacts.csv",
+                        "impacts.json", "breaks.csv", "breaks.json"});
+  outputs.write_folder("--truth", options.truth_folder, {"truth_*.npz", "bodies.csv", "bodies.json"});
+  outputs.write_file("--record", options.recording);
+  outputs.write_file("--report", options.report);
+}
+
 std::string film_of(const Options& options) {
   const bool has_other_output = !options.frames_folder.empty() || !export_outputs(options).empty();
   if (!options.has_pictures || !options.video.empty() || has_other_output) return options.video;
@@ -87,8 +114,15 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   if (file.empty()) return job;
   job.scene = scene::read_scene_file(file, changes_of(options), problems);
   if (job.scene) check_stills(options, job.scene->seconds, problems);
-  prepare_outputs(job.options, problems);
+  check_video(job.options.video, problems);
   check_exports(job.options, problems);
+  if (options.has_trace && options.report.empty())
+    scene::book(problems, scene::Place{"--trace", 0, 0}, "is kept in the report, and none is asked for",
+                "add --report FILE");
+  Outputs outputs;
+  add_outputs(job.options, outputs);
+  add_inputs(file, job.scene, options.script, outputs);
+  outputs.check(problems);
   if (!problems.empty()) return job;
   const auto start = Clock::now();
   job.built = scene::build_world(*job.scene, problems);

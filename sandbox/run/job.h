@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sandbox/run/options.h"
+#include "sandbox/run/outputs.h"
 #include "sandbox/run/painter.h"
 #include "sandbox/run/recorder.h"
 #include "sandbox/scene/build_world.h"
@@ -20,6 +21,13 @@ struct Job {
 
 /// Reads everything; what is wrong goes to `problems`. Fills what the record says before the first step.
 Job make_job(const Options& options, Recorder& recorder, scene::Problems& problems);
+
+/// What a run reads: its scene with the meshes that it names, and its script.
+void add_inputs(const std::string& file, const std::optional<scene::SceneDescription>& scene,
+                const std::string& script, Outputs& outputs);
+
+/// What a run with these options writes.
+void add_outputs(const Options& options, Outputs& outputs);
 
 /// The video that a run makes: the one asked for, or, if there is no other output, one of the scene's name.
 std::string film_of(const Options& options);

@@ -1,37 +1,12 @@
 #include "sandbox/run/options.h"
 
-#include <unistd.h>
-
 #include <charconv>
-#include <cstring>
-#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "render/output/video_file.h"
 
 namespace shatterbox::sandbox::run {
-
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Why no file of that name can be written, or empty.
-std::string file_fault(const std::string& file) {
-  std::error_code code;
-  const fs::path path(file);
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (fs::is_directory(path, code)) return "is a folder";
-  // It is written beside itself and takes the name when it is whole: a device or a pipe would be gone.
-  if (fs::exists(path, code) && !fs::is_regular_file(path, code)) return "is no plain file";
-  if (!fs::is_directory(folder, code)) return fmt::format("there is no folder {}", folder.string());
-  if (access(folder.c_str(), W_OK) != 0)
-    return fmt::format("folder {}: {}", folder.string(), std::strerror(errno));
-  if (fs::exists(path, code) && access(path.c_str(), W_OK) != 0) return std::strerror(errno);
-  return {};
-}
-
-}  // namespace
 
 std::optional<render::Size> parse_size(const std::string& text, scene::Problems& problems) {
   render::Size size;
@@ -70,38 +45,10 @@ scene::SceneChanges changes_of(const Options& options) {
   return changes;
 }
 
-void check_file(const char* option, const std::string& file, scene::Problems& problems) {
+void check_video(const std::string& file, scene::Problems& problems) {
   if (file.empty()) return;
-  const std::string fault = file_fault(file);
-  if (!fault.empty())
-    scene::book(problems, scene::Place{option, 0, 0}, fmt::format("{} cannot be written: {}", file, fault),
-                "");
-}
-
-void make_folder(const char* option, const std::string& folder, scene::Problems& problems) {
-  if (folder.empty()) return;
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code || !fs::is_directory(folder)) {
-    scene::book(problems, scene::Place{option, 0, 0},
-                fmt::format("folder {} cannot be made: {}", folder, code ? code.message() : "it is a file"));
-  } else if (access(folder.c_str(), W_OK) != 0) {
-    scene::book(problems, scene::Place{option, 0, 0},
-                fmt::format("folder {}: {}", folder, std::strerror(errno)), "");
-  }
-}
-
-void prepare_outputs(const Options& options, scene::Problems& problems) {
-  if (!options.video.empty()) {
-    const render::Status status = render::can_write_video(options.video);
-    if (!status) scene::book(problems, scene::Place{"-o", 0, 0}, status.error, "");
-  }
-  check_file("-o", options.video, problems);
-  check_file("--report", options.report, problems);
-  if (options.has_trace && options.report.empty())
-    scene::book(problems, scene::Place{"--trace", 0, 0}, "is kept in the report, and none is asked for",
-                "add --report FILE");
-  make_folder("--frames", options.frames_folder, problems);
+  const render::Status status = render::can_write_video(file);
+  if (!status) scene::book(problems, scene::Place{"-o", 0, 0}, status.error, "");
 }
 
 }  // namespace shatterbox::sandbox::run

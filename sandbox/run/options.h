@@ -56,15 +56,7 @@ render::BackEnd parse_back_end(const std::string& text, scene::Problems& problem
 /// --set, --seconds, --seed and --script, as changes to a scene.
 scene::SceneChanges changes_of(const Options& options);
 
-/// Finds out, before any work, that a file cannot be written; `option` asked for it. An empty name is no
-/// file.
-void check_file(const char* option, const std::string& file, scene::Problems& problems);
-
-/// Makes a folder that `option` asked for, and finds out whether it can be written in. An empty name is no
-/// folder.
-void make_folder(const char* option, const std::string& folder, scene::Problems& problems);
-
-/// Makes the output folders and finds out, before any work, what cannot be written.
-void prepare_outputs(const Options& options, scene::Problems& problems);
+/// A name that no video can have, or a kind of video that this build cannot write. An empty name is none.
+void check_video(const std::string& file, scene::Problems& problems);
 
 }  // namespace shatterbox::sandbox::run

@@ -34,16 +34,17 @@ int frame_number(std::string_view text, int otherwise) {
   return fault == std::errc() && end == text.data() + text.size() ? number : -1;
 }
 
-void prepare(const RenderOptions& options, scene::Problems& problems) {
+void check_outputs(const RenderOptions& options, Outputs& outputs, scene::Problems& problems) {
   if ((options.video + options.pictures_folder + options.truth_folder + options.report).empty())
     scene::book(problems, scene::Place{"render", 0, 0}, "no output is asked for",
                 "ask for one: -o FILE, --pictures DIR, --truth DIR or --report FILE");
-  Options outputs;
-  outputs.video = options.video;
-  outputs.report = options.report;
-  prepare_outputs(outputs, problems);
-  make_folder("--pictures", options.pictures_folder, problems);
-  make_folder("--truth", options.truth_folder, problems);
+  check_video(options.video, problems);
+  outputs.read_file("RECORDING", options.recording);
+  outputs.write_file("-o", options.video);
+  outputs.write_folder("--pictures", options.pictures_folder, {"frame_*.png"});
+  outputs.write_folder("--truth", options.truth_folder, {"truth_*.npz"});
+  outputs.write_file("--report", options.report);
+  outputs.check(problems);
 }
 
 PainterSettings painter_settings(const RenderOptions& options, const recording::Settings& recorded,
@@ -213,9 +214,11 @@ int render_recording(const RenderOptions& options) {
   const auto start = core::Clock::now();
   const std::unique_ptr<RecordingReader> reader = open_recording(options, range, problems);
   if (!reader) return refuse(problems);
-  prepare(options, problems);
+  Outputs outputs;
+  check_outputs(options, outputs, problems);
   const PainterSettings settings = painter_settings(options, reader->settings(), problems);
   const std::optional<Eye> eye = read_eye(options.changes, problems);
+  if (problems.empty()) outputs.take(problems);
   if (!problems.empty()) return refuse(problems);
   Painter painter(settings);
   if (!painter.opening_fault().empty()) {

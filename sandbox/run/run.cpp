@@ -175,6 +175,10 @@ int play_all(std::vector<Shot>& shots) {
   const Options options = shots.front().job->options;
   PainterSettings settings = shots.front().job->painter;
   scene::Problems problems;
+  Outputs outputs;  // until the report is written
+  add_outputs(options, outputs);
+  outputs.take(problems);
+  if (!problems.empty()) return refuse(problems);
   std::vector<const Job*> jobs;
   for (const Shot& shot : shots) jobs.push_back(&*shot.job);
   Film film{{}, Checkpoint(jobs)};

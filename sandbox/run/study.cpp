@@ -11,6 +11,7 @@
 #include "sandbox/report/text_file.h"
 #include "sandbox/run/interrupt.h"
 #include "sandbox/run/options.h"
+#include "sandbox/run/outputs.h"
 #include "sandbox/run/progress.h"
 #include "sandbox/scene/build_world.h"
 #include "sandbox/scene/find_scene.h"
@@ -83,7 +84,10 @@ int run_study(const StudyOptions& options) {
   if (!study) return kBadInput;
   const std::string folder = options.folder.empty() ? "study_" + study->name : options.folder;
   scene::Problems problems;
-  make_folder("-o", folder, problems);
+  Outputs outputs;
+  outputs.write_folder("-o", folder);
+  outputs.check(problems);
+  if (problems.empty()) outputs.take(problems);
   if (!problems.empty()) {
     fmt::print(stderr, "{}\n", scene::describe(problems));
     return kBadInput;

@@ -273,6 +273,9 @@ TEST_CASE("diff: 0 for the same, 1 and the place for a difference, of pictures, 
   CHECK(fs::exists(folder / "ds/frame_000005.png"));
   CHECK(program(folder, "diff a b --report no/such/r.json").status == 2);
   CHECK(program(folder, "diff a a --picture no/such/p.png").status == 2);
+  const Outcome mixed = program(folder, "diff a r.json");
+  CHECK(mixed.status == 2);
+  CHECK(mixed.err.find("a is a folder and r.json a report") != std::string::npos);
   shell(folder, "head -c 1500 a.mp4 > cut.mp4");
   const Outcome cut = program(folder, "diff cut.mp4 a.mp4");
   CHECK(cut.status == 2);
@@ -445,4 +448,13 @@ TEST_CASE("a disk that is full ends the run with status 3 and the reason") {
   INFO(outcome.out << outcome.err);
   CHECK(outcome.status == 3);
   CHECK(outcome.err.find("failed:") != std::string::npos);
+  for (const std::string output : {"--frames", "--truth", "--meshes"}) {
+    const Outcome other = shell(folder, std::string("trap '' XFSZ; ulimit -f 8; ") + SHATTERBOX_PROGRAM +
+                                            " run good.toml --size 640x480 " + output + " d");
+    INFO(other.err);
+    CHECK(other.status == 3);
+    CHECK(other.err.find("_000000.") != std::string::npos);
+    CHECK(other.err.find("cannot be written: File too large") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "d/frame_000000.obj"));
+  }
 }

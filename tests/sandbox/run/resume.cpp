@@ -47,7 +47,7 @@ void kill_runs(int count, unsigned seed) {
     CHECK(count_frames(folder, video) == kFrames);
     CHECK(program(folder, "diff whole.mp4 " + video + " --tolerance video").status == 0);
     kept += json.value("kept_frames", 0);
-    for (const char* rest : {".part", ".checkpoint", ".next"})
+    for (const char* rest : {".part", ".checkpoint", ".next", ".lock"})
       CHECK_FALSE(fs::exists(folder / (video + rest)));
     for (const std::string& name : {video, std::string("r.json"), std::string("m.glb")})
       fs::remove(folder / name);
