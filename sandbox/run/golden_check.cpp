@@ -122,7 +122,10 @@ int check_goldens(const GoldenOptions& options) {
   const fs::path pictures = options.findings.pictures_folder;
   outputs.write_folder("--pictures", pictures.string());
   for (const std::string& name : *names) {
-    outputs.read_folder("DIR", (fs::path(options.folder) / name).string());
+    const fs::path folder = fs::path(options.folder) / name;
+    outputs.read_folder("DIR", folder.string());
+    if (const auto golden = read_golden(folder, refusal))
+      add_inputs(*golden, folder, "the golden " + name, outputs);
     if (!pictures.empty()) outputs.write_folder("--pictures", (pictures / name).string());
   }
   scene::Problems problems;

@@ -8,6 +8,8 @@
 #include "sandbox/report/text_file.h"
 #include "sandbox/run/again.h"
 #include "sandbox/run/interrupt.h"
+#include "sandbox/run/job.h"
+#include "sandbox/scene/find_scene.h"
 #include "sandbox/scene/nearest_name.h"
 
 namespace shatterbox::sandbox::run {
@@ -26,6 +28,13 @@ bool is_golden(const fs::path& folder) {
     if (file.string().starts_with("frame_") && file.extension() == ".png") return true;
   }
   return false;
+}
+
+/// Of a run that said nothing: its words may have found no room.
+std::string silence_of(int status, const fs::path& work) {
+  const std::string fault = report::write_text((work / "words.txt").string(), std::string(4096, '.'));
+  return fmt::format("its run ended with status {} and {}", status,
+                     fault.empty() ? "did not say why" : "could not say why: " + fault);
 }
 
 }  // namespace
@@ -94,6 +103,15 @@ std::optional<std::vector<std::string>> find_goldens(const std::string& folder,
   return wanted.empty() ? known : wanted;
 }
 
+void add_inputs(const Json& golden, const fs::path& folder, const std::string& who, Outputs& outputs) {
+  scene::Problems ignored;
+  for (const std::string& shot : scene::shots_or_scene(file_of(folder, golden["scene"]))) {
+    const std::string file = scene::find_scene(shot, ignored);
+    if (!file.empty()) add_scene(who, file, scene::read_scene_file(file, {}, ignored), outputs);
+  }
+  if (golden.contains("script")) outputs.read_file("the script of " + who, file_of(folder, golden["script"]));
+}
+
 std::optional<nlohmann::json> play_golden(const Json& golden, const fs::path& folder, const fs::path& work,
                                           Refusal& refusal) {
   std::vector<std::string> words{"run", file_of(folder, golden["scene"])};
@@ -114,7 +132,7 @@ std::optional<nlohmann::json> play_golden(const Json& golden, const fs::path& fo
   if (status != kDone) {
     std::string said = report::read_text((work / "log.txt").string());
     said.erase(said.find_last_not_of('\n') + 1);
-    if (said.empty()) said = fmt::format("its run ended with status {} and could not say why", status);
+    if (said.empty()) said = silence_of(status, work);
     refusal = {status, std::move(said)};
     return std::nullopt;
   }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sandbox/run/options.h"
+#include "sandbox/run/outputs.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -35,6 +36,11 @@ std::optional<nlohmann::ordered_json> read_golden(const std::filesystem::path& f
 std::optional<std::vector<std::string>> find_goldens(const std::string& folder,
                                                      const std::vector<std::string>& wanted,
                                                      Refusal& refusal);
+
+/// The scene, which `who` names, or the scenes of its folder, and the script. What is wrong with them their
+/// run tells.
+void add_inputs(const nlohmann::ordered_json& golden, const std::filesystem::path& folder,
+                const std::string& who, Outputs& outputs);
 
 /// Plays a golden's scene into `work`/frames; its report.
 std::optional<nlohmann::json> play_golden(const nlohmann::ordered_json& golden,

@@ -12,7 +12,6 @@
 #include "sandbox/run/golden.h"
 #include "sandbox/run/golden_folder.h"
 #include "sandbox/run/interrupt.h"
-#include "sandbox/run/job.h"
 #include "sandbox/scene/find_scene.h"
 
 namespace shatterbox::sandbox::run {
@@ -39,19 +38,6 @@ std::vector<std::string> arguments_of(const Options& options) {
   return words;
 }
 
-/// What the golden is made of must not lie where it will be put. What else is wrong with the scene its run
-/// tells.
-void check_place(const Json& golden, const fs::path& folder, Outputs& outputs, scene::Problems& problems) {
-  scene::Problems ignored;
-  const std::string script = golden.contains("script") ? file_of(folder, golden["script"]) : "";
-  for (const std::string& shot : scene::shots_or_scene(file_of(folder, golden["scene"]))) {
-    const std::string file = scene::find_scene(shot, ignored);
-    if (!file.empty()) add_inputs(file, scene::read_scene_file(file, {}, ignored), script, outputs);
-  }
-  outputs.replace_folder("DIR", folder.string());
-  outputs.check(problems);
-}
-
 /// The whole golden beside its name, then in its place: one that is there already stays until then. A
 /// sentence if that fails.
 std::string put_in_place(const Json& golden, const fs::path& frames, const fs::path& folder) {
@@ -75,7 +61,9 @@ std::string put_in_place(const Json& golden, const fs::path& frames, const fs::p
 bool keep(Json golden, const fs::path& folder, const std::string& reason, Refusal& refusal) {
   Outputs outputs;
   scene::Problems problems;
-  check_place(golden, folder, outputs, problems);
+  add_inputs(golden, folder, "SCENE", outputs);  // they must not lie where the golden will be put
+  outputs.replace_folder("DIR", folder.string());
+  outputs.check(problems);
   const WorkFolder work;
   if (!work.fault().empty()) refusal = {kFailed, work.fault()};
   if (!problems.empty()) refusal = {kBadInput, scene::describe(problems)};

@@ -46,17 +46,16 @@ void describe_job(const Job& job, report::RunRecord& record) {
 
 }  // namespace
 
-void add_inputs(const std::string& file, const std::optional<scene::SceneDescription>& scene,
-                const std::string& script, Outputs& outputs) {
-  outputs.read_file("SCENE", file);
-  outputs.read_file("--script", script);
+void add_scene(const std::string& who, const std::string& file,
+               const std::optional<scene::SceneDescription>& scene, Outputs& outputs) {
+  outputs.read_file(who, file);
   if (!scene) return;
   for (const scene::BodyEntry& body : scene->bodies) {
     const scene::MeshForm* form = scene::find_mesh_form(body.form);
     const auto* meshes = form == nullptr ? nullptr : std::get_if<scene::MeshFileShape>(&form->shape);
     if (meshes == nullptr) continue;
     for (const std::string& mesh : meshes->files)
-      outputs.read_file(fmt::format("the body \"{}\" of SCENE", body.name), mesh);
+      outputs.read_file(fmt::format("the body \"{}\" of {}", body.name, who), mesh);
   }
 }
 
@@ -121,7 +120,8 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
                 "add --report FILE");
   Outputs outputs;
   add_outputs(job.options, outputs);
-  add_inputs(file, job.scene, options.script, outputs);
+  add_scene("SCENE", file, job.scene, outputs);
+  outputs.read_file("--script", options.script);
   outputs.check(problems);
   if (!problems.empty()) return job;
   const auto start = Clock::now();

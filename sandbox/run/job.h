@@ -22,9 +22,9 @@ struct Job {
 /// Reads everything; what is wrong goes to `problems`. Fills what the record says before the first step.
 Job make_job(const Options& options, Recorder& recorder, scene::Problems& problems);
 
-/// What a run reads: its scene with the meshes that it names, and its script.
-void add_inputs(const std::string& file, const std::optional<scene::SceneDescription>& scene,
-                const std::string& script, Outputs& outputs);
+/// What a run reads: its scene, which `who` names, with the meshes of its bodies.
+void add_scene(const std::string& who, const std::string& file,
+               const std::optional<scene::SceneDescription>& scene, Outputs& outputs);
 
 /// What a run with these options writes.
 void add_outputs(const Options& options, Outputs& outputs);

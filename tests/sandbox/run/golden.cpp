@@ -110,6 +110,10 @@ TEST_CASE("goldens lose nothing to what is written of their check") {
   const Outcome pictures = program(folder, "golden check g --pictures g");
   CHECK(pictures.status == 2);
   CHECK(pictures.err.find("--pictures: g/a") == 0);
+  const Outcome scene = program(folder, "golden check g --junit b.toml");
+  CHECK(scene.status == 2);
+  CHECK(scene.err.find("the golden b reads") != std::string::npos);
+  CHECK(read_text(folder / "b.toml") == kSmallScene);
   CHECK(read_text(folder / "g/a/golden.json") == golden);
   CHECK(read_text(folder / "g/a/frame_000006.png") == picture);
   // A folder is made for all that goes in it, or not at all.
@@ -166,4 +170,15 @@ TEST_CASE("a folder for what is written meanwhile that cannot be had is told by 
     CHECK(outcome.status == 3);
     CHECK(outcome.err.find("/none/such: No such file or directory") != std::string::npos);
   }
+}
+
+TEST_CASE("a golden whose run finds no room for its words says so") {
+  const Folder folder;
+  folder.write("a.toml", kSmallScene);
+  REQUIRE(program(folder, "golden make g a.toml" + kStill).status == 0);
+  const Outcome outcome = shell(folder, "( trap '' XFSZ; ulimit -f 0; " SHATTERBOX_PROGRAM
+                                        " golden check g 2>&1; echo status $? ) | cat");
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.out.find("words.txt cannot be written: File too large") != std::string::npos);
+  CHECK(outcome.out.find("status 3") != std::string::npos);
 }
