@@ -29,6 +29,14 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("--seed", options.seed, "seed of flaws, grains and jitter");
 }
 
+/// A sentence if it is no number of frames a second.
+std::string whole_rate(const std::string& text) {
+  const bool is_whole =
+      !text.empty() && text.size() <= 4 && text.find_first_not_of("0123456789") == std::string::npos;
+  if (is_whole && std::stoi(text) >= 1 && std::stoi(text) <= 1000) return {};
+  return "\"" + text + "\" is no rate: whole frames a second, 1 to 1000; 24 for 23.976, 30 for 29.97";
+}
+
 void add_picture_options(CLI::App& command, Options& options) {
   command.add_option("--stills", options.stills, "draw these moments only, s")
       ->delimiter(',')
@@ -38,7 +46,7 @@ void add_picture_options(CLI::App& command, Options& options) {
       ->type_name("WIDTHxHEIGHT");
   command.add_option("--fps", options.frames_per_second, "frames a second")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->check(whole_rate);
   command.add_option("--quality", options.quality, "preview or full")
       ->capture_default_str()
       ->check(CLI::IsMember({"preview", "full"}));

@@ -12,7 +12,7 @@ std::optional<render::Size> parse_size(const std::string& text, scene::Problems&
   render::Size size;
   const char* const end = text.data() + text.size();
   const auto [cross, fault] = std::from_chars(text.data(), end, size.width);
-  bool is_good = fault == std::errc() && cross != end && *cross == 'x';
+  bool is_good = fault == std::errc() && cross != end && (*cross == 'x' || *cross == 'X');
   if (is_good) {
     const auto [rest, second_fault] = std::from_chars(cross + 1, end, size.height);
     is_good = second_fault == std::errc() && rest == end;

@@ -52,6 +52,7 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("run good.toml --size 641x360", "even numbers");
   refused("run good.toml --quality best", "--quality");
   refused("run good.toml --fps 0", "--fps");
+  refused("run good.toml --fps 23.976", "24 for 23.976");
   refused("run good.toml --seconds -1", "from 0.001");
   refused("run good.toml --seconds nan", "");
   refused("run good.toml --set crate.sice=1", "did you mean \"size\"?");
