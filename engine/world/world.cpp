@@ -21,8 +21,8 @@ World::World(const WorldSettings& settings) : state_(std::make_unique<State>()) 
   if (settings.crack_generations < 1 || settings.piece_generations < 1 || settings.most_generations < 0)
     throw std::invalid_argument("a world needs a generation of cracks, and none fewer of breaking than 0");
   if ((settings.stress_window && !is_positive(*settings.stress_window)) ||
-      !is_positive(settings.paper_duration) || !(settings.solve_residual >= 0.0))
-    throw std::invalid_argument("a world's durations are above zero, and its residual is not below");
+      !is_positive(settings.paper_duration))
+    throw std::invalid_argument("a world's durations are above zero");
   state_->settings = settings;
   state_->contact_settings.time_step = 1.0 / settings.steps_per_second;
   state_->contact_settings.gravity = settings.gravity;
