@@ -254,6 +254,7 @@ class Guard {
       if (is_held[at(c.a)]) is_dirty[at(c.b)] = 1;
       if (is_held[at(c.b)]) is_dirty[at(c.a)] = 1;
     }
+    spread_over_openings(is_dirty);
     solve_islands(bodies_, settings_, is_dirty, work_);
     forget_impulses(is_dirty);
     for (std::size_t i = 0; i < is_held.size(); ++i) is_dirty[i] = is_dirty[i] || is_held[i] ? 1 : 0;
@@ -262,13 +263,41 @@ class Guard {
     return true;
   }
 
+  // The number of a body that can be pushed; -1 of others.
+  int mover_of(body::BodyId id) const {
+    const auto place = std::lower_bound(work_.ids.begin(), work_.ids.end(), id);
+    if (place == work_.ids.end() || *place != id) return -1;
+    const auto i = static_cast<int>(place - work_.ids.begin());
+    return work_.bodies[at(i)].inverse_mass > 0.0 ? i : -1;
+  }
+
+  // Who was opened from one that is solved anew is so too, and his island: what opening gave went to both.
+  void spread_over_openings(std::vector<char>& is_anew) const {
+    for (bool goes_on = true; goes_on;) {
+      goes_on = false;
+      for (const body::LoggedImpulse& entry : work_.continuous_log) {
+        const int a = mover_of(entry.body_a), b = mover_of(entry.body_b);
+        if (a < 0 || b < 0 || is_anew[at(a)] == is_anew[at(b)]) continue;
+        is_anew[at(a)] = is_anew[at(b)] = 1;
+        goes_on = true;
+      }
+      for (const Island& island : work_.islands) {
+        const auto is_one = [&](int i) { return is_anew[at(i)] != 0; };
+        const auto& members = island.bodies;
+        if (std::none_of(members.begin(), members.end(), is_one) ||
+            std::all_of(members.begin(), members.end(), is_one))
+          continue;
+        for (const int i : members) is_anew[at(i)] = 1;
+        goes_on = true;
+      }
+    }
+  }
+
   // What opening gave to bodies that were solved anew since has not been.
   void forget_impulses(const std::vector<char>& is_anew) {
     const auto counts = [&](body::BodyId id) {
-      const auto place = std::lower_bound(work_.ids.begin(), work_.ids.end(), id);
-      if (place == work_.ids.end() || *place != id) return false;
-      const auto i = static_cast<std::size_t>(place - work_.ids.begin());
-      return !is_anew[i] && work_.bodies[i].inverse_mass > 0.0;
+      const int i = mover_of(id);
+      return i >= 0 && !is_anew[at(i)];
     };
     std::erase_if(work_.continuous_log,
                   [&](const body::LoggedImpulse& e) { return !counts(e.body_a) && !counts(e.body_b); });

@@ -5,6 +5,7 @@
 
 #include "engine/audit/audit.h"
 #include "engine/core/parallel.h"
+#include "engine/core/random.h"
 #include "engine/dynamics/scripted_motion.h"
 #include "tests/engine/dynamics/bodies.h"
 
@@ -281,6 +282,50 @@ TEST_CASE("a ram strikes what stands against a wall as a free block of its mass 
     CHECK(scripted == Approx(blow_of(rate, false)).epsilon(0.05));
     CHECK(scripted > 1.0);  // it comes to rest,
     CHECK(scripted < 2.0);  // or bounces
+  }
+}
+
+TEST_CASE("what a press squeezes keeps the books when the press is held up") {
+  for (int seed = 1; seed < 25; ++seed) {
+    const int rate = seed % 2 ? 60 : 240;
+    test::Scene scene;
+    scene.settings.time_step = 1.0 / rate;
+    scene.settings.has_sleep = false;
+    scene.add(test::make_plane());
+    core::Random random(static_cast<std::uint64_t>(seed));
+    for (int k = 0; k < 24; ++k) {
+      auto& crate = scene.add(test::make_shell(crate_mesh(Vec3(0.1, 0.02, 0.08), Vec3::Zero())));
+      crate.pose.translation = Vec3(0.22 * (k % 4) - 0.3, 0.09 + 0.16 * (k / 8), 0.2 * ((k / 4) % 2));
+      crate.pose.rotation =
+          Quat(Eigen::AngleAxisd(random.uniform(-0.8, 0.8), Vec3(random.uniform(-1, 1), 2, 1).normalized()));
+    }
+    auto& press = scene.add(test::make_box(Vec3(0.6, 0.05, 0.6), Vec3::Zero()));
+    follow(press, {at(0, Vec3(0, 0.9, 0)), at(0.25, Vec3(0, 0.1, 0)), at(0.5, Vec3(0, 0.9, 0)),
+                   at(0.75, Vec3(0, 0.1, 0))});
+    audit::Audit audit;
+    double unexplained = 0.0, behind = 0.0;
+    for (int i = 0; i < rate; ++i) {
+      Vec3 gained = -scene.momentum();
+      step(scene, audit);
+      gained += scene.momentum();
+      for (const auto& b : scene.bodies)
+        if (b.is_dynamic()) gained -= b.shape->mass / rate * scene.settings.gravity;
+      const auto can_move = [&](body::BodyId id) {
+        const body::Body* b = body::find_body(scene.bodies, id);
+        return b != nullptr && b->is_dynamic();
+      };
+      for (const auto& entry : scene.log) {
+        if (can_move(entry.body_a)) gained -= entry.impulse_world;
+        if (can_move(entry.body_b)) gained += entry.impulse_world;
+      }
+      unexplained = std::max(unexplained, gained.norm());
+      behind = std::max(behind, dynamics::distance_behind(scene.bodies.back()));
+    }
+    INFO(rate << " steps a second, " << behind << " m behind");
+    CHECK(behind > 0.05);
+    CHECK(unexplained < 1e-9);  // N s
+    CHECK(audit.report().crossings == 0);
+    CHECK(audit.report().passages == 0);
   }
 }
 
