@@ -138,7 +138,7 @@ class Mender {
                        std::to_string(finding.vertex + 1) + " to vertex " +
                        std::to_string(vertex_source_[at(ends[1])] + 1) + " at " + at_place(finding.place) +
                        " (" + std::to_string(topology_.triangle_count(first)) +
-                       " triangles). A shell is a single sheet: take the inner wall out, or make two bodies.";
+                       " triangles). A surface has two: take the inner wall out, or make two bodies.";
     return false;
   }
 
@@ -153,16 +153,28 @@ class Mender {
     }
     findings_.diagnosis.part_count = winding_.part_count;
     findings_.diagnosis.is_closed = winding_.is_closed;
-    const int turned = winding_.turned_count;
-    if (turned == 0 && !winding_.was_inside_out) return true;
-    MeshFinding& finding = findings_.report(MeshFault::mixed_winding, Severity::mended,
-                                            turned > 0 ? turned : static_cast<int>(mesh_.triangles.size()));
-    const std::string words =
-        findings_.say_triangle(finding, triangle_source_[at(std::max(winding_.first_turned, 0))]);
-    finding.sentence = turned > 0 ? counted(turned, "triangle is", "triangles are") +
-                                        " wound against the neighbours (first " + words + "): turned."
-                                  : std::string("The closed surface is inside out: all triangles turned.");
+    say_turned();
     return true;
+  }
+
+  void say_turned() {
+    const int turned = winding_.turned_count, parts = winding_.inside_out_parts;
+    if (turned == 0 && parts == 0) return;
+    const bool is_whole = parts == 1 && winding_.part_count == 1;
+    MeshFinding& finding =
+        findings_.report(MeshFault::mixed_winding, Severity::mended,
+                         turned > 0 ? turned : (is_whole ? static_cast<int>(mesh_.triangles.size()) : parts));
+    const int first = turned > 0 ? winding_.first_turned : winding_.first_inside_out;
+    const std::string words =
+        findings_.say_triangle(finding, triangle_source_[at(is_whole && turned == 0 ? 0 : first)]);
+    if (turned > 0)
+      finding.sentence = counted(turned, "triangle is", "triangles are") +
+                         " wound against the neighbours (first " + words + "): turned.";
+    else if (is_whole)
+      finding.sentence = "The closed surface is inside out: all triangles turned.";
+    else
+      finding.sentence =
+          counted(parts, "closed part is", "closed parts are") + " inside out (" + words + "): turned.";
   }
 
   void split_fans() {

@@ -21,7 +21,7 @@ enum class MeshFault : std::uint8_t {
   duplicate_triangles,    // mended: same three vertices; dropped
   non_manifold_edges,     // refused: more than two triangles on an edge
   non_manifold_vertices,  // mended: fans that meet in one vertex only get a vertex each
-  mixed_winding,          // mended: turned to agree
+  mixed_winding,          // mended: turned to agree, and closed parts outwards
   not_orientable,         // refused: a Moebius strip
   loose_parts,            // refused, or noted where allowed (of solids always)
   slivers,                // noted: very thin triangles
@@ -70,8 +70,8 @@ MeshDiagnosis diagnose(const TriangleMesh& mesh, const MendOptions& options = {}
 
 /// The mesh, mended: every edge has one or two triangles of agreeing winding, every vertex one fan, no
 /// triangle is without area. No vertex is moved; one that is nearer to its neighbour than 1e-12 of the
-/// triangle joins it. A single closed surface that was inside out is turned. Mending a mended mesh gives the
-/// same mesh. Refused meshes come back empty; diagnosis.refused() tells.
+/// triangle joins it. Closed parts that were inside out are turned, hollows in others are not. Mending a
+/// mended mesh gives the same mesh. Refused meshes come back empty; diagnosis.refused() tells.
 MendedMesh mend(const TriangleMesh& mesh, const MendOptions& options = {});
 
 /// Likewise for the surface of a solid, which moreover is closed, faces outwards (a part inside another one

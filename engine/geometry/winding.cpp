@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/core/index.h"
-#include "engine/geometry/mass_properties.h"
+#include "engine/geometry/bvh.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -73,6 +73,47 @@ class WindingWalk {
   Winding winding_;
 };
 
+/// Per part whether it is, counted.
+std::vector<std::uint8_t> find_inside_out(const TriangleMesh& mesh, const EdgeTopology& topology,
+                                          Winding& winding) {
+  struct Part {
+    double volume = 0.0;  // six times
+    bool is_open = false;
+    Box box;
+  };
+  std::vector<Part> parts(at(winding.part_count));
+  // About a corner of its own: far from the origin rounding would tell.
+  std::vector<const Vec3*> origins(parts.size(), nullptr);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    const Vec3 &a = mesh.positions[at(corners[0])], &b = mesh.positions[at(corners[1])],
+               &c = mesh.positions[at(corners[2])];
+    const auto number = at(winding.part[t]);
+    if (origins[number] == nullptr) origins[number] = &a;
+    const Vec3& origin = *origins[number];
+    parts[number].volume += (a - origin).dot((b - origin).cross(c - origin));
+    for (const Vec3* corner : {&a, &b, &c}) parts[number].box.include(*corner);
+    for (const int edge : topology.triangle_edges[t])
+      parts[number].is_open = parts[number].is_open || topology.is_boundary(edge);
+  }
+  const auto is_in = [](const Box& inner, const Box& outer) {
+    return (inner.low.array() >= outer.low.array()).all() && (inner.high.array() <= outer.high.array()).all();
+  };
+  std::vector<std::uint8_t> is_inside_out(parts.size(), 0);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (parts[p].is_open || !(parts[p].volume < 0.0)) continue;
+    bool is_hollow = false;
+    for (std::size_t other = 0; other < parts.size(); ++other)
+      is_hollow = is_hollow || (other != p && is_in(parts[p].box, parts[other].box));
+    if (is_hollow) continue;
+    is_inside_out[p] = 1;
+    if (winding.inside_out_parts++ > 0) continue;
+    const auto first = std::find(winding.part.begin(), winding.part.end(), static_cast<int>(p));
+    winding.first_inside_out = static_cast<int>(first - winding.part.begin());
+  }
+  return is_inside_out;
+}
+
 }  // namespace
 
 Winding make_windings_agree(TriangleMesh& mesh, const EdgeTopology& topology) {
@@ -86,9 +127,9 @@ Winding make_windings_agree(TriangleMesh& mesh, const EdgeTopology& topology) {
   }
   winding.is_closed = std::none_of(topology.edges.begin(), topology.edges.end(),
                                    [&, e = 0](const auto&) mutable { return topology.is_boundary(e++); });
-  winding.was_inside_out = winding.is_closed && winding.part_count == 1 && enclosed_volume(mesh) < 0.0;
-  if (winding.was_inside_out)
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  const std::vector<std::uint8_t> is_inside_out = find_inside_out(mesh, topology, winding);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (is_inside_out[at(winding.part[t])]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   return winding;
 }
 

@@ -15,12 +15,13 @@ struct Winding {
   int turned_count = 0;         // triangles that ran against their neighbours
   int first_turned = -1;        // the first of them
   bool is_closed = false;       // no border edge
-  bool was_inside_out = false;  // one closed part that enclosed a negative volume
+  int inside_out_parts = 0;     // closed ones that enclosed a negative volume, and are no hollow in another
+  int first_inside_out = -1;    // a triangle of the first of them
 };
 
-/// Turns triangles so that neighbours agree, of each part the smaller half; then all, if they are one closed
-/// part and inside out. `topology` of the triangles given, no edge with more than two. A one-sided surface is
-/// left as it is.
+/// Turns triangles so that neighbours agree, of each part the smaller half; then closed parts that are inside
+/// out: who stands out of the box about each other part is no hollow. `topology` of the triangles given, no
+/// edge with more than two. A one-sided surface is left as it is.
 Winding make_windings_agree(TriangleMesh& mesh, const EdgeTopology& topology);
 
 }  // namespace shatterbox::geometry

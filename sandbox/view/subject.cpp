@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <variant>
 
 #include "engine/geometry/bvh.h"
@@ -108,10 +107,6 @@ Corners spread_out(Corners corners, const Vec3& way) {
   return corners;
 }
 
-void add(std::span<const Vec3> corners, std::vector<Vec3>& all) {
-  all.insert(all.end(), corners.begin(), corners.end());
-}
-
 // The room about these points, in which others are looked at as well.
 geometry::Box room_about(const std::vector<Vec3>& points) {
   geometry::Box about;
@@ -128,7 +123,7 @@ void add_within(const geometry::Box& room, const Corners& corners, std::vector<V
 // are no points.
 void add_about(const std::vector<Corners>& others, std::vector<Vec3>& points) {
   if (points.empty()) {
-    for (const Corners& corners : others) add(corners, points);
+    for (const Corners& corners : others) append(corners, points);
     return;
   }
   const geometry::Box about = room_about(points);
@@ -212,11 +207,12 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
     for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i)) {
       const Corners corners = corners_of(plan.bodies[i].box, pose);
       const Vec3 way = is_falling ? way_down(scene, scenery, corners) : Vec3(Vec3::Zero());
-      add(corners, fall.from);
-      add(spread_out(corners, way), fall.to);
+      append(corners, fall.from);
+      append(spread_out(corners, way), fall.to);
       for (const Vec3& corner : corners) landed.push_back(corner + way);
       if (!is_on_axle(body)) continue;
-      for (auto* points : {&fall.from, &fall.to}) add(corners_on_axle(body, plan.bodies[i], pose), *points);
+      for (auto* points : {&fall.from, &fall.to})
+        append(corners_on_axle(body, plan.bodies[i], pose), *points);
     }
     if (!is_falling) continue;
     fall.speed = moves ? std::min(fall.speed, speed) : speed;
@@ -275,13 +271,13 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
           thrown.push_back(corners);
           continue;
         }
-        add(corners, subject.corners);
-        if (body.path) add(corners_on_path(body, planned, pose, scene.seconds), subject.corners);
-        if (is_on_axle(body)) add(corners_on_axle(body, planned, pose), subject.corners);
+        append(corners, subject.corners);
+        if (body.path) append(corners_on_path(body, planned, pose, scene.seconds), subject.corners);
+        if (is_on_axle(body)) append(corners_on_axle(body, planned, pose), subject.corners);
         for (const Vec3& carried : find_carries(scene, i, pose.apply(planned.centre))) {
           const Corners there = corners_of(planned.box, {pose.rotation, pose.translation + carried});
-          add(there, subject.corners);
-          add(spread_out(there, way_down(scene, scenery, there)), subject.corners);
+          append(there, subject.corners);
+          append(spread_out(there, way_down(scene, scenery, there)), subject.corners);
         }
         if (way.isZero(0.0)) continue;
         const Vec3 aside = way_aside(scene.world.gravity, body.velocity, way);
@@ -294,7 +290,7 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
   for (const Corners& corners : thrown) add_within(room, corners, subject.corners);
   add_about(scenery.corners, subject.corners);
   if (subject.corners.empty())
-    add(corners_of({Vec3::Constant(-1.0), Vec3::Constant(1.0)}, Pose()), subject.corners);
+    append(corners_of({Vec3::Constant(-1.0), Vec3::Constant(1.0)}, Pose()), subject.corners);
   subject.centre = middle_of(subject.corners);
   subject.fall = find_fall(scene, plan, scenery, is_hung);
   if (subject.fall) {

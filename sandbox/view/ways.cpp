@@ -1,7 +1,6 @@
 #include "sandbox/view/ways.h"
 
 #include <algorithm>
-#include <span>
 
 #include "engine/body/scripted_path.h"
 #include "engine/core/elementary.h"
@@ -11,11 +10,11 @@ namespace {
 
 constexpr int kLooks = 16;  // from key to key, in a turn, on a way of its own size
 
-void add(std::span<const Vec3> corners, std::vector<Vec3>& all) {
+}  // namespace
+
+void append(std::span<const Vec3> corners, std::vector<Vec3>& all) {
   all.insert(all.end(), corners.begin(), corners.end());
 }
-
-}  // namespace
 
 Corners corners_of(const geometry::Box& box, const Pose& pose) {
   Corners corners;
@@ -42,7 +41,7 @@ std::vector<Vec3> corners_on_path(const scene::BodyEntry& body, const scene::Bod
   for (const body::Keyframe& key : own.keys) {
     const double to = std::min(key.time, seconds);
     for (int k = 0; k <= kLooks; ++k)
-      add(corners_of(plan.box, path.pose_at(from + (to - from) * k / kLooks)), corners);
+      append(corners_of(plan.box, path.pose_at(from + (to - from) * k / kLooks)), corners);
     from = to;
   }
   return corners;
@@ -59,7 +58,7 @@ std::vector<Vec3> corners_on_axle(const scene::BodyEntry& body, const scene::Bod
   const Vec3 centre = pose.apply(plan.centre);
   if (body.locked.count_turns() > 1) {
     const Vec3 reach = Vec3::Constant(plan.reach);
-    add(corners_of({-reach, reach}, Pose{Quat::Identity(), centre}), corners);
+    append(corners_of({-reach, reach}, Pose{Quat::Identity(), centre}), corners);
     return corners;
   }
   const Vec3 axis = body.locked.let_turn(Vec3::Ones());
@@ -67,8 +66,8 @@ std::vector<Vec3> corners_on_axle(const scene::BodyEntry& body, const scene::Bod
     const double half = core::kPi * k / kLooks;
     const Vec3 sine = core::sin(half) * axis;
     const Quat turn(core::cos(half), sine.x(), sine.y(), sine.z());
-    add(corners_of(plan.box, Pose{turn * pose.rotation, centre + turn * (pose.translation - centre)}),
-        corners);
+    append(corners_of(plan.box, Pose{turn * pose.rotation, centre + turn * (pose.translation - centre)}),
+           corners);
   }
   return corners;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/geometry/bvh.h"
@@ -12,6 +13,8 @@
 namespace shatterbox::sandbox::view {
 
 using Corners = std::array<Vec3, 8>;  // m, of a box
+
+void append(std::span<const Vec3> corners, std::vector<Vec3>& all);
 
 Corners corners_of(const geometry::Box& box, const Pose& pose);
 

@@ -191,6 +191,35 @@ TEST_CASE("triangles wound against their neighbours are turned, a sphere inside 
   CHECK(enclosed_volume(mend(inside_out).mesh) > 0.0);
 }
 
+TEST_CASE("of several closed parts those that are inside out are turned, and hollows are not") {
+  const TriangleMesh whole = make_sphere(1.0, {0.2, 0.3, 1}).value();
+  MendOptions options;
+  options.allow_loose_parts = true;
+  const auto with = [&](double scale, const Vec3& shift, bool is_turned) {
+    TriangleMesh both = whole;
+    const int first = static_cast<int>(both.positions.size());
+    for (const Vec3& p : whole.positions) both.positions.push_back(scale * p + shift);
+    for (const Triangle& t : whole.triangles)
+      both.triangles.push_back({t[0] + first, t[is_turned ? 2 : 1] + first, t[is_turned ? 1 : 2] + first});
+    return both;
+  };
+  const double volume = enclosed_volume(whole);
+  // Half in the other one, and beside it.
+  for (const double away : {0.9, 3.0}) {
+    const MendedMesh mended = mend(with(0.5, Vec3(away, 0, 0), true), options);
+    const MeshFinding* finding = mended.diagnosis.find(MeshFault::mixed_winding);
+    REQUIRE(finding != nullptr);
+    CHECK(finding->count == 1);
+    CHECK(finding->triangle == static_cast<int>(whole.triangles.size()));
+    CHECK(finding->sentence.find("1 closed part is inside out") != std::string::npos);
+    CHECK(enclosed_volume(mended.mesh) == Approx(1.125 * volume).epsilon(1e-12));
+    CHECK(mend(mended.mesh, options).mesh.triangles == mended.mesh.triangles);
+  }
+  const MendedMesh hollow = mend(with(0.5, Vec3(0.2, 0, 0), true), options);
+  CHECK(hollow.diagnosis.find(MeshFault::mixed_winding) == nullptr);
+  CHECK(enclosed_volume(hollow.mesh) == Approx(0.875 * volume).epsilon(1e-12));
+}
+
 TEST_CASE("a Moebius strip is refused, a ring of two turns is not") {
   for (const int half_turns : {1, 2}) {
     TriangleMesh strip;

@@ -1,8 +1,8 @@
 // What rests on a breakable thing breaks it, or not, whatever the step: contact is an average over a time.
 #include <catch2/catch.hpp>
 
-#include "engine/geometry/generators.h"
 #include "engine/world/world.h"
+#include "tests/engine/world/held_pane.h"
 
 using namespace shatterbox;
 
@@ -22,17 +22,9 @@ Rest rest_on_pane(int steps_per_second, double density) {
   world::World w(settings);
   const int glass = w.add_material(*material::find_preset("glass")).value();
   const int steel = w.add_material(*material::find_preset("steel")).value();
-  geometry::Meshing meshing;
-  meshing.edge_length = 0.03;
-  world::ShellDescription shell;
-  shell.mesh = geometry::make_pane(0.5, 0.5, meshing).value();
-  shell.thickness = 3e-3;
-  for (std::size_t v = 0; v < shell.mesh.positions.size(); ++v)
-    if (shell.mesh.positions[v].head<2>().cwiseAbs().maxCoeff() > 0.2499)
-      shell.clamped.push_back(static_cast<int>(v));
   world::BodyDescription pane;
   pane.name = "pane";
-  pane.form = shell;
+  pane.form = test::held_pane(0.5, 3e-3);
   pane.material = glass;
   pane.pose.rotation = Quat(Eigen::AngleAxisd(-1.5707963267948966, Vec3::UnitX()));
   REQUIRE(w.add_body(pane).ok());

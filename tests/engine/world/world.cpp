@@ -10,6 +10,7 @@
 #include "engine/core/parallel.h"
 #include "engine/geometry/generators.h"
 #include "tests/engine/world/audited.h"
+#include "tests/engine/world/held_pane.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/untrapped.h"
 
@@ -335,17 +336,9 @@ TEST_CASE("a scripted ram breaks a held pane at any rate, and goes through it to
     world::World w(settings);
     const int glass = w.add_material(*material::find_preset("glass")).value();
     const int steel = w.add_material(*material::find_preset("steel")).value();
-    geometry::Meshing meshing;
-    meshing.edge_length = 0.03;
-    world::ShellDescription shell;
-    shell.mesh = geometry::make_pane(0.4, 0.4, meshing).value();
-    shell.thickness = 3e-3;
-    for (std::size_t v = 0; v < shell.mesh.positions.size(); ++v)
-      if (shell.mesh.positions[v].head<2>().cwiseAbs().maxCoeff() > 0.1999)
-        shell.clamped.push_back(static_cast<int>(v));
     world::BodyDescription pane, ram;
     pane.name = "pane";
-    pane.form = shell;
+    pane.form = test::held_pane(0.4, 3e-3);
     pane.material = glass;
     REQUIRE(w.add_body(pane).ok());
     ram.name = "ram";
