@@ -114,9 +114,9 @@ int check_goldens(const GoldenOptions& options) {
   catch_interrupts();
   Refusal refusal;
   const auto tolerance = compare::parse_tolerance(options.findings.tolerance, refusal.words);
-  if (!tolerance) return tell({kBadInput, "--tolerance: " + refusal.words});
+  if (!tolerance) return refuse({kBadInput, "--tolerance: " + refusal.words});
   const auto names = find_goldens(options.folder, options.names, refusal);
-  if (!names) return tell(refusal);
+  if (!names) return refuse(refusal);
   Outputs outputs;
   add_outputs(options.findings, outputs);
   const fs::path pictures = options.findings.pictures_folder;
@@ -131,10 +131,10 @@ int check_goldens(const GoldenOptions& options) {
   scene::Problems problems;
   outputs.check(problems);
   if (problems.empty()) outputs.take(problems);
-  if (!problems.empty()) return tell({kBadInput, scene::describe(problems)});
+  if (!problems.empty()) return refuse({kBadInput, scene::describe(problems)});
   const std::vector<Checked> all = check_all(*names, options, *tolerance);
   const std::string fault = tell_findings(options, all);
-  if (!fault.empty()) return tell({kFailed, "failed: " + fault});
+  if (!fault.empty()) return refuse({kFailed, "failed: " + fault});
   return tell_outcome(all, names->size(), options.folder);
 }
 

@@ -39,7 +39,7 @@ std::string silence_of(int status, const fs::path& work) {
 
 }  // namespace
 
-int tell(const Refusal& refusal) {
+int refuse(const Refusal& refusal) {
   fmt::print(stderr, "{}\n", refusal.words);
   return refusal.status;
 }

@@ -22,7 +22,7 @@ struct Refusal {
 };
 
 /// The words on stderr; the exit status.
-int tell(const Refusal& refusal);
+int refuse(const Refusal& refusal);
 
 /// A file is kept by its way from the golden's folder, so that both can move together; a name stays a name.
 std::string seen_from(const std::filesystem::path& folder, const std::string& file);

@@ -125,10 +125,10 @@ bool take_over(const fs::path& folder, const std::string& scene, Json& golden, R
 
 int make_one(const GoldenOptions& options) {
   if (options.run.stills.empty())
-    return tell({kBadInput, "golden make: which moments? for example --stills 0.3,0.5"});
+    return refuse({kBadInput, "golden make: which moments? for example --stills 0.3,0.5"});
   const std::string name = options.name.empty() ? name_of(options.run.scene) : options.name;
   if (!is_plain(name))
-    return tell(
+    return refuse(
         {kBadInput,
          fmt::format("\"{}\" is no name for a golden, which has letters a to z, digits, _ - . alone{}", name,
                      options.name.empty() ? "\n    give it one: --name NAME" : "")});
@@ -139,10 +139,10 @@ int make_one(const GoldenOptions& options) {
   golden["reasons"] = Json::array();
   Refusal refusal;
   if (fs::exists(folder / "golden.json") && !take_over(folder, options.run.scene, golden, refusal))
-    return tell(refusal);
+    return refuse(refusal);
   if (!keep(std::move(golden), folder, options.reason, refusal)) {
     if (is_interrupted()) refusal.words = "interrupted: " + folder.string() + " is as it was";
-    return tell(refusal);
+    return refuse(refusal);
   }
   fmt::print("made {}\n", folder.string());
   return kDone;
@@ -159,7 +159,7 @@ int make_again(const GoldenOptions& options) {
   Refusal refusal;
   const auto names = find_goldens(
       options.folder, options.name.empty() ? std::vector<std::string>{} : std::vector{options.name}, refusal);
-  if (!names) return tell(refusal);
+  if (!names) return refuse(refusal);
   std::vector<std::string> made, left;
   int status = kDone;
   for (const std::string& name : *names) {
@@ -173,7 +173,7 @@ int make_again(const GoldenOptions& options) {
     }
     left.push_back(name);
     if (is_interrupted()) continue;
-    status = std::max(status, tell({refusal.status, fmt::format("{}: {}", name, refusal.words)}));
+    status = std::max(status, refuse({refusal.status, fmt::format("{}: {}", name, refusal.words)}));
   }
   if (is_interrupted() && !left.empty()) status = kFailed;
   if (!left.empty())
@@ -187,7 +187,7 @@ int make_again(const GoldenOptions& options) {
 int make_goldens(const GoldenOptions& options) {
   catch_interrupts();
   if (options.reason.empty())
-    return tell({kBadInput, "golden make: why? --reason \"...\" is kept with the golden"});
+    return refuse({kBadInput, "golden make: why? --reason \"...\" is kept with the golden"});
   return options.run.scene.empty() ? make_again(options) : make_one(options);
 }
 
