@@ -135,7 +135,7 @@ bool can_strike(const Body& b) {
 }
 
 void begin_strike(Body& b) {
-  const double weight = std::exp2(std::min(b.script.blows, kMostDoublings));
+  const double weight = std::ldexp(1.0, std::min(b.script.blows, kMostDoublings));
   b.script.strikes = true;
   b.inverse_mass = 1.0 / (weight * b.shape->mass);
   b.inverse_inertia = b.shape->inertia.inverse() / weight;
