@@ -73,7 +73,7 @@ TEST_CASE("bodies that break on each other in one step keep their momentum, and 
   const int glass = w.add_material(*material::find_preset("glass")).value();
   world::ShellDescription shell;
   geometry::Meshing meshing;
-  meshing.edge_length = 0.01;
+  meshing.edge_length = 0.014;
   shell.mesh = geometry::make_sphere(0.04, meshing).value();
   shell.thickness = 0.5e-3;
   for (const double side : {-1.0, 1.0}) {
