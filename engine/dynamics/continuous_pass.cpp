@@ -70,16 +70,16 @@ class Guard {
     bool has_hits = test();
     // One who is hit may hit the next: that is followed where hits are taken one by one.
     const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
-    if (wakes_sleepers() || strikes(find_held())) return;
+    if (wakes_sleepers() || strikes_held()) return;
     for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) {
       has_hits = test();
-      if (wakes_sleepers() || strikes(find_held())) return;
+      if (wakes_sleepers() || strikes_held()) return;
     }
     report_.is_unfinished = has_hits && work_.is_trial;
     if (report_.is_unfinished) return;
     has_hits = open_in_rounds(has_hits);
     // What is pressed, and gave way in part, is struck by what comes upon it; later it is only pressed.
-    if (!work_.to_wake.empty() || (has_hits && strikes(find_pressed(), 1.0))) return;
+    if (!work_.to_wake.empty() || (has_hits && strikes_pressed())) return;
     while (has_hits && hold_up_scripted()) has_hits = open_in_rounds(test());
     if (!work_.to_wake.empty()) return;
     content_with_less();
@@ -206,8 +206,7 @@ class Guard {
 
   // Of these (flags), scripted ones strike the others, if one of those can break: all is taken again with
   // them as free bodies. False if nobody does.
-  bool strikes(const std::vector<char>& is_pressed, double least_pace = 0.0) {
-    if (!work_.has_scripted) return false;
+  bool strike(const std::vector<char>& is_pressed, double least_pace) {
     bool may_break = false;
     for (std::size_t i = 0; i < is_pressed.size(); ++i)
       may_break = may_break || (is_pressed[i] && work_.bodies[i].may_break);
@@ -217,10 +216,12 @@ class Guard {
     return !work_.to_strike.empty();
   }
 
+  bool strikes_held() { return work_.has_scripted && strike(find_held(), 0.0); }
+  bool strikes_pressed() { return work_.has_scripted && strike(find_pressed(), 1.0); }
+
   // Flags: scripted ones, and what stands still, that meet.
   std::vector<char> find_held() const {
     std::vector<char> is_held(work_.bodies.size(), 0);
-    if (!work_.has_scripted) return is_held;
     for (const std::size_t p : hit_) {
       const int a = work_.pairs[p].a, b = work_.pairs[p].b;
       if (bodies_[at(a)].comes_upon(bodies_[at(b)]) || bodies_[at(b)].comes_upon(bodies_[at(a)]))

@@ -224,9 +224,18 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
   return fall;
 }
 
-// About all that is there when something is thrown; planes are everywhere.
+bool is_thrown(const scene::SceneDescription& scene, const scene::BodyEntry& body) {
+  const Vec3& gravity = scene.world.gravity;
+  const Vec3 along = gravity.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(gravity.normalized());
+  return (body.velocity - body.velocity.dot(along) * along).norm() > kSideways;
+}
+
+// About all that is there when something is thrown, if anything is; planes are everywhere.
 std::vector<geometry::Box> find_targets(const scene::SceneDescription& scene, const scene::ScenePlan& plan) {
   std::vector<geometry::Box> targets;
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                   [&](const scene::BodyEntry& body) { return is_thrown(scene, body); }))
+    return targets;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (plan.bodies[i].bounding_radius <= 0.0 || scene.bodies[i].is_held_back) continue;
     for (const Pose& pose : scene::copy_poses(scene.bodies[i], scene.world.seed, i))
@@ -240,9 +249,8 @@ std::vector<geometry::Box> find_targets(const scene::SceneDescription& scene, co
 std::optional<Vec3> find_target(const scene::SceneDescription& scene, const scene::BodyEntry& body,
                                 const Corners& corners, const Vec3& way,
                                 const std::vector<geometry::Box>& targets) {
+  if (!is_thrown(scene, body)) return std::nullopt;
   const Vec3& gravity = scene.world.gravity;
-  const Vec3 along = gravity.isZero(0.0) ? Vec3(Vec3::Zero()) : Vec3(gravity.normalized());
-  if ((body.velocity - body.velocity.dot(along) * along).norm() <= kSideways) return std::nullopt;
   double seconds = scene.seconds;
   if (!way.isZero(0.0)) seconds = std::min(seconds, fall_time(gravity, body.velocity, way));
   return find_meeting(box_about(corners), body.velocity, gravity, targets, seconds);
