@@ -138,6 +138,14 @@ std::vector<render::Look> make_looks(const std::string& name, const std::optiona
   return {look, neck, metal, metal};
 }
 
+void share_tint_of_two_faces(std::vector<render::Look>& looks) {
+  for (render::Look& look : looks) {
+    if (!(look.transmission > 0.0F)) continue;
+    look.outside = glm::sqrt(look.outside);
+    look.inside = glm::sqrt(look.inside);
+  }
+}
+
 std::string usual_look(const std::string& preset) {
   for (const char* same : {"aluminium", "brick", "ceramic", "concrete", "eggshell", "glass", "ice", "plaster",
                            "porcelain", "steel", "terracotta"}) {

@@ -19,6 +19,10 @@ glm::vec3 linear_colour(const Vec3& srgb);
 std::vector<render::Look> make_looks(const std::string& name, const std::optional<Vec3>& colour, double size,
                                      const Vec3& centre, int axis);
 
+/// Of what is clear, for a body with two faces where a sheet has one: `colour` is what is seen through a
+/// wall, so each face takes its root.
+void share_tint_of_two_faces(std::vector<render::Look>& looks);
+
 /// The look that a material has of itself: of its preset, or plain.
 std::string usual_look(const std::string& preset);
 

@@ -68,9 +68,11 @@ const std::vector<render::Look>& Wardrobe::looks_of(body::BodyId id) {
   std::string name = entry.look.name.empty() ? scene_.render.look : entry.look.name;
   const auto& material = scene_.materials[static_cast<std::size_t>(entry.material)];
   if (name.empty()) name = usual_look(material.preset);
-  place->second =
-      make_looks(name, colour_of(entry.look, name, number, found->second.copy), plan.bounding_radius,
-                 -plan.centre, name == "wood" ? longest_axis(plan.description) : 0);
+  const std::optional<Vec3> colour = colour_of(entry.look, name, number, found->second.copy);
+  place->second = make_looks(name, colour, plan.bounding_radius, -plan.centre,
+                             name == "wood" ? longest_axis(plan.description) : 0);
+  if (colour && !std::holds_alternative<world::ShellDescription>(plan.description.form))
+    share_tint_of_two_faces(place->second);
   return place->second;
 }
 

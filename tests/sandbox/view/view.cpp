@@ -85,6 +85,28 @@ TEST_CASE("every name of the vocabulary means something") {
   }
 }
 
+TEST_CASE("glass of one colour is as dark as a sheet as it is as a block with its two faces") {
+  const auto tint_of = [](const std::string& form, const std::string& look) {
+    const auto reading = scene::read("[[body]]\nname = \"thing\"\nlook = \"" + look +
+                                     "\"\ncolour = \"#88c0a0\"\nmaterial = \"glass\"\n" + form);
+    const auto built = build(reading);
+    return view::Wardrobe(*reading.scene, *built).looks_of(1).front().outside;
+  };
+  const std::string sheet =
+      "kind = \"shell\"\nshape = \"pane\"\nwidth = 0.1\nheight = 0.1\nthickness = 0.004\n";
+  const glm::vec3 once = view::linear_colour(Vec3(0x88, 0xc0, 0xa0) / 255.0);
+  for (const std::string look : {"glass", "frosted", "ice"}) {
+    CHECK(glm::distance(tint_of(sheet, look), once) < 1e-6F);
+    for (const std::string block :
+         {"kind = \"solid\"\nshape = \"slab\"\nsize = [0.1, 0.1, 0.01]\n", "kind = \"box\"\nsize = 0.1\n"}) {
+      const glm::vec3 face = tint_of(block, look);
+      CHECK(glm::distance(face * face, once) < 1e-6F);
+    }
+  }
+  const glm::vec3 paint = tint_of("kind = \"box\"\nsize = 0.1\n", "glossy");
+  CHECK(glm::distance(paint, once) < 1e-6F);
+}
+
 TEST_CASE("wood has its fibres along what it is longest") {
   const auto pattern_of = [](const std::string& form) {
     const auto reading = scene::read("[[body]]\nname = \"thing\"\nlook = \"wood\"\n" + form);
