@@ -22,8 +22,10 @@ namespace {
 
 std::atomic<int> wanted_threads{0};
 
+/// Asked once: each time the system reads it from files, some microseconds that every loop would pay.
 int cores() {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  static const int count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return count;
 }
 
 /// The chunks of one loop, run on whichever threads. What one throws is kept to the loop's end: oneTBB itself
