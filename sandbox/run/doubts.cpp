@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -361,6 +362,32 @@ void doubt_waiting(const scene::SceneDescription& scene, scene::Problems& doubts
           "shells and solids can: kind = \"shell\" or \"solid\"; or give it a time, at = 0.5");
 }
 
+/// What is moved or let go when no hand holds it. A hand whose time is not known may hold from the start.
+void doubt_hands(const scene::SceneDescription& scene, scene::Problems& doubts) {
+  std::set<scene::BodyRef> held;
+  const auto is_grab = [](const scene::EventEntry& event) {
+    return std::holds_alternative<scene::Grab>(event.action);
+  };
+  for (const scene::EventEntry& event : scene.events)
+    if (is_grab(event) && event.when != scene::When::time) held.insert(event.who);
+  for (const scene::EventEntry& event : scene.events) {
+    const bool is_release = std::holds_alternative<scene::Release>(event.action);
+    if (is_grab(event)) held.insert(event.who);
+    if (!is_release && !std::holds_alternative<scene::Carry>(event.action)) continue;
+    if (held.count(event.who) == 0) {
+      const std::string& name = scene.bodies[static_cast<std::size_t>(event.who.body)].name;
+      scene::book(
+          doubts, event.place,
+          fmt::format("event \"{}\" {} \"{}\", and no hand holds it then", event.name,
+                      is_release ? "lets go of" : "moves", name),
+          fmt::format("an event before it takes it: do = \"grab\", body = \"{}\"; what is to go a way "
+                      "of its own has motion = \"scripted\"",
+                      name));
+    }
+    if (is_release && event.when == scene::When::time) held.erase(event.who);
+  }
+}
+
 void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                   scene::Problems& doubts) {
   if (!can_foretell(scene)) return;
@@ -406,6 +433,7 @@ scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::B
   doubt_camera(scene, built, doubts);
   doubt_joints(scene, built, doubts);
   doubt_waiting(scene, doubts);
+  doubt_hands(scene, doubts);
   doubt_throws(scene, built, doubts);
   return doubts;
 }

@@ -63,6 +63,26 @@ TEST_CASE(
   CHECK(doubts_of("[[body]]\nname = \"cup\"\nshape = \"bowl\"\n" + waits).empty());
 }
 
+TEST_CASE("what is moved or let go with no hand on it is doubted") {
+  const std::string crate = "[[body]]\nname = \"crate\"\nkind = \"box\"\nsize = 1\nposition = [0, 0.5, 0]\n";
+  const auto event = [](const std::string& verb, const std::string& at, const std::string& more = "") {
+    return "[[event]]\nname = \"" + verb + "\"\ndo = \"" + verb + "\"\nat = " + at + "\nbody = \"crate\"\n" +
+           more;
+  };
+  const std::string grab = event("grab", "0.1"), move = event("move", "0.2", "to = [0, 2, 0]\n"),
+                    release = event("release", "0.3"), later = event("move", "0.4", "to = [0, 1, 0]\n");
+  CHECK(doubts_of(crate + grab + move + release).empty());
+  CHECK(has(doubts_of(crate + move), "event \"move\" moves \"crate\", and no hand holds it then"));
+  CHECK(has(doubts_of(crate + release), "event \"release\" lets go of \"crate\", and no hand holds it then"));
+  CHECK(has(doubts_of(crate + grab + release + later), "moves \"crate\", and no hand holds it then"));
+  CHECK(has(doubts_of(crate + event("grab", "0.5") + move), "moves \"crate\""));
+  const std::string egg =
+      "[[body]]\nname = \"egg\"\nkind = \"shell\"\nshape = \"egg\"\nthickness = 0.0004\nposition = [0, 3, "
+      "0]\n";
+  CHECK(doubts_of(crate + egg + "[[event]]\ndo = \"grab\"\nbody = \"crate\"\nwhen = \"first break\"\n" + move)
+            .empty());
+}
+
 TEST_CASE("the paper's criterion says that what yields gets neither dents nor holes") {
   const std::string slab =
       "[[body]]\nname = \"slab\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.2, 0.02]\n"
