@@ -67,7 +67,7 @@ struct BodyState {
 };
 
 /// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and
-/// lists here. A cache that all copies of a state share.
+/// lists here. A cache that a state shares with its snapshots: with whatever no other thread steps.
 struct SearchShelf {
   std::vector<BodyState> bodies;  // ascending id
   struct Row {

@@ -21,8 +21,9 @@ std::string find_path_fault(const BodyDescription& description) {
     if (is_plane && keys[k].angles != keys[0].angles) return "a plane cannot turn";
   }
   for (const body::Keyframe& key : keys)
-    if (!std::isfinite(key.time) || !is_within(key.position, kMostLength) || !key.angles.allFinite())
-      return "a key of its path is not finite, or not within 1e6 m";
+    if (!std::isfinite(key.time) || !is_within(key.position, kMostLength) ||
+        !is_within(key.angles, kMostAngle))
+      return "a key of its path is not finite, or not within 1e6 m and 1e6 rad";
   const body::ScriptedPath path(keys, description.path->between);
   if (!(path.top_speed() <= kMostSpeed) || !(path.top_spin() <= kMostSpin))
     return "its path is quicker than 1e9 m/s or 1e5 rad/s";

@@ -8,6 +8,7 @@ namespace shatterbox::world {
 inline constexpr double kMostLength = 1e6;   // m: of places and extents
 inline constexpr double kMostSpeed = 1e9;    // m/s: worlds may be large
 inline constexpr double kMostSpin = 1e5;     // rad/s
+inline constexpr double kMostAngle = 1e6;    // rad: of the keys of a path
 inline constexpr double kMostGravity = 1e9;  // m/s2
 inline constexpr double kMostForce = 1e9;    // N, N m
 inline constexpr double kMostEnergy = 1e12;  // J: of explosions

@@ -152,8 +152,9 @@ void take_plug_along(MovingState& moving, const EvaluatedImpact& impact, const B
   }
   if (plugs.empty()) return;
   const Vec3 direction = plugs.front()->pose.rotation * hole.striker.direction;
-  const double striker_mass = 1.0 / striker->inverse_mass;
-  const double common = (striker_mass * striker->velocity + momentum).dot(direction) / (striker_mass + mass);
+  // Of both together; what goes a scripted way keeps its own.
+  const double common = (striker->velocity + striker->inverse_mass * momentum).dot(direction) /
+                        (1.0 + striker->inverse_mass * mass);
   for (body::Body* plug : plugs) {
     const double gain = common - plug->velocity.dot(direction);
     if (!(gain > 0.0)) continue;

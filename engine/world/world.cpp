@@ -39,6 +39,7 @@ World World::copy() const {
   auto state = std::make_unique<State>(*state_);
   state->wants_to_stop = {};
   state->watcher = {};
+  state->moving.contact.shelf = std::make_shared<dynamics::SearchShelf>();  // they may step at one time
   return World(std::move(state));
 }
 
@@ -136,7 +137,9 @@ bool World::move_hand(int number, const Vec3& place) {
   const auto hand = std::find_if(state_->hands.begin(), state_->hands.end(),
                                  [number](const dynamics::Hand& h) { return h.number == number; });
   if (hand == state_->hands.end() || !body::find_body(state_->moving.bodies, hand->body)) return false;
-  hand->velocity = (place - hand->place) * state_->settings.steps_per_second;
+  const double steps_per_second = state_->settings.steps_per_second;
+  const Vec3 before = hand->place - hand->velocity / steps_per_second;  // at the step's begin
+  hand->velocity = (place - before) * steps_per_second;
   hand->place = place;
   return true;
 }

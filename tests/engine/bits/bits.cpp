@@ -1,7 +1,10 @@
 // The same bits: over threads and repeats, beside what is far away; and the same scene, to rounding, turned
 // or in another order.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <thread>
+#include <vector>
 
 #include "engine/core/parallel.h"
 #include "tests/engine/bits/scene.h"
@@ -47,6 +50,22 @@ TEST_CASE("a world that was kept in mid-run goes on to the same hash") {
     w.step();
     CHECK(w.state_hash() == expected[kept_at]);
   }
+}
+
+TEST_CASE("copies of a world step in threads of their own, and go on to the same hash") {
+  const std::vector<std::uint64_t> expected = test::play_hashes();
+  constexpr std::size_t kCopies = 3;
+  world::World w = test::make_everything();
+  std::array<std::uint64_t, kCopies> ends{};
+  {
+    std::vector<std::jthread> threads;
+    for (std::uint64_t& end : ends)
+      threads.emplace_back([&end, on = w.copy()]() mutable {
+        for (int i = 0; i < test::kBitSteps; ++i) on.step();
+        end = on.state_hash();
+      });
+  }
+  for (const std::uint64_t end : ends) CHECK(end == expected.back());
 }
 
 TEST_CASE("a far body that touches nothing changes no bit of the others") {

@@ -68,6 +68,21 @@ TEST_CASE("a hand leads a body along, a little behind, and it flies on when it i
   CHECK_FALSE(held.w.move_hand(held.hand, Vec3::Zero()));
 }
 
+TEST_CASE("a hand that is told its place twice before a step has gone there once") {
+  Held once(240, 500.0), twice(240, 500.0);
+  for (int i = 1; i <= 60; ++i) {
+    const Vec3 place(i / 240.0, 1, 0);
+    REQUIRE(once.w.move_hand(once.hand, place));
+    once.w.step();
+    REQUIRE(twice.w.move_hand(twice.hand, Vec3(0.3, 1.2, 0)));
+    REQUIRE(twice.w.move_hand(twice.hand, place));
+    REQUIRE(twice.w.move_hand(twice.hand, place));
+    twice.w.step();
+  }
+  CHECK((twice.body().pose.translation - once.body().pose.translation).norm() < 1e-9);
+  CHECK((twice.body().velocity - once.body().velocity).norm() < 1e-9);
+}
+
 TEST_CASE("a hand too weak for the weight lets the body sink at what is left of gravity") {
   Held held(240, 5.0);
   for (int i = 0; i < 120; ++i) held.w.step();

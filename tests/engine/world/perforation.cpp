@@ -26,10 +26,11 @@ struct Shot {
   double unit = 1.0;   // m: all lengths are in it
   Vec3 aim = Vec3::Zero();
   Bullet bullet = Bullet::ball;
-  double second = 0.0;  // m/s, of a ball that follows; 0: none
-  double aside = 0.12;  // beside the first
-  double behind = 1.1;  // and behind it
-  double run = 0.6;     // so many units behind the plate the shot ends
+  double second = 0.0;       // m/s, of a ball that follows; 0: none
+  double aside = 0.12;       // beside the first
+  double behind = 1.1;       // and behind it
+  double run = 0.6;          // so many units behind the plate the shot ends
+  bool is_scripted = false;  // the bullet goes its way whatever it meets
 };
 
 struct Range {
@@ -64,6 +65,12 @@ Range fire(const Shot& shot) {
     bullet.velocity = Vec3(shot.slant, 0.0, -speed);
     bullet.pose.translation = shot.unit * (place + Vec3(0, 0, 0.5 * shot.thickness)) -
                               distance * shot.unit * bullet.velocity / speed;
+    if (shot.is_scripted) {
+      const Vec3& from = bullet.pose.translation;
+      bullet.path = world::PathDescription{
+          {{0.0, from, Vec3::Zero()}, {1.0, from + bullet.velocity, Vec3::Zero()}}, body::Between::straight};
+      bullet.motion = body::Motion::scripted;
+    }
     return w.add_body(bullet).value();
   };
   range.bullet = throw_at(shot.aim, shot.speed, 0.4);
@@ -179,6 +186,23 @@ TEST_CASE("a free plate goes along with the momentum that the ball and the plug 
   CHECK(piece_of(range, false).velocity.z() < -1.0);
   CHECK(piece_of(range, true).velocity.z() < -100.0);
   CHECK(range.world.report().conservation.momentum_error < 1e-9);
+}
+
+TEST_CASE("who goes a scripted way goes through what holds and keeps to it, and the plug flies ahead") {
+  for (const int rate : {60, 240, 960}) {
+    Shot shot;
+    shot.rate = rate;
+    shot.is_scripted = true;
+    CAPTURE(rate);
+    const Range range = fire(shot);
+    check_whole(range);
+    REQUIRE(range.world.report().breaks.size() == 1);
+    CHECK(range.world.report().impacts[0].verdict.starts_with("perforated: "));
+    CHECK(genus_of(*piece_of(range, false).shape) == 1);
+    CHECK(-piece_of(range, true).velocity.z() >= 0.98 * shot.speed);
+    const double z = 0.41 - shot.speed * range.world.time();
+    CHECK(body_of(range, range.bullet).pose.translation.z() == Approx(z).margin(1e-6));
+  }
 }
 
 TEST_CASE(

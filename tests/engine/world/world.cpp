@@ -475,7 +475,9 @@ TEST_CASE("a path that cannot be gone is refused with a reason") {
   CHECK(w.add_body(body).error().find("needs a key") != std::string::npos);
   body.path->keys = {{1.0, Vec3::Zero(), Vec3::Zero()}, {1.0, Vec3::UnitX(), Vec3::Zero()}};
   CHECK(w.add_body(body).error().find("forward in time") != std::string::npos);
-  body.path->keys[1] = {2.0, Vec3::Zero(), Vec3::UnitX()};
+  body.path->keys = {{1.0, Vec3::Zero(), 1e300 * Vec3::UnitX()}};
+  CHECK(w.add_body(body).error().find("1e6 rad") != std::string::npos);
+  body.path->keys = {{1.0, Vec3::Zero(), Vec3::Zero()}, {2.0, Vec3::Zero(), Vec3::UnitX()}};
   CHECK(w.add_body(body).ok());
   body.form = world::PlaneDescription{};
   CHECK(w.add_body(body).error().find("cannot turn") != std::string::npos);
