@@ -15,6 +15,7 @@ struct ContactSurface {
   double youngs_modulus = 70e9;  // Pa; 0 means rigid
   double poisson_ratio = 0.22;
   double radius = 0.0;  // m, of curvature; 0 means a plane
+  bool operator==(const ContactSurface&) const = default;
 };
 
 struct HertzContact {

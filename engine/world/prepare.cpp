@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kLikelySpeed = 3.0;  // m/s
 
+/// Unlike ones that are tried on a held body; the factors of one serve many.
+constexpr std::size_t kMostPartners = 16;
+
 /// Masses of bodies that may come flying later, as shares of the struck body's own.
 constexpr std::array<double, 3> kLikelyMasses{0.01, 0.1, 1.0};
 
@@ -29,6 +32,7 @@ struct Partner {
   double mass = 0.0;   // kg
   double speed = 0.0;  // m/s
   stress::ContactSurface surface;
+  bool operator==(const Partner&) const = default;
 };
 
 /// The vertex farthest along `direction`.
@@ -77,10 +81,13 @@ void add_trials(const body::Body& struck, const Fragile& fragile, std::span<cons
     return;
   }
   std::vector<Partner> partners;
-  for (const body::Body* mover : movers)
-    partners.push_back({mover->shape->mass,
-                        (mover->velocity - struck.velocity).norm(),
-                        {mover->young, mover->poisson, mover->shape->radius}});
+  for (const body::Body* mover : movers) {
+    const Partner partner{mover->shape->mass,
+                          (mover->velocity - struck.velocity).norm(),
+                          {mover->young, mover->poisson, mover->shape->radius}};
+    if (std::find(partners.begin(), partners.end(), partner) == partners.end()) partners.push_back(partner);
+    if (partners.size() == kMostPartners) break;
+  }
   if (partners.empty())
     for (const double share : kLikelyMasses)
       partners.push_back({share * struck.shape->mass, 0.0, stress::ContactSurface{}});
