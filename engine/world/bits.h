@@ -10,7 +10,8 @@
 
 namespace shatterbox::world {
 
-/// The whole state at the end of a step, chained to that of the step before.
+/// What moves at the end of a step (bodies, and what they, contacts and joints remember), chained to the hash
+/// of the step before, so that what decides later steps beside it shows in theirs.
 std::uint64_t hash_state(const MovingState& moving, long steps, std::uint64_t previous);
 
 /// Each body's quantities on their own, with what of the pictures of stress is known.

@@ -105,8 +105,8 @@ class World {
   /// From now on `ways` tells how bodies went through the last step. Changes no result.
   void keep_ways();
 
-  /// How long steps are asked whether to end: often, and from several threads at once. Where much breaks into
-  /// very much, a step can take minutes.
+  /// Asked whether to end: before each step; where something may break, in it too, often, and from several
+  /// threads at once. Where much breaks into very much, a step can take minutes.
   void set_stop(core::StopQuestion wants_to_stop);
 
   /// From now on the watcher is called behind every stage of a step; none: no longer. Changes no result.
