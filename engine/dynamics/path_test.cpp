@@ -210,7 +210,8 @@ std::vector<PathHit> PathTest::test_solids(const WorkPair& pair) const {
         find_first_touch({a, pose_on_way(a, begin), pose_on_way(a, end)},
                          {b, pose_on_way(b, begin), pose_on_way(b, end)}, least, pair.kept_gap);
     if (!touch.has_touched) continue;
-    for (const auto& c : touch.contacts) hits.push_back({begin + touch.time / parts, end, c, c.gap});
+    const double knot = touch.knot == 1.0 ? end : begin + touch.knot / parts;
+    for (const auto& c : touch.contacts) hits.push_back({begin + touch.time / parts, knot, c, c.gap});
   }
   return hits;
 }

@@ -18,6 +18,11 @@ struct Corners {
     place_at(way.body, way.from, from);
     place_at(way.body, way.to, to);
   }
+  int count() const { return static_cast<int>(from.size()); }
+  Vec3 at(int corner, double time) const {
+    const auto i = static_cast<std::size_t>(corner);
+    return (1.0 - time) * from[i] + time * to[i];
+  }
   double lowest(const Vec3& direction, double time) const {
     double result = 1e300;
     for (std::size_t i = 0; i < from.size(); ++i) {
@@ -41,6 +46,81 @@ struct Corners {
     return result;
   }
 };
+
+/// Three corners of a box's face and one of the other body, or its centre, at one time.
+struct FaceAndCorner {
+  Vec3 along, across, to_corner;  // m, from the first corner of the face: two of its sides, and to the corner
+};
+
+/// Whether that corner, on its straight way, stays at least `least` (m) above the plane of a face whose
+/// corners go straight as well: the sides' and the way's triple product is a cubic in time, and above its
+/// least Bernstein coefficient.
+bool stays_above(const FaceAndCorner& from, const FaceAndCorner& to, double least) {
+  const Vec3 first = from.along.cross(from.across), last = to.along.cross(to.across);
+  const Vec3 middle = 0.5 * (from.along.cross(to.across) + to.along.cross(from.across));
+  const double area = std::max({first.norm(), middle.norm(), last.norm()});
+  const double coefficients[] = {
+      first.dot(from.to_corner),
+      (first.dot(to.to_corner) + 2.0 * middle.dot(from.to_corner)) / 3.0,
+      (last.dot(from.to_corner) + 2.0 * middle.dot(to.to_corner)) / 3.0,
+      last.dot(to.to_corner),
+  };
+  return *std::min_element(std::begin(coefficients), std::end(coefficients)) >= least * area;
+}
+
+/// A face of a box that goes along with it as a separating plane: what turns about an edge comes nearer in
+/// every fixed direction, and not to the face.
+class MovingFace {
+ public:
+  /// The face that looks most in `direction` at that share of the way; `corners` are those of its body.
+  MovingFace(const SolidWay& way, const Corners& corners, const Vec3& direction, double time)
+      : corners_(corners) {
+    double best = 0.0;
+    for (const geometry::Triangle& t : way.body.collider->triangles) {
+      const Vec3 base = corners.at(t[0], time);
+      const Vec3 area = (corners.at(t[1], time) - base).cross(corners.at(t[2], time) - base);
+      const double facing = direction.dot(area.normalized());
+      if (facing <= best) continue;
+      best = facing;
+      face_ = &t;
+    }
+  }
+
+  /// False of what has no faces.
+  bool keeps_off(const Corners& other, double from, double to, double least) const {
+    if (face_ == nullptr) return false;
+    for (int i = 0; i < other.count(); ++i)
+      if (!stays_above(see(other, i, from), see(other, i, to), least)) return false;
+    return true;
+  }
+
+ private:
+  FaceAndCorner see(const Corners& other, int corner, double time) const {
+    const Vec3 base = corners_.at((*face_)[0], time);
+    return {corners_.at((*face_)[1], time) - base, corners_.at((*face_)[2], time) - base,
+            other.at(corner, time) - base};
+  }
+
+  const Corners& corners_;
+  const geometry::Triangle* face_ = nullptr;
+};
+
+/// Until which share of the way a face of either keeps the other off by `least` (m) beside its radius, from
+/// `time` on; `time` if not even for as long as `shortest`. `normal` is from b to a.
+double kept_off_until(const SolidWay& a, const Corners& corners_a, const SolidWay& b,
+                      const Corners& corners_b, const Vec3& normal, double time, double least,
+                      double shortest) {
+  constexpr int kHalvings = 12;
+  const MovingFace face_a(a, corners_a, -normal, time), face_b(b, corners_b, normal, time);
+  const double height = least + a.body.collider->radius + b.body.collider->radius;
+  double way = 1.0 - time;
+  for (int i = 0; i < kHalvings && way > shortest; ++i, way *= 0.5) {
+    const double end = i == 0 ? 1.0 : time + way;
+    if (face_a.keeps_off(corners_b, time, end, height) || face_b.keeps_off(corners_a, time, end, height))
+      return end;
+  }
+  return time;
+}
 
 /// Where the foremost corner of one meets the other, for touches in which no face is over the other's.
 Contact meet_at_corner(const SolidWay& a, const Corners& corners_a, const SolidWay& b,
@@ -73,6 +153,29 @@ double gap_at_end(const SolidWay& a, const SolidWay& b, const Contact& c) {
   return c.normal.dot(on_a - carry(b.body, c.on_b, b.body.start, b.to));
 }
 
+/// What touched comes apart again on its way: the contacts of where they are nearest from then on, which
+/// other corners and edges may have. What turns about an edge dips on it and is free at the end.
+void meet_where_nearest(const SolidWay& a, const SolidWay& b, double margin, double least,
+                        SolidTouch& touch) {
+  constexpr int kLooks = 16;
+  double nearest = 1e300;
+  for (int i = kLooks; i >= 1; --i) {
+    const double time = touch.time + (1.0 - touch.time) * i / kLooks;
+    Vec3 normal;
+    const double gap = collision::analytic_gap(*a.body.shape, blend(a.from, a.to, time), *b.body.shape,
+                                               blend(b.from, b.to, time), normal);
+    if (gap >= nearest) continue;
+    nearest = gap;
+    touch.knot = time;
+  }
+  const Pose pose_a = blend(a.from, a.to, touch.knot), pose_b = blend(b.from, b.to, touch.knot);
+  std::vector<Contact> contacts;
+  collision::find_analytic_contacts(*a.body.shape, pose_a, *b.body.shape, pose_b,
+                                    margin + std::max({0.0, least, nearest}), contacts);
+  for (Contact& c : contacts) see_from_start(a, pose_a, b, pose_b, c);
+  touch.contacts.insert(touch.contacts.end(), contacts.begin(), contacts.end());
+}
+
 }  // namespace
 
 SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, double margin) {
@@ -92,6 +195,13 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
     const double room = separation(time) - least;
     if (room >= 0.0 && separation(1.0) >= least) return result;
     const double closing = corners_a.fastest(-normal) + corners_b.fastest(normal);
+    const double until = kept_off_until(a, corners_a, b, corners_b, normal, time, least,
+                                        closing > 0.0 ? std::max(0.0, room / closing) : 0.0);
+    if (until == 1.0) return result;
+    if (until > time) {
+      time = until;
+      continue;
+    }
     if (room <= close_enough || closing <= 0.0 || i == 199) {
       // Corners that go straight touch where rigid bodies, which turn, may still be farther apart.
       collision::find_analytic_contacts(*a.body.shape, pose_a, *b.body.shape, pose_b,
@@ -99,15 +209,11 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
       if (result.contacts.empty())
         result.contacts.push_back(meet_at_corner(a, corners_a, b, corners_b, normal, time));
       for (Contact& c : result.contacts) see_from_start(a, pose_a, b, pose_b, c);
-      // What touched may have come apart again at the end, and other corners be too near along the same
-      // normal.
-      const auto is_open = [&](const Contact& c) { return gap_at_end(a, b, c) > least; };
-      if (time < 1.0 && std::all_of(result.contacts.begin(), result.contacts.end(), is_open)) {
-        result.contacts.push_back(meet_at_corner(a, corners_a, b, corners_b, normal, 1.0));
-        see_from_start(a, a.to, b, b.to, result.contacts.back());
-      }
       result.has_touched = true;
       result.time = time;
+      const auto is_open = [&](const Contact& c) { return gap_at_end(a, b, c) > least; };
+      if (time < 1.0 && std::all_of(result.contacts.begin(), result.contacts.end(), is_open))
+        meet_where_nearest(a, b, margin, least, result);
       return result;
     }
     time = std::min(1.0, time + 0.999 * room / closing);

@@ -1,5 +1,5 @@
 // When and where two solids (spheres, boxes) first touch on their way through a step, by conservative
-// advancement along separating directions of their straight vertex paths.
+// advancement: along separating directions that stand still, and with faces that go along with their bodies.
 #pragma once
 
 #include <vector>
@@ -18,6 +18,7 @@ struct SolidWay {
 struct SolidTouch {
   bool has_touched = false;
   double time = 1.0;                         // share of the way
+  double knot = 1.0;                         // the same, where the contacts are to be open
   std::vector<collision::Contact> contacts;  // seen from the start of the step; empty if they do not touch
 };
 

@@ -167,6 +167,40 @@ TEST_CASE("ten boxes placed exactly touching stand from the first step on") {
   }
 }
 
+TEST_CASE(
+    "a box placed touching on a table with its middle beyond the edge tips over it as one with a gap does") {
+  const auto tip = [](int rate, double gap, double speed) {
+    test::Scene scene;
+    scene.settings.time_step = 1.0 / rate;
+    auto table = test::make_box(Vec3(0.5, 0.05, 0.5), Vec3(-0.5, 0, 0));
+    table.motion = body::Motion::fixed;
+    table.inverse_mass = 0.0;
+    table.inverse_inertia.setZero();
+    scene.add(table);
+    scene.add(test::make_box(Vec3(0.05, 0.01, 0.025), Vec3(0.02, 0.06 + gap, 0)));
+    scene.bodies[1].velocity = Vec3(speed, 0, 0);
+    int cut = 0;
+    for (int i = 0; i < rate / 4; ++i) {
+      scene.step();
+      cut += scene.report.failsafe_steps;
+    }
+    CHECK(cut <= 1);
+    CHECK(scene.report.crossing_pairs == 0);
+    return scene.bodies[1];
+  };
+  for (const int rate : {60, 240, 960})
+    for (const double speed : {0.0, 0.3}) {
+      const body::Body usual = tip(rate, 5e-5, speed);
+      REQUIRE(usual.angular_velocity.z() < -5.0);
+      for (const double gap : {0.0, 1e-7, 1e-6, 5e-6}) {
+        CAPTURE(rate, speed, gap);
+        const body::Body touching = tip(rate, gap, speed);
+        CHECK(touching.angular_velocity.z() == Approx(usual.angular_velocity.z()).epsilon(0.1));
+        CHECK((touching.pose.translation - usual.pose.translation).norm() < 0.03);  // a step's fall
+      }
+    }
+}
+
 TEST_CASE("surfaces placed exactly in each other part without a push, and none hangs on the other") {
   struct Case {
     const char* name;
