@@ -91,7 +91,11 @@ std::optional<view::Moment> Projector::next() {
   const auto is_over = [&] {
     return frame > 0 && script_.clock().simulated_at(middle) > scene_.seconds * (1.0 + 1e-12);
   };
-  while (!is_over() && static_cast<double>(world.steps()) < steps_at(film) && !wants_to_stop_()) {
+  // Slow motion may begin before the end, and bring the frame back before it.
+  const auto may_go_on = [&] {
+    return !is_over() || (script_.may_change_speed() && world.steps() < last_step());
+  };
+  while (may_go_on() && static_cast<double>(world.steps()) < steps_at(film) && !wants_to_stop_()) {
     if (step(film)) recorder_.note_step(world);
   }
   if (is_over() || wants_to_stop_()) return std::nullopt;
@@ -104,9 +108,12 @@ std::optional<view::Moment> Projector::next() {
   return moment;
 }
 
+long Projector::last_step() const {
+  return static_cast<long>(scene_.seconds * scene_.world.steps_per_second + 0.5);
+}
+
 void Projector::finish() {
-  const auto last_step = static_cast<long>(scene_.seconds * scene_.world.steps_per_second + 0.5);
-  while (built_.world.steps() < last_step && !wants_to_stop_()) (void)step(1e300);
+  while (built_.world.steps() < last_step() && !wants_to_stop_()) (void)step(1e300);
   if (wants_to_stop_()) return;
   for (std::string& sentence : throws_.missed()) recorder_.record.warnings.push_back(std::move(sentence));
   for (const scene::Problem& doubt : find_coarse_solids(scene_, built_))

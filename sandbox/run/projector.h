@@ -49,6 +49,7 @@ class Projector {
   script::Sight look();
   /// The step border, in steps, of a moment of the film; whole where it is one.
   double steps_at(double film) const;
+  long last_step() const;
 
   const scene::SceneDescription& scene_;
   scene::BuiltScene& built_;

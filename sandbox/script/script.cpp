@@ -253,6 +253,12 @@ bool Script::is_over() const {
   return coming_.empty() && next_copy_ == copies_.size() && waiting_.empty();
 }
 
+bool Script::may_change_speed() const {
+  return std::any_of(coming_.begin(), coming_.end(), [this](std::size_t number) {
+    return std::holds_alternative<scene::Speed>(scene_.events[number].action);
+  });
+}
+
 void Script::bring_copies(scene::BuiltScene& built, std::vector<std::string>& faults) {
   for (; next_copy_ < copies_.size() && copies_[next_copy_].due <= built.world.steps(); ++next_copy_)
     waiting_.push_back(copies_[next_copy_]);

@@ -43,6 +43,9 @@ class Script {
   /// Whether nothing is left to come.
   bool is_over() const;
 
+  /// Whether the film may yet be slowed down or sped up.
+  bool may_change_speed() const;
+
   /// Events for the picture that were played since the last call.
   std::vector<scene::Cue> take_cues() { return std::exchange(cues_, {}); }
 

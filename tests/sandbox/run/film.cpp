@@ -42,6 +42,21 @@ TEST_CASE("slow motion makes the film longer, not the world, and gives the same 
   CHECK(fs::exists(folder / "m" / "frame_000047.obj"));
 }
 
+TEST_CASE("slow motion that begins in the last frame of a short scene is shown to its end") {
+  const Folder folder;
+  write_text(folder / "short.toml",
+             "[scene]\nseconds = 0.04\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.1\n"
+             "[[event]]\nat = 0.02\ndo = \"speed\"\nfactor = 0.01\n");
+  for (const std::string rate : {"30", "60", "120"}) {
+    REQUIRE(program(folder, "run short.toml --no-render --report r.json --fps " + rate).status == 0);
+    const auto report = read_json(folder / "r.json");
+    CAPTURE(rate);
+    // From the step at or behind 0.02 s on a hundredth of the speed.
+    CHECK(report["video_seconds"].get<double>() == Approx(0.0208 + 100.0 * (0.04 - 0.0208)).margin(0.05));
+    CHECK(report["simulated_seconds"].get<double>() == Approx(10.0 / 240.0));
+  }
+}
+
 TEST_CASE("plan tells what a scene needs and why, and the report what of it was used") {
   const Folder folder;
   write_text(folder / "small.toml", kSmallScene);
