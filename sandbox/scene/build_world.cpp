@@ -88,6 +88,18 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
                     body.name, grain, size, grain / kFinestGrain / solid.grading));
 }
 
+/// What can be a sheet as well, which needs no elements across its wall, in words; empty if it cannot.
+std::string describe_sheet_for(const BodyEntry& body, double wall) {
+  const MeshForm* form = find_mesh_form(body.form);
+  const char* what = nullptr;
+  if (std::holds_alternative<geometry::BottleSizes>(form->shape)) what = "a sheet (kind = \"shell\"";
+  if (std::holds_alternative<SlabShape>(form->shape)) what = "a sheet (kind = \"shell\", shape = \"pane\"";
+  if (std::holds_alternative<MeshFileShape>(form->shape))
+    what = "one side of its wall alone, as a sheet (kind = \"shell\"";
+  if (what == nullptr) return {};
+  return fmt::format(", and {}, thickness = {:.2g}) needs none across", what, wall);
+}
+
 /// Bent across one element it is too stiff. Who tells the size of elements has chosen, up to
 /// twice the wall.
 void note_thin_wall(const BodyEntry& body, const world::SolidDescription& solid,
@@ -97,9 +109,8 @@ void note_thin_wall(const BodyEntry& body, const world::SolidDescription& solid,
   if (wall >= (solid.element_size > 0.0 ? kThinnestTold : kThinnestWall) * size) return;
   notes.push_back(
       fmt::format("the wall of \"{}\" is {:.2g} m thick and its elements {:.2g} m: its stress is told too "
-                  "low; element_size "
-                  "= {:.2g} is finer, and a sheet (kind = \"shell\", thickness = {:.2g}) needs none across",
-                  body.name, wall, size, wall / kThinnestWall, wall));
+                  "low; element_size = {:.2g} is finer{}",
+                  body.name, wall, size, wall / kThinnestWall, describe_sheet_for(body, wall)));
 }
 
 void measure(const world::SolidDescription& solid, BodyPlan& plan) {

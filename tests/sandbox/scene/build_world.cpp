@@ -141,6 +141,12 @@ TEST_CASE("walls of hardly an element are noted, and closed meshes of files that
   CHECK(notes_of(vase + "element_size = 0.014\n").find("element_size = 0.00") != std::string::npos);
   CHECK(notes_of(vase + "element_size = 0.011\n").find("the wall of") == std::string::npos);
   CHECK(notes_of(vase + "breakable = false\n").find("the wall of") == std::string::npos);
+  // What is advised is not refused: no sheet is a vase, a pane and a bottle are.
+  CHECK(notes_of(vase).find("a sheet") == std::string::npos);
+  CHECK(notes_of("kind = \"solid\"\nshape = \"slab\"\nsize = [1, 0.01, 0.3]\n").find("shape = \"pane\"") !=
+        std::string::npos);
+  CHECK(notes_of("kind = \"solid\"\nshape = \"bottle\"\n").find("a sheet (kind = \"shell\"") !=
+        std::string::npos);
   CHECK(notes_of("kind = \"solid\"\nshape = \"slab\"\nsize = [1, 0.2, 0.3]\n").find("the wall of") ==
         std::string::npos);
   // A plate of two sides, and a cube.
