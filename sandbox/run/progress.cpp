@@ -26,6 +26,11 @@ double remaining_seconds(const std::deque<std::pair<double, int>>& history, int 
   return (total - done) * (now - since.first) / (done - since.second);
 }
 
+int reached(std::span<const int> shown, int finished) {
+  const std::size_t both = std::min(shown.size(), static_cast<std::size_t>(std::max(finished, 0)));
+  return both > 0 ? shown[both - 1] : 0;
+}
+
 Progress::Progress(int total, bool is_bar, std::chrono::milliseconds patience)
     : total_(total),
       is_bar_(is_bar),
@@ -55,6 +60,7 @@ void Progress::wait_for_news(const std::stop_token& stops) {
 
 void Progress::show(int done, const std::string& note) {
   if (total_ <= 0) return;
+  done = std::clamp(done, 0, total_);
   const std::lock_guard lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - start_).count();
@@ -74,7 +80,7 @@ void Progress::say(Time now, const std::string& left, const std::string& note) {
   const int percent = 100 * done_ / total_;
   if (is_bar_) {
     constexpr int kWidth = 30;
-    const int filled = kWidth * std::min(done_, total_) / total_;
+    const int filled = kWidth * done_ / total_;
     fmt::print(stderr, "\r\x1b[K[{}{}] {:3} %{}  {}", std::string(static_cast<std::size_t>(filled), '#'),
                std::string(static_cast<std::size_t>(kWidth - filled), '.'), percent, left, note);
   } else {

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -20,7 +21,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` of the total are finished; `note` is shown behind.
+  /// `done` of the total are finished, more than which none are; `note` is shown behind.
   void show(int done, const std::string& note);
 
   /// Removes the bar; nothing is said any more.
@@ -49,6 +50,11 @@ class Progress {
 /// Seconds still needed: from the rate of the last quarter of what is done, so that a run that has become
 /// slower says so. Negative while nothing can be said (less than a twentieth or half a second done).
 double remaining_seconds(const std::deque<std::pair<double, int>>& history, int total);
+
+/// How far a film is whose frames were played so far that it is at `shown` (ascending) after each: after the
+/// last of those that are finished, too. `finished` may be more of them, which an earlier run has left and
+/// which are to be played again, or negative, while the shots before this one are drawn.
+int reached(std::span<const int> shown, int finished);
 
 /// Whether stderr is a terminal.
 bool stderr_is_terminal();

@@ -67,9 +67,8 @@ std::string play(Job& job, Recorder& recorder, Film& film, int first, int shot) 
     shown.push_back(showing.shown());
     const bool is_whole_film = painter != nullptr && job.options.stills.empty();
     const int finished = is_whole_film ? painter->finished_frames() - first : frame + 1;
-    progress.show(
-        finished > 0 ? shown[static_cast<std::size_t>(finished) - 1] : 0,
-        fmt::format("{:.2f} s, {} bodies", showing.world().time(), showing.world().bodies().size()));
+    progress.show(reached(shown, finished), fmt::format("{:.2f} s, {} bodies", showing.world().time(),
+                                                        showing.world().bodies().size()));
   }
   showing.finish();
   return exports.close();

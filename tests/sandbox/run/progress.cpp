@@ -48,6 +48,28 @@ TEST_CASE("a frame that takes long is told, and who is done says nothing any mor
   CHECK(listen([] { Progress(4, false).show(1, "quick"); }).empty());
 }
 
+TEST_CASE("a bar lies between nothing and all, whatever it is told") {
+  const std::string said = listen([] {
+    Progress progress(4, true, std::chrono::hours(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    progress.show(-2000000000, "below");
+    progress.show(2000000000, "beyond");
+  });
+  INFO(said);
+  CHECK(said.find("[" + std::string(30, '.') + "]   0 %  below") != std::string::npos);
+  CHECK(said.find("[" + std::string(30, '#') + "] 100 %  beyond") != std::string::npos);
+}
+
+TEST_CASE("a film is as far as its last frame that was played and is finished") {
+  const std::vector<int> shown{1, 2, 4, 8};
+  CHECK(reached(shown, 3) == 4);
+  CHECK(reached(shown, 4) == 8);
+  CHECK(reached(shown, 60) == 8);  // an earlier run has drawn sixty, and four of them are played again
+  CHECK(reached(shown, 0) == 0);
+  CHECK(reached(shown, -5) == 0);  // the shots before this one are still being drawn
+  CHECK(reached({}, 60) == 0);
+}
+
 TEST_CASE("a steady run says what is left") {
   std::deque<std::pair<double, int>> history;
   for (int i = 1; i <= 50; ++i) history.emplace_back(0.1 * i, i);

@@ -88,6 +88,27 @@ TEST_CASE("a run that is killed again and again gets to its end") {
   CHECK(program(folder, "diff whole f --tolerance exact").status == 0);
 }
 
+TEST_CASE("the bar of a run that goes on tells how far the film is, from its start to its end") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string arguments =
+      "run good.toml --seconds 30 --size 160x90 -o v.mp4 --set scene.sleep=false --report r.json --resume";
+  cut_short(folder, arguments, "v.mp4.checkpoint", "-9");
+  const Outcome resumed = shell(folder, "script -qec '" SHATTERBOX_PROGRAM " " + arguments + "' /dev/null");
+  INFO(resumed.out);
+  CHECK(resumed.status == 0);
+  CHECK(read_json(folder / "r.json").value("kept_frames", 0) > 0);
+  int percent = 0, told = 0;
+  for (std::size_t at = resumed.out.find("] "); at != std::string::npos;
+       at = resumed.out.find("] ", at + 1), ++told) {
+    const int next = std::atoi(resumed.out.c_str() + at + 2);
+    CHECK(next >= percent);
+    percent = next;
+  }
+  CHECK(told > 0);
+  CHECK(percent <= 100);
+}
+
 TEST_CASE("what was interrupted with Ctrl-C goes on too") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
