@@ -26,7 +26,8 @@ class WorkFolder {
   std::string fault_;
 };
 
-/// Starts this program in a folder; what it says goes to `log`. Its process, negative if there is none.
+/// Starts this program in a folder; what it says goes to `log`. Its process; negative if there is none, and
+/// `errno` says why.
 /// Ctrl-C at the terminal does not reach it; when who started it is killed, it ends in order.
 pid_t start_again(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const std::filesystem::path& log);

@@ -4,8 +4,10 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -98,7 +100,14 @@ void run_rows(std::vector<Row>& rows, int jobs, bool resumes) {
       if (row.status >= 0) continue;
       std::vector<std::string> words = row.words;
       if (resumes) words.push_back("--resume");
-      running[start_again(words, row.folder, row.folder / "log.txt")] = &row;
+      const pid_t child = start_again(words, row.folder, row.folder / "log.txt");
+      if (child > 0) {
+        running[child] = &row;
+        continue;
+      }
+      row.status = kFailed;  // and not done: --resume tries again
+      fmt::print(stderr, "{} of {}: {} cannot be started: {}\n", ++count, rows.size(), row.run.name,
+                 std::strerror(errno));
     }
     if (is_interrupted() && !is_ending) {  // each ends in order, and goes on with --resume
       for (const auto& [child, row] : running) kill(child, SIGINT);
@@ -107,12 +116,12 @@ void run_rows(std::vector<Row>& rows, int jobs, bool resumes) {
     }
     for (auto child = running.begin(); child != running.end();) {
       int status = 0;
-      if (child->first > 0 && waitpid(child->first, &status, WNOHANG) == 0) {
+      if (waitpid(child->first, &status, WNOHANG) == 0) {
         ++child;
         continue;
       }
       Row& row = *child->second;
-      finish(row, child->first > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : kFailed);
+      finish(row, WIFEXITED(status) ? WEXITSTATUS(status) : kFailed);
       fmt::print(stderr, "{} of {}: {}{}\n", ++count, rows.size(), row.run.name,
                  row.status == kDone ? ""
                                      : fmt::format(" ended with status {}: see {}", row.status,

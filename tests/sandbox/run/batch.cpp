@@ -1,11 +1,62 @@
 // Batches: what they run, and what they tell of it.
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <cerrno>
+#include <cstddef>
 
 #include "sandbox/run/batch_plan.h"
 #include "tests/sandbox/run/running.h"
 
 using namespace shatterbox::sandbox;
 using namespace shatterbox::sandbox::run;
+
+namespace {
+
+/// From now on this process starts threads but no other process, as at the limit of their number (which root
+/// does not have). False where the system lets nobody ask for that.
+bool forbid_processes() {
+  const auto jump = [](std::uint16_t code, std::uint32_t value, std::uint8_t yes, std::uint8_t no) {
+    return sock_filter{code, yes, no, value};
+  };
+  const auto load = [&](std::size_t offset) {
+    return jump(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset), 0, 0);
+  };
+  const auto answer = [&](std::uint32_t value) { return jump(BPF_RET | BPF_K, value, 0, 0); };
+  sock_filter rules[] = {load(offsetof(seccomp_data, nr)),
+                         jump(BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 0, 1),
+                         answer(SECCOMP_RET_ERRNO | ENOSYS),  // its flags are out of sight: clone instead
+                         jump(BPF_JMP | BPF_JEQ | BPF_K, SYS_clone, 0, 3),
+                         load(offsetof(seccomp_data, args)),
+                         jump(BPF_JMP | BPF_JSET | BPF_K, CLONE_THREAD, 1, 0),
+                         answer(SECCOMP_RET_ERRNO | EAGAIN),
+                         answer(SECCOMP_RET_ALLOW)};
+  const sock_fprog program{static_cast<unsigned short>(std::size(rules)), rules};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+/// Runs the program with these arguments where it cannot start any other; status 77 if that cannot be.
+Outcome program_alone(const Folder& folder, const std::string& arguments) {
+  const std::string command = "cd '" + folder.path().string() + "' && exec " SHATTERBOX_PROGRAM " " +
+                              arguments + " >out.txt 2>err.txt </dev/null";
+  const pid_t child = fork();
+  if (child == 0) {
+    if (forbid_processes()) execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    _exit(77);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(folder / "out.txt"),
+          read_text(folder / "err.txt")};
+}
+
+}  // namespace
 
 TEST_CASE("values of a sweep are parted by commas, but not within brackets and quotes") {
   scene::Problems problems;
@@ -111,6 +162,30 @@ TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
   CHECK(program(folder, "batch reel --sweep reel=1").err.find("no such scene") == std::string::npos);
   CHECK(program(folder, "batch good.toml --sweep radius=1").status == 2);
   CHECK(program(folder, "batch good.toml -o good.toml").status == 2);
+}
+
+TEST_CASE("what a batch cannot start is told at once, and is not done") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string batch =
+      "batch good.toml -o out --jobs 2 --sweep scene.seed=1,2 --resume -- --no-render --seconds 0.1";
+  const Outcome outcome = program_alone(folder, batch);
+  if (outcome.status == 77) {
+    WARN("no process can be forbidden to start others here");
+    return;
+  }
+  INFO(outcome.err);
+  CHECK(outcome.status == 3);
+  for (const char* words :
+       {"1 of 2: good_scene.seed=1 cannot be started: ", "2 of 2: good_scene.seed=2 cannot be started: "})
+    CHECK(outcome.err.find(words) != std::string::npos);
+  const auto table = read_json(folder / "out/summary.json");
+  REQUIRE(table["rows"].size() == 2);
+  CHECK(table["rows"][0][2] == 3);
+  CHECK(table["rows"][1][2] == 3);
+  const Outcome again = program(folder, batch);
+  INFO(again.err);
+  CHECK(again.status == 0);
 }
 
 TEST_CASE("a batch says what is wrong with its words, and with which") {
