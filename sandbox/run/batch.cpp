@@ -42,13 +42,27 @@ bool has_word(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// Options and their values as words of their own: `--threads=2` and `-oFILE` are two each.
+std::vector<std::string> parted(const std::vector<std::string>& words) {
+  std::vector<std::string> parts;
+  for (const std::string& word : words) {
+    const bool is_long = word.rfind("--", 0) == 0;
+    const std::size_t sign = is_long ? word.find('=') : std::string::npos;
+    const std::size_t end = !is_long && word.rfind("-o", 0) == 0 ? 2 : sign;
+    parts.push_back(word.substr(0, end));
+    if (end < word.size()) parts.push_back(word.substr(end + (is_long ? 1 : 0)));
+  }
+  return parts;
+}
+
 /// The run works in its own folder: files named on the command line of the batch are found from there too.
 std::vector<std::string> words_of(const BatchRun& run, const BatchOptions& options, int jobs) {
   std::vector<std::string> words{"run", run.scene, "--report", "report.json"};
   for (const auto& [key, value] : run.values) words.insert(words.end(), {"--set", key + "=" + value});
-  for (std::size_t i = 0; i < options.run_words.size(); ++i) {
-    const bool is_file = i > 0 && options.run_words[i - 1] == "--script";
-    words.push_back(is_file ? fs::absolute(options.run_words[i]).string() : options.run_words[i]);
+  const std::vector<std::string> own = parted(options.run_words);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const bool is_file = i > 0 && own[i - 1] == "--script";
+    words.push_back(is_file ? fs::absolute(own[i]).string() : own[i]);
   }
   if (!has_word(words, "--no-render") && !has_word(words, "-o"))
     words.insert(words.end(), {"-o", "film.mp4"});

@@ -164,6 +164,22 @@ TEST_CASE("batch: one table of all runs, and what was cut short goes on") {
   CHECK(program(folder, "batch good.toml -o good.toml").status == 2);
 }
 
+TEST_CASE("a batch reads the words of its runs as they do: --threads=2, -oFILE") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  folder.write("throws.toml", "[[event]]\nat = 0.05\ndo = \"nothing_known\"\n");
+  const Outcome outcome =
+      program(folder, "batch good.toml -o out -- --seconds=0.1 --size=64x48 --threads=1 -ofilm.mkv");
+  INFO(outcome.err << read_text(folder / "out/good/log.txt"));
+  CHECK(outcome.status == 0);
+  CHECK(fs::exists(folder / "out/good/film.mkv"));
+  CHECK_FALSE(fs::exists(folder / "out/good/film.mp4"));
+  CHECK(read_json(folder / "out/good/report.json")["threads"] == 1);
+  // The script is found, and read: it is the one that is wrong.
+  CHECK(program(folder, "batch good.toml -o two -- --no-render --script=throws.toml").status == 2);
+  CHECK(read_text(folder / "two/good/log.txt").find("throws.toml:3") != std::string::npos);
+}
+
 TEST_CASE("what a batch cannot start is told at once, and is not done") {
   const Folder folder;
   folder.write("good.toml", kSmallScene);
