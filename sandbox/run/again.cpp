@@ -76,9 +76,7 @@ pid_t start_again(const std::vector<std::string>& arguments, const fs::path& fol
   });
 }
 
-int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
-  const pid_t child = start(arguments, [&log] { say_to(log); });
-  if (child < 0) return kFailed;
+int wait_again(pid_t child) {
   int status = 0;
   bool is_told = false;
   for (pid_t ended = 0; ended == 0;) {
@@ -91,6 +89,11 @@ int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
     if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
+}
+
+int run_again(const std::vector<std::string>& arguments, const fs::path& log) {
+  const pid_t child = start(arguments, [&log] { say_to(log); });
+  return child > 0 ? wait_again(child) : kFailed;
 }
 
 }  // namespace shatterbox::sandbox::run

@@ -32,6 +32,9 @@ class WorkFolder {
 pid_t start_again(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const std::filesystem::path& log);
 
+/// Waits for such a process. Its exit status. When this process is interrupted, it is too.
+int wait_again(pid_t child);
+
 /// Runs this program with these arguments. Its exit status; what it says goes to `log`. When this process is
 /// interrupted, it is too.
 int run_again(const std::vector<std::string>& arguments, const std::filesystem::path& log);

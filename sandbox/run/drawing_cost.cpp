@@ -1,12 +1,11 @@
 #include "sandbox/run/drawing_cost.h"
 
-#include <sys/wait.h>
-
 #include <fmt/format.h>
 
 #include "sandbox/report/text_file.h"
 #include "sandbox/run/again.h"
 #include "sandbox/run/interrupt.h"
+#include "sandbox/run/options.h"
 
 namespace shatterbox::sandbox::run {
 
@@ -17,8 +16,7 @@ namespace {
 bool draw(const fs::path& folder, const std::string& quality, const std::string& report) {
   const pid_t child = start_again({"render", kGalleryRecording, "--quality", quality, "--report", report},
                                   folder, folder / "drawing.txt");
-  int status = 0;
-  return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return child > 0 && wait_again(child) == kDone;
 }
 
 }  // namespace
@@ -38,7 +36,7 @@ std::vector<DrawingCost> measure_drawing(const fs::path& folder) {
         {quality, median > 0.0 ? 1e3 / median : 0.0, times["render"].value("max", 0.0), times["passes"]});
   }
   std::error_code ignored;
-  fs::remove(folder / kGalleryRecording, ignored);
+  if (!is_interrupted()) fs::remove(folder / kGalleryRecording, ignored);
   return costs;
 }
 

@@ -9,7 +9,7 @@
 
 namespace shatterbox::sandbox::run {
 
-/// The recording in a gallery's folder of a run; gone when it is measured.
+/// The recording in a gallery's folder of a run; gone when it is measured, kept where Ctrl-C broke that off.
 inline constexpr const char* kGalleryRecording = "film.rec";
 
 struct DrawingCost {

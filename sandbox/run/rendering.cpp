@@ -208,12 +208,13 @@ std::optional<std::pair<int, int>> parse_frames(const std::string& text, int cou
 }
 
 int render_recording(const RenderOptions& options) {
-  catch_interrupts();
+  heed_interrupts();
   scene::Problems problems;
   std::pair<int, int> range;
   const auto start = core::Clock::now();
   const std::unique_ptr<RecordingReader> reader = open_recording(options, range, problems);
   if (!reader) return refuse(problems);
+  catch_interrupts();
   Outputs outputs;
   check_outputs(options, outputs, problems);
   const PainterSettings settings = painter_settings(options, reader->settings(), problems);

@@ -232,6 +232,26 @@ TEST_CASE("Ctrl-C ends a batch in order, and it goes on where it was") {
     CHECK(count_frames(folder, std::string("out/good_scene.seed=") + seed + "/film.mp4") == 300);
 }
 
+TEST_CASE("Ctrl-C ends what a gallery draws again in order, and it is drawn the next time") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const std::string batch =
+      "batch good.toml -o out --gallery --resume -- --seconds 2 --size 640x360 --set scene.sleep=false";
+  const Outcome cut =
+      shell(folder, std::string(SHATTERBOX_PROGRAM " ") + batch +
+                        " & p=$!; for i in $(seq 1200); do [ -e out/good/drawing.txt ] && break; sleep 0.05; "
+                        "done; kill -INT $p; wait $p");
+  INFO(cut.out << cut.err);
+  CHECK(cut.status == 3);
+  const fs::path drawn = folder / "out/good/drawing_preview.json";
+  CHECK((!fs::exists(drawn) || read_json(drawn)["interrupted"] == true));
+  CHECK(fs::exists(folder / "out/good/film.rec"));
+  REQUIRE(program(folder, batch).status == 0);
+  CHECK_FALSE(fs::exists(folder / "out/good/film.rec"));
+  CHECK(read_json(drawn)["interrupted"] == false);
+  CHECK(read_text(folder / "out/index.html").find("drawn in full") != std::string::npos);
+}
+
 TEST_CASE("a gallery shows three pictures of each film, its goal and its numbers") {
   const Folder folder;
   folder.write("balls.toml", kSmallScene);
