@@ -38,6 +38,7 @@ struct RunRecord {
   int steps_per_second = 240, frames_per_second = 60;
   double simulated_seconds = 0.0, wall_seconds = 0.0, asked_seconds = 0.0;
   bool is_interrupted = false;
+  bool goes_on = false;  // with --resume, if it was interrupted
   std::uint64_t state_hash = 0;
   std::vector<std::uint64_t> frame_hashes;
   int kept_frames = 0;  // of these: drawn by an earlier run, which was cut short

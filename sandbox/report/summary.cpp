@@ -228,8 +228,8 @@ std::string audit_line(const RunRecord& record) {
 std::string make_summary(const RunRecord& record) {
   std::string text;
   if (record.is_interrupted) {
-    text += fmt::format("interrupted at {:.2f} of {:g} s; with --resume it goes on\n",
-                        record.simulated_seconds, record.asked_seconds);
+    text += fmt::format("interrupted at {:.2f} of {:g} s{}\n", record.simulated_seconds, record.asked_seconds,
+                        record.goes_on ? "; with --resume it goes on" : "");
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + dent_lines(record) +
           joint_line(record) + time_lines(record) + crossing_line(record) + parted_line(record) +

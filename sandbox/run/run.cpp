@@ -209,6 +209,8 @@ int play_all(std::vector<Shot>& shots) {
   if (recording && fault.empty()) fault = recording->close();
   if (fault.empty() && is_interrupted()) fault = film.checkpoint.save(film.screen.painter);
   if (fault.empty() && !is_interrupted()) film.checkpoint.discard();
+  const bool goes_on = fault.empty() && options.compare.empty() && !film.checkpoint.file().empty();
+  for (Shot& shot : shots) shot.recorder.record.goes_on = goes_on;
   return conclude(shots, options, std::move(fault));
 }
 

@@ -113,6 +113,15 @@ TEST_CASE("the audit's findings are in the report and in the closing words") {
   CHECK(text.find("cup (7) and plate (8)") != std::string::npos);
 }
 
+TEST_CASE("that an interrupted run goes on is said of one that does") {
+  RunRecord record = some_record();
+  record.is_interrupted = true;
+  CHECK(make_summary(record).find("interrupted at") == 0);
+  CHECK(make_summary(record).find("--resume") == std::string::npos);
+  record.goes_on = true;
+  CHECK(make_summary(record).find("; with --resume it goes on\n") != std::string::npos);
+}
+
 TEST_CASE("numbers that are not finite become null, not broken JSON") {
   RunRecord record = some_record();
   record.world.contact.least_gap = std::numeric_limits<double>::infinity();

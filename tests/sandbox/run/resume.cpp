@@ -131,6 +131,25 @@ TEST_CASE("what was interrupted with Ctrl-C goes on too") {
   CHECK(count_frames(folder, "v.mp4") == 480);
 }
 
+TEST_CASE("only what --resume takes up again says that it does") {
+  const Folder folder;
+  folder.write("good.toml", kSmallScene);
+  const auto cut = [&folder](const std::string& arguments) {
+    return shell(folder, "timeout -s INT 2 " SHATTERBOX_PROGRAM
+                         " run good.toml --seconds 60000 --set scene.sleep=false " +
+                             arguments)
+        .out;
+  };
+  const std::string words = "; with --resume it goes on";
+  CHECK(cut("--no-render --report r.json").find(words) != std::string::npos);
+  for (const char* arguments : {"--no-render", "--size 64x48 --compare balls.radius=0.05,0.04 -o c.mp4"}) {
+    const std::string said = cut(arguments);
+    INFO(said);
+    CHECK(said.find("interrupted at") != std::string::npos);
+    CHECK(said.find(words) == std::string::npos);
+  }
+}
+
 TEST_CASE("Ctrl-C breaks off a step that takes seconds and the run goes on to the same end", "[.]") {
   const Folder folder;
   std::string scene = kBreakingScene;
