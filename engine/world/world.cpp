@@ -187,8 +187,7 @@ StressPicture World::stress_picture(body::BodyId id) const {
   picture.strength = material::borne_tension(fragile->second->material());
   const auto stress = state_->element_stress.find(id);
   if (stress == state_->element_stress.end() || !stress->second) return picture;
-  for (const int element : body->shape->triangle_elements)
-    picture.triangle_stress.push_back((*stress->second)[static_cast<std::size_t>(element)]);
+  picture.triangle_stress = find_surface_stress(*body->shape, *fragile->second, *stress->second);
   return picture;
 }
 

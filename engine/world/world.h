@@ -20,6 +20,7 @@
 #include "engine/world/moment.h"
 #include "engine/world/report.h"
 #include "engine/world/settings.h"
+#include "engine/world/stress_picture.h"
 
 namespace shatterbox::dynamics {
 struct ContactReport;
@@ -33,13 +34,6 @@ struct JointVerdict;
 struct MovingState;
 struct PartBegin;
 struct StepBegin;
-
-/// The last evaluated stress of a shell, for pictures: greatest principal stress over both faces and the
-/// event, Pa.
-struct StressPicture {
-  std::vector<double> triangle_stress;  // per triangle of the shape's surface, Pa; empty: never evaluated
-  double strength = 0.0;                // Pa
-};
 
 /// Where a body came from.
 struct Ancestry {

@@ -43,7 +43,7 @@ struct GrainMesh {
 std::optional<GrainMesh> make_grain_mesh(const body::Shape& shape, const render::Mesh& mesh,
                                          std::uint64_t id);
 
-/// Stress in MPa at the vertices of a shell: the mean of the triangles about each.
+/// Stress in MPa at the vertices of a shape's surface: the mean of the triangles about each.
 std::shared_ptr<const std::vector<float>> vertex_stress(const body::Shape& shape,
                                                         const std::vector<double>& triangle_stress);
 

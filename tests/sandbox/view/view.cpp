@@ -164,6 +164,61 @@ TEST_CASE("a light preset is a sun with a sky and a backdrop that single keys ov
   }
 }
 
+TEST_CASE("the overlay stress shows what a sheet and a solid bore that hold") {
+  const auto reading = scene::read(R"(
+[[body]]
+kind = "shell"
+shape = "pane"
+width = 0.4
+height = 0.4
+thickness = 0.01
+edge_length = 0.05
+rotation = [90, 0, 0]
+position = [0, 1, 0]
+material = "glass"
+support = "edge"
+[[body]]
+kind = "sphere"
+radius = 0.01
+position = [0, 1.02, 0]
+velocity = [0, -3, 0]
+[[body]]
+kind = "solid"
+shape = "slab"
+size = [0.4, 0.05, 0.4]
+element_size = 0.03
+position = [2, 1, 0]
+material = "glass"
+support = {box = [[-1, -1, -1], [1, -0.024, 1]]}
+[[body]]
+kind = "sphere"
+radius = 0.01
+position = [2.05, 1.04, 0.02]
+velocity = [0, -3, 0]
+[render]
+overlay = "stress"
+)");
+  auto built = build(reading);
+  view::View view(*reading.scene, *built);
+  for (int step = 0; step < 48; ++step) built->world.step();
+  REQUIRE(built->world.bodies().size() == 4);  // nothing broke
+  const render::Frame frame = view.make_frame();
+  REQUIRE(frame.draws.size() == 4);
+  for (const std::size_t i : {0U, 2U}) {
+    INFO(i);
+    const body::Body& body = built->world.bodies()[i];
+    const world::StressPicture picture = built->world.stress_picture(body.id);
+    REQUIRE(picture.triangle_stress.size() == body.shape->surface.triangles.size());
+    const double most = *std::max_element(picture.triangle_stress.begin(), picture.triangle_stress.end());
+    CHECK(most > 0.0);
+    CHECK(most < picture.strength);
+    REQUIRE(frame.draws[i].scalars != nullptr);
+    const std::vector<float>& shown = *frame.draws[i].scalars;
+    CHECK(shown.size() == frame.draws[i].mesh->positions.size());
+    CHECK(*std::max_element(shown.begin(), shown.end()) > 0.0F);
+  }
+}
+
 TEST_CASE("the overlay level_set cuts solids open towards the eye and shows their distance to the surface") {
   const auto reading = scene::read(
       "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.4, 0.2, 0.6]\nposition = [0, 1, 0]\nbreakable "
