@@ -57,7 +57,7 @@ Vec3 angular_momentum(const Body& body) {
 Body* find_body(std::vector<Body>& bodies, BodyId id) {
   return find_in(bodies, id);
 }
-const Body* find_body(const std::vector<Body>& bodies, BodyId id) {
+const Body* find_body(std::span<const Body> bodies, BodyId id) {
   return find_in(bodies, id);
 }
 

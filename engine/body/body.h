@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,6 @@ Vec3 angular_momentum(const Body& body);
 
 /// The body with that id in `bodies` (ascending ids), or nothing. Pointers are good until the list changes.
 Body* find_body(std::vector<Body>& bodies, BodyId id);
-const Body* find_body(const std::vector<Body>& bodies, BodyId id);
+const Body* find_body(std::span<const Body> bodies, BodyId id);
 
 }  // namespace shatterbox::body

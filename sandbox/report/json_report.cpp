@@ -175,6 +175,14 @@ Json times(const RunRecord& record) {
           {"phases", phases}};
 }
 
+Json make_trace(const Trace& trace) {
+  Json json = {{"quantities", trace_quantities()}, {"names", Json::object()}, {"rows", Json::array()}};
+  for (const auto& [id, name] : trace.names) json["names"][std::to_string(id)] = name;
+  for (const TraceRow& row : trace.rows)
+    json["rows"].push_back({row.step, row.part, row.parts, row.pass, row.stage, row.changed});
+  return json;
+}
+
 }  // namespace
 
 std::string hex_digits(std::uint64_t number) {
@@ -184,14 +192,6 @@ std::string hex_digits(std::uint64_t number) {
 Json make_spread(const std::vector<double>& values) {
   const Spread s = spread_of(values);
   return {{"median", number(s.median)}, {"p95", number(s.p95)}, {"max", number(s.max)}};
-}
-
-Json make_trace(const Trace& trace) {
-  Json json = {{"quantities", trace_quantities()}, {"names", Json::object()}, {"rows", Json::array()}};
-  for (const auto& [id, name] : trace.names) json["names"][std::to_string(id)] = name;
-  for (const TraceRow& row : trace.rows)
-    json["rows"].push_back({row.step, row.part, row.parts, row.pass, row.stage, row.changed});
-  return json;
 }
 
 Json make_json(const RunRecord& record) {

@@ -125,7 +125,7 @@ std::vector<std::pair<const Body*, const Body*>> near_pairs(std::span<const Body
       const Body& b = *others[j];
       if (low(&b) > a.pose.translation.x() + a.shape->bounding_radius) break;
       const double reach = a.shape->bounding_radius + b.shape->bounding_radius;
-      const bool can_meet = (a.is_dynamic() || b.is_dynamic()) && (a.group < 0 || a.group != b.group);
+      const bool can_meet = (a.is_dynamic() || b.is_dynamic()) && a.collides_with(b);
       if (can_meet && (a.pose.translation - b.pose.translation).norm() < reach) pairs.emplace_back(&a, &b);
     }
   }
@@ -235,8 +235,7 @@ void doubt_camera(const scene::SceneDescription& scene, const scene::BuiltScene&
       const bool is_room = body.shape->kind == ShapeKind::shell && !scene::can_break(entry);
       const bool is_wall = body.shape->kind == ShapeKind::plane && !view::is_drawn_as_ground(body);
       if (is_room || is_wall || entry.look.name == "hidden") continue;
-      if (!is_at_start && (body.is_dynamic() || body.is_driven()) && !body.script.path) continue;
-      if (!is_at_start && body.script.path) continue;
+      if (!is_at_start && (body.is_dynamic() || body.is_driven() || body.script.path)) continue;
       if (!script::holds(body, place)) continue;
       const bool is_floor = body.shape->kind == ShapeKind::plane;
       scene::book(

@@ -86,8 +86,8 @@ bool is_of(const scene::BuiltScene& built, body::BodyId id, int entry) {
 }
 
 std::string name_of(std::span<const body::Body> bodies, body::BodyId id) {
-  const auto body = std::find_if(bodies.begin(), bodies.end(), [id](const auto& b) { return b.id == id; });
-  return body == bodies.end() ? kBlast : body->name;
+  const body::Body* body = body::find_body(bodies, id);
+  return body == nullptr ? kBlast : body->name;
 }
 
 /// The hardest meeting of body number `tried`, which is whole, with anything else in the last step.

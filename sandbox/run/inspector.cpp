@@ -1,7 +1,5 @@
 #include "sandbox/run/inspector.h"
 
-#include <algorithm>
-
 #include "engine/core/clock.h"
 
 namespace shatterbox::sandbox::run {
@@ -11,10 +9,8 @@ namespace {
 using core::Clock;
 
 std::string name_of(const world::World& world, body::BodyId id) {
-  const auto bodies = world.bodies();
-  const auto found = std::lower_bound(bodies.begin(), bodies.end(), id,
-                                      [](const body::Body& b, body::BodyId i) { return b.id < i; });
-  return found != bodies.end() && found->id == id ? found->name : std::string();
+  const body::Body* found = body::find_body(world.bodies(), id);
+  return found != nullptr ? found->name : std::string();
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include "sandbox/run/projector.h"
-#include "sandbox/run/doubts.h"
 
 #include <cmath>
 

@@ -1,7 +1,5 @@
 #include "sandbox/run/throws.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace shatterbox::sandbox::run {
@@ -17,14 +15,9 @@ void Throws::look(const world::World& world) {
     for (const body::LoggedImpulse& hit : world.impulse_log()) {
       const bool is_a = is_of(hit.body_a), is_b = is_of(hit.body_b);
       if (is_a == is_b) continue;
-      const body::BodyId id = is_a ? hit.body_b : hit.body_a;
-      const auto bodies = world.bodies();  // ascending
-      const auto other =
-          std::lower_bound(bodies.begin(), bodies.end(), id,
-                           [](const body::Body& b, body::BodyId wanted) { return b.id < wanted; });
+      const body::Body* other = body::find_body(world.bodies(), is_a ? hit.body_b : hit.body_a);
       // What is gone was dented or broken by it.
-      const bool is_gone = other == bodies.end() || other->id != id;
-      if (is_gone || other->shape->kind != body::ShapeKind::plane) return true;
+      if (other == nullptr || other->shape->kind != body::ShapeKind::plane) return true;
       flight.has_hit_floor = true;
     }
     return false;

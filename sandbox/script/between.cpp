@@ -1,6 +1,5 @@
 #include "sandbox/script/between.h"
 
-#include <algorithm>
 #include <map>
 
 #include "engine/dynamics/free_motion.h"
@@ -39,10 +38,8 @@ std::vector<body::Body> bodies_between(std::span<const body::Body> before, const
   std::map<body::BodyId, Pose> broken;
   bool are_sought = false;
   for (body::Body& body : bodies) {
-    const auto after = std::lower_bound(now.begin(), now.end(), body.id,
-                                        [](const body::Body& b, body::BodyId id) { return b.id < id; });
     Pose end = body.pose;
-    if (after != now.end() && after->id == body.id) {
+    if (const body::Body* after = body::find_body(now, body.id)) {
       end = after->pose;
     } else {
       if (!are_sought) broken = find_broken(before, world);
