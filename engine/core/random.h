@@ -35,8 +35,6 @@ class Random {
     return sqrt(-2.0 * log(radius_uniform)) * cos(6.283185307179586 * turn);
   }
 
-  std::uint64_t counter() const { return counter_; }
-
  private:
   std::uint64_t key_;
   std::uint64_t counter_ = 0;

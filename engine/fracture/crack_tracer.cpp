@@ -149,10 +149,8 @@ void CrackTracer::resume(const std::vector<CrackTip>& tips, const std::vector<in
     live[0].piece = pieces[at(cutter_.cell(entry->cell).origin)];
     live[0].driven_length = kRestLength * setup_.thickness;
     const auto& stress_here = (*setup_.stresses)[at(cutter_.cell(entry->cell).origin)];
-    const Size before = segments_.size();
     live[0].face = stress::worst_stress(stress_here).face;
     run(live, 1);
-    if (segments_.size() > before) ++resumed_count_;
   }
 }
 

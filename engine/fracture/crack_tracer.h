@@ -33,7 +33,6 @@ class CrackTracer {
   const std::vector<CrackSegment>& segments() const { return segments_; }
   const std::vector<CrackTip>& open_tips() const { return open_tips_; }
   int crack_count() const { return next_crack_ - setup_.first_crack; }
-  int resumed_count() const { return resumed_count_; }
   double energy() const { return energy_; }  // J, used
   bool is_out_of_energy() const { return is_out_of_energy_; }
 
@@ -59,7 +58,6 @@ class CrackTracer {
   std::vector<CrackSegment> segments_;
   std::vector<CrackTip> open_tips_;
   int next_crack_ = 0;
-  int resumed_count_ = 0;
   double energy_ = 0.0;
   bool is_out_of_energy_ = false;
 };

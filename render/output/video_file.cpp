@@ -185,8 +185,4 @@ double VideoFile::waiting_bytes() const {
          encoder_->settings.height;
 }
 
-std::filesystem::path VideoFile::part_path() const {
-  return encoder_->part;
-}
-
 }  // namespace shatterbox::render

@@ -35,7 +35,6 @@ class VideoFile {
   long frames() const;           // given to add() so far
   double encode_cpu_ms() const;  // of the encoding thread so far
   double waiting_bytes() const;  // of pictures that waited for it at once, at most
-  std::filesystem::path part_path() const;
 
  private:
   struct Encoder;

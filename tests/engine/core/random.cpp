@@ -10,7 +10,6 @@ TEST_CASE("a stream is resumed by copying it, and depends on seed, stream and nu
   Random a(7, 3);
   for (int i = 0; i < 10; ++i) a.bits();
   Random b = a;
-  CHECK(a.counter() == 10);
   for (int i = 0; i < 100; ++i) CHECK(a.bits() == b.bits());
   CHECK(Random(7, 3).bits() == Random(7, 3).bits());
   CHECK(Random(7, 3).bits() != Random(7, 4).bits());
