@@ -1,4 +1,5 @@
-// The program: shatterbox run | render | check | diff | golden | study | bench | list. See sandbox/README.md.
+// The program: shatterbox run | check | plan | render | batch | diff | golden | study | bench | list. See
+// sandbox/README.md.
 #include <cstdio>
 #include <exception>
 

@@ -37,7 +37,7 @@ struct Left {
 void Crew::run(const std::function<void(Crew&)>& lead) {
   const auto threads = static_cast<std::size_t>(thread_count());
   Crew crew(threads > 1);
-  // The first index is this thread's own. Others that come late find that all has ended.
+  // Whoever has the first index leads. Others that come late find that all has ended.
   parallel_for(threads, 1, [&](std::size_t i) {
     if (i > 0) return crew.help();
     struct End {

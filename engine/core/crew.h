@@ -14,8 +14,9 @@ class Crew {
   /// Of one: loops run on this thread.
   Crew() : Crew(false) {}
 
-  /// Calls lead(crew) on this thread. Until it returns, threads that have nothing else to do take part in
-  /// the crew's loops; none may come, and nobody is waited for who does not. What `lead` throws leaves it.
+  /// Calls lead(crew) on one of the threads that work on parallel loops. Until it returns, threads that have
+  /// nothing else to do take part in the crew's loops; none may come, and nobody is waited for who does not.
+  /// What `lead` throws leaves it.
   static void run(const std::function<void(Crew&)>& lead);
 
   /// For `lead` alone: calls body(i) for each i in [0, count), in any order, possibly at once: each must

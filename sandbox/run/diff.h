@@ -1,4 +1,4 @@
-// The verb `diff`: two pictures, folders of pictures or videos side by side.
+// The verb `diff`: two pictures, folders of pictures, videos or reports side by side.
 #pragma once
 
 #include <string>

@@ -16,8 +16,8 @@ struct KnownScene {
   std::string goal;
 };
 
-/// Folders where scenes are looked for: ./scenes, and the one of the source tree that this program was built
-/// from.
+/// Folders where scenes are looked for: ./scenes, the one of the source tree that this program was built
+/// from, and the one that is installed with it.
 std::vector<std::filesystem::path> scene_folders();
 
 /// All scenes in those folders, by name; the first folder wins.

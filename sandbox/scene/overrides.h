@@ -8,14 +8,13 @@
 
 namespace shatterbox::sandbox::scene {
 
-/// The name under which a [[body]], [[material]] or [[event]] (`kind`) can be named: its own, or kind and
-/// number
-/// ("body2") where it has none. `index` counts from 0.
+/// The name under which a [[body]], [[material]], [[joint]] or [[event]] (`kind`) can be named: its own, or
+/// kind and number ("body2") where it has none. `index` counts from 0.
 std::string name_or_number(const TomlValue& table, const std::string& kind, std::size_t index);
 
 /// Changes `scene` as `NAME.key=value` or `NAME.key.key=value` says. NAME is scene, camera, light, render or
-/// a named body, material or event; value is TOML. Tables that are missing on the way are made. Faults add
-/// problems.
+/// a named body, material, joint or event; value is TOML. Tables that are missing on the way are made. Faults
+/// add problems.
 void apply_override(TomlValue& scene, const std::string& change, Problems& problems);
 
 }  // namespace shatterbox::sandbox::scene
