@@ -94,16 +94,16 @@ std::array<int, 3> cell_of(const Vec3& point, double size) {
 /// J: of a shell what its parts take each for itself, before they share it; of others that of the whole.
 double energy_taken(const std::vector<BlastPatch>& patches, const body::Body& body, double surface_area) {
   double parts = 0.0;
-  Vec3 impulse = Vec3::Zero(), spin = Vec3::Zero();
+  Vec3 impulse = Vec3::Zero(), angular_impulse = Vec3::Zero();
   for (const BlastPatch& patch : patches) {
     if (surface_area > 0.0 && patch.area > 0.0)
       parts += 0.5 * patch.impulse.squaredNorm() / (body.shape->mass * patch.area / surface_area);
     impulse += patch.impulse;
-    spin += (patch.point - body.pose.translation).cross(patch.impulse);
+    angular_impulse += (patch.point - body.pose.translation).cross(patch.impulse);
   }
   if (body.shape->kind == ShapeKind::shell) return parts;
   return 0.5 * body.inverse_mass * impulse.squaredNorm() +
-         0.5 * spin.dot(body.inverse_inertia_world() * spin);
+         0.5 * angular_impulse.dot(body.inverse_inertia_world() * angular_impulse);
 }
 
 }  // namespace

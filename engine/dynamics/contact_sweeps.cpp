@@ -25,14 +25,15 @@ void IslandSolver::bound_friction() {
   for (std::size_t k = 0; k < order_.contacts.size(); ++k) contact(k).jammed_at = contact(k).impulse[0];
 }
 
-// Sweeps alone carry a heavy body on light ones only after as many of them as the masses differ. Where
-// plain ones do not end it, they go on to and fro as nonlinear conjugate gradients: what two sweeps
-// changed is the negative gradient, and a share of the way so far is gone once more, until the changes
-// grow. Only loads on something solid ask for it: a surface that is jammed between others would be pressed
-// harder by every sweep and be no stiller.
-void IslandSolver::begin_course() {
-  course_square_ = 0.0;
-  course_.assign(order_.contacts.size(), Vec3::Zero());
+// Gauss-Seidel sweeps alone need as many rounds to carry a heavy body on light ones as its mass is times
+// theirs. Where plain ones do not end it, symmetric sweeps (there and back) precondition nonlinear conjugate
+// gradients (Fletcher and Reeves): what such a sweep changes in the impulses is the preconditioned negative
+// gradient g, the next search direction is g + beta times the last one, beta = |g|^2 over that of the sweep
+// before, and 0, a restart, where the gradient has grown. Only loads on something solid ask for it: a surface
+// that is jammed between others would be pressed harder by every sweep and be no stiller.
+void IslandSolver::begin_conjugate_steps() {
+  gradient_square_ = 0.0;
+  search_direction_.assign(order_.contacts.size(), Vec3::Zero());
 }
 
 void IslandSolver::note_impulses() {
@@ -47,17 +48,17 @@ Vec3 IslandSolver::within_cone(const SolverContact& c, Vec3 impulse) {
   return impulse;
 }
 
-void IslandSolver::go_on_course() {
+void IslandSolver::take_conjugate_step() {
   double square = 0.0;
   for (std::size_t k = 0; k < order_.contacts.size(); ++k)
     square += (contact(k).impulse - before_sweep_[k]).squaredNorm();
-  const double share = square < course_square_ ? square / course_square_ : 0.0;
-  course_square_ = square;
+  const double beta = square < gradient_square_ ? square / gradient_square_ : 0.0;
+  gradient_square_ = square;
   for (std::size_t k = 0; k < order_.contacts.size(); ++k) {
     SolverContact& c = contact(k);
     const Vec3 change = c.impulse - before_sweep_[k];
-    const Vec3 extra = within_cone(c, c.impulse + share * course_[k]) - c.impulse;
-    course_[k] = extra + change;
+    const Vec3 extra = within_cone(c, c.impulse + beta * search_direction_[k]) - c.impulse;
+    search_direction_[k] = extra + change;
     if (extra.squaredNorm() > 0.0) apply(c, extra, relative_velocity(c));
   }
   forget_seen();
@@ -72,26 +73,26 @@ bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
     if ((c.has_sides && lasting > c.strained_from) || (c.is_close && c.impulse[0] > 0.0))
       found.has_strain = true;
   };
-  const int most = how.plain + static_cast<int>(kCourseSize * kCourseSize / (count * count + 1));
+  const int most = how.plain + static_cast<int>(kConjugateSize * kConjugateSize / (count * count + 1));
   forget_seen();
   double least_excess = 1e300;
   int least_round = 0;
   bool is_any = false, is_bounded = false;
   for (int round = 0; round < most; ++round) {
     core::stop_if_asked();
-    const bool is_on_course = round >= how.plain;
-    if (round == how.plain) begin_course();
-    if (is_on_course) note_impulses();
+    const bool is_conjugate = round >= how.plain;
+    if (round == how.plain) begin_conjugate_steps();
+    if (is_conjugate) note_impulses();
     Found found = in_turn(look);
     // So small an island is visited by one thread.
-    for (std::size_t k = is_on_course ? count : 0; k-- > 0;) look(k, contact(k), found);
+    for (std::size_t k = is_conjugate ? count : 0; k-- > 0;) look(k, contact(k), found);
     joints_.hold(is_before_drift_);
     is_any = is_any || found.is_any;
     if (count == 0) break;
     if (is_wary_ && round == 0) bound_friction();
     const double enough = round + 1 < how.plain ? how.enough : how.loose;
     if (found.excess < (found.has_strain ? how.tight : enough)) break;
-    if (is_on_course && !is_bounded && found.excess > kRunaway * least_excess) {
+    if (is_conjugate && !is_bounded && found.excess > kRunaway * least_excess) {
       bound_friction();
       is_bounded = true;
       least_excess = 1e300;
@@ -100,10 +101,10 @@ bool IslandSolver::sweep(const Sweeps& how, const Visit& visit_contact) {
     if (found.excess < kProgress * least_excess) {
       least_excess = found.excess;
       least_round = round;
-    } else if (round > least_round + course_patience()) {
+    } else if (round > least_round + conjugate_patience()) {
       break;
     }
-    if (is_on_course && round + 1 < most) go_on_course();
+    if (is_conjugate && round + 1 < most) take_conjugate_step();
   }
   return is_any;
 }
@@ -148,9 +149,9 @@ int IslandSolver::most_calm_sweeps() {
 }
 
 // Shards under one that holds them fast rub to and fro, a thousandth of what closed, for hundreds of rounds.
-int IslandSolver::course_patience() const {
+int IslandSolver::conjugate_patience() const {
   if (has_scripted_) return kScriptedPatience;
-  return island_.may_break ? kBreakablePatience : kCoursePatience;
+  return island_.may_break ? kBreakablePatience : kConjugatePatience;
 }
 
 // What arrives must not overshoot the gap.

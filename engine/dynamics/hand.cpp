@@ -45,8 +45,8 @@ HandPush drive_by_hand(const body::Body& body, const Hand& hand, const Vec3& gra
   push.impulse = weight + limited(drive, most - weight.norm());
   const Mat3 rotation = body.pose.rotation.toRotationMatrix();
   const Mat3 inertia = rotation * body.shape->inertia * rotation.transpose();
-  push.spin = limited(inertia * (turned - body.angular_velocity) - arm.cross(push.impulse),
-                      body.shape->bounding_radius * most);
+  push.angular_impulse = limited(inertia * (turned - body.angular_velocity) - arm.cross(push.impulse),
+                                 body.shape->bounding_radius * most);
   return push;
 }
 

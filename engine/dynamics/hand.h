@@ -18,9 +18,9 @@ struct Hand {
 
 /// What a hand gives to a body in `time_step` (s) under `gravity`, whose pull it expects.
 struct HandPush {
-  Vec3 impulse = Vec3::Zero();  // N s, world, at the grip
-  Vec3 spin = Vec3::Zero();     // N m s, world, beside that
-  Vec3 point = Vec3::Zero();    // m, world: the grip
+  Vec3 impulse = Vec3::Zero();          // N s, world, at the grip
+  Vec3 angular_impulse = Vec3::Zero();  // N m s, world, beside that
+  Vec3 point = Vec3::Zero();            // m, world: the grip
 };
 HandPush drive_by_hand(const body::Body& body, const Hand& hand, const Vec3& gravity, double time_step);
 

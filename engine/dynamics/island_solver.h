@@ -87,20 +87,20 @@ class IslandSolver {
   // contact_sweeps.cpp
   // How much closing may be left, as a share of what `visit` measures it by.
   struct Sweeps {
-    int plain = 1;        // at most, before the course begins
+    int plain = 1;        // at most, before conjugate steps begin
     double enough = 1.0;  // within the plain ones
     double loose = 1.0;   // after them
     double tight = 1.0;   // of an island with strain
   };
   void start_warm(double share);
-  void begin_course();
+  void begin_conjugate_steps();
   void note_impulses();
   void bound_friction();
   static Vec3 within_cone(const SolverContact& c, Vec3 impulse);
-  void go_on_course();
+  void take_conjugate_step();
   double target_before_drift(const SolverContact& c) const;
   int most_sweeps(int of_small) const;
-  int course_patience() const;
+  int conjugate_patience() const;
   bool lies_quietly();
   int most_calm_sweeps();
   void sweep_before_drift();
@@ -241,14 +241,14 @@ class IslandSolver {
   static constexpr double kLeastEase = 0.05;      // of solids, however much they bear
   static constexpr double kStrainedGap = 0.1;     // of kTouching: overshoot that is left under strain
   static constexpr double kCalmGap = 0.3;         // the same, where nothing arrives
-  static constexpr int kCalmSweeps = 4;           // at most of an island of so many contacts in which nothing
-  static constexpr std::size_t kFewAtRest = 300;  // arrives
-  // An island of so many contacts has one round of its course, one of a tenth a hundred: small ones are
+  static constexpr int kCalmSweeps = 4;           // at most, where nothing arrives and contacts are few:
+  static constexpr std::size_t kFewAtRest = 300;  // at most so many in the island
+  // An island of so many contacts has one conjugate step, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
-  static constexpr std::size_t kCourseSize = Island::kLarge;
-  static constexpr double kRunaway = 10.0;     // times the least excess of a course
-  static constexpr double kProgress = 0.8;     // a course that in so many rounds has not come so much nearer
-  static constexpr int kCoursePatience = 500;  // is given up
+  static constexpr std::size_t kConjugateSize = Island::kLarge;
+  static constexpr double kRunaway = 10.0;        // times the least excess so far: friction feeds itself
+  static constexpr double kProgress = 0.8;        // of the least excess: more is no progress, and without any
+  static constexpr int kConjugatePatience = 500;  // in so many rounds it is given up
   static constexpr int kBreakablePatience = 100;  // the same, where something may break
   static constexpr int kScriptedPatience = 50;    // the same, where a scripted body may squeeze
   static constexpr std::size_t kVisits = 4800;    // of contacts in all sweeps of one kind in a substep,
@@ -277,12 +277,12 @@ class IslandSolver {
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
-  std::vector<double> pair_work_;            // J, by row: of a pair's impulses in this substep
-  std::vector<Found> found_;                 // per range that was visited
-  std::vector<std::size_t> struck_;          // contacts of the island that bounce together
-  std::vector<Vec3> course_, before_sweep_;  // N s, per contact of the island
-  double course_square_ = 0.0;               // N2 s2, of the last change
-  double part_start_ = 0.0;                  // s since the step's start
+  std::vector<double> pair_work_;                      // J, by row: of a pair's impulses in this substep
+  std::vector<Found> found_;                           // per range that was visited
+  std::vector<std::size_t> struck_;                    // contacts of the island that bounce together
+  std::vector<Vec3> search_direction_, before_sweep_;  // N s, per contact of the island
+  double gradient_square_ = 0.0;                       // N2 s2, of the last sweep there and back
+  double part_start_ = 0.0;                            // s since the step's start
   bool has_arrivals_ = false;
   bool ends_with_arrival_ = false;  // the part that is taken
   bool may_strike_on_ = false;

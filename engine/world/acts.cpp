@@ -58,7 +58,7 @@ void apply_hands(std::vector<body::Body>& bodies, const std::vector<dynamics::Ha
     const dynamics::HandPush push =
         dynamics::drive_by_hand(*body, hand, body->free_acceleration(gravity), time_step);
     give(*body, push.impulse, push.point);
-    body->angular_velocity += body->inverse_inertia_world() * push.spin;
+    body->angular_velocity += body->inverse_inertia_world() * push.angular_impulse;
     if (!(push.impulse.squaredNorm() > 0.0)) continue;
     log.push_back(body::log_impulse(body::ImpulseKind::contact, body->id, body->pose, 0, Pose{}, push.point,
                                     push.impulse.normalized(), push.impulse));

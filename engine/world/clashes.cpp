@@ -50,8 +50,8 @@ std::vector<const Body*> find_neighbours(const Body& whole, const std::vector<Bo
   return out;
 }
 
-/// Where neither found a way back from the cracks about it, they are in one place, and between them there is
-/// no direction.
+/// Whether two pieces still coincide in places: where neither could draw back from the crack between them
+/// (their kerf is zero there), no direction separates them, and contact could not tell them apart.
 bool touch(const Placed& a, const Placed& b) {
   const double size = 2.0 * std::min(a.collider->bounding_radius, b.collider->bounding_radius);
   return collision::are_within(a.placed, b.placed, dynamics::kNoDistance * size);

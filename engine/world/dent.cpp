@@ -124,10 +124,10 @@ body::Body as_dented(const body::Body& body, const Dented& dented) {
   changed.pose = dented.pose;
   if (!body.is_dynamic()) return changed;
   const Mat3 turn = body.pose.rotation.toRotationMatrix();
-  const Vec3 spin = turn * (body.shape->inertia * (turn.transpose() * body.angular_velocity));
+  const Vec3 angular_momentum = turn * (body.shape->inertia * (turn.transpose() * body.angular_velocity));
   changed.inverse_mass = 1.0 / dented.shape->mass;
   changed.inverse_inertia = dented.shape->inertia.inverse();
-  changed.angular_velocity = changed.inverse_inertia_world() * spin;
+  changed.angular_velocity = changed.inverse_inertia_world() * angular_momentum;
   return changed;
 }
 

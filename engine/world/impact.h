@@ -29,7 +29,7 @@ struct Load {
   double time = 0.0;                  // s, of the last one
   double duration = 0.0;              // s, of a blast; 0: that of the impact
   double spread = 0.0;                // m, radius of the disc over which a blast came
-  bool was_asked = false;             // whether the other goes through: he does not
+  bool was_asked = false;             // it is known that the other does not perforate: it lacks the energy
 };
 
 /// What an impact leaves when it is over.
@@ -37,7 +37,7 @@ struct ComingDent {
   std::variant<std::shared_ptr<const fracture::SolidDent>, std::shared_ptr<const fracture::ShellDent>> dent;
   double von_mises = 0.0, yield = 0.0;  // Pa
   Vec3 place = Vec3::Zero();            // m, material space: of the hit
-  double not_before = -1e9;             // s: until then who went through is in the hole; a step later
+  double not_before = -1e9;             // s: until then striker and plug are in the hole; a step later
 
   /// Null of the other kind.
   const fracture::SolidDent* solid() const { return find<fracture::SolidDent>(); }

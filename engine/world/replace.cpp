@@ -44,18 +44,20 @@ std::vector<body::Body> make_bodies(const body::Body& parent, const std::vector<
 /// not.
 void measure_errors(const body::Body& parent, const std::vector<body::Body>& pieces, BreakRow& row) {
   const auto momentum = [](const body::Body& b) { return Vec3(b.shape->mass * b.velocity); };
-  const auto spin = [](const body::Body& b) {
+  const auto angular_momentum_of = [](const body::Body& b) {
     return Vec3(b.pose.rotation * (b.shape->inertia * (b.pose.rotation.conjugate() * b.angular_velocity)));
   };
   const auto energy = [&](const body::Body& b) {
-    return 0.5 * b.shape->mass * b.velocity.squaredNorm() + 0.5 * b.angular_velocity.dot(spin(b));
+    return 0.5 * b.shape->mass * b.velocity.squaredNorm() +
+           0.5 * b.angular_velocity.dot(angular_momentum_of(b));
   };
   double mass = 0.0, kinetic = 0.0;
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
   for (const body::Body& piece : pieces) {
     mass += piece.shape->mass;
     linear += momentum(piece);
-    angular += (piece.pose.translation - parent.pose.translation).cross(momentum(piece)) + spin(piece);
+    angular += (piece.pose.translation - parent.pose.translation).cross(momentum(piece)) +
+               angular_momentum_of(piece);
     kinetic += energy(piece);
   }
   // Relative to the greatest value the motion could give, so that a body without spin has a scale too.
@@ -66,7 +68,7 @@ void measure_errors(const body::Body& parent, const std::vector<body::Body>& pie
   row.mass_error = std::abs(mass / parent.shape->mass - 1.0);
   if (scale > 0.0) {
     row.momentum_error = (linear - momentum(parent)).norm() / scale;
-    row.angular_momentum_error = (angular - spin(parent)).norm() / (scale * arm);
+    row.angular_momentum_error = (angular - angular_momentum_of(parent)).norm() / (scale * arm);
   }
   const double before = energy(parent);
   if (before > 0.0) row.energy_gain = kinetic / before - 1.0;

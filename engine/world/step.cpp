@@ -216,18 +216,18 @@ World::PartEnd World::judge_part(const MovedPart& done, MovingState& snapshot, d
     part = *finer;
     return true;
   };
-  if (divide(divide_where_cut(part, done.moved))) return PartEnd::divided;
+  if (divide(divide_where_cut(part, done.moved))) return PartEnd::subdivided;
   if (!s.moving.contact.joints.empty()) {
     const bool may_go_back = s.settings.after_break == AfterBreak::go_back && done.pass + 1 < kMostPasses;
     const bool goes_back = open_joints(judge_joints(part, done.given), snapshot, may_go_back);
     tell_watcher("joints", part, done.pass);
-    if (goes_back) return PartEnd::broken;
+    if (goes_back) return PartEnd::retaken_with_pieces;
   }
   const auto impacts =
       judge_impacts(done.given, {done.before, time() + step * part.number / part.count, time()});
   if (divide(divide_before_holes(impacts, part, time(), step))) {
     s.borne.clear();  // their verdicts were not told
-    return PartEnd::divided;
+    return PartEnd::subdivided;
   }
   for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
   const std::size_t known_breaks = s.report.breaks.size();
@@ -244,11 +244,11 @@ World::PartEnd World::judge_part(const MovedPart& done, MovingState& snapshot, d
     if (part.number == 0) part.count = std::max(part.count, count_parts());
     if (s.settings.contact == ContactScheme::standard)
       part = dynamics::divide_to(s.contact_settings, part, time_of_hit(broken, done.before));
-    return PartEnd::broken;
+    return PartEnd::retaken_with_pieces;
   }
-  if (!done.moved.is_unfinished) return PartEnd::stands;
+  if (!done.moved.is_unfinished) return PartEnd::accepted;
   s.moving = std::move(snapshot);
-  return PartEnd::tried;
+  return PartEnd::retaken_in_full;
 }
 
 void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) {
@@ -256,18 +256,18 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   core::StageTimer& timer = s.report.stages;
   const bool may_break = !s.moving.fragiles.empty() || !s.moving.contact.joints.empty();
   dynamics::StepPart part{0, count_parts()};
-  PartEnd end = PartEnd::stands;  // of the pass before
+  PartEnd end = PartEnd::accepted;  // of the pass before
   for (int pass = 0; part.number < part.count;) {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     part.may_return = may_break;
     part.is_again = pass > 0;
     // Pieces that were just born in it often break as well.
-    part.is_trial = pass > 0 && end != PartEnd::tried && pass + 1 < kMostPasses &&
+    part.is_trial = pass > 0 && end != PartEnd::retaken_in_full && pass + 1 < kMostPasses &&
                     dynamics::may_be_tried(s.contact_settings, part);
     MovedPart done = move_part(part, pass);
-    end = may_break ? judge_part(done, snapshot, part, contact) : PartEnd::stands;
-    if (end == PartEnd::broken) ++pass;
-    if (end != PartEnd::stands) continue;
+    end = may_break ? judge_part(done, snapshot, part, contact) : PartEnd::accepted;
+    if (end == PartEnd::retaken_with_pieces) ++pass;
+    if (end != PartEnd::accepted) continue;
     dynamics::end_strikes(s.moving.bodies);
     book_conservation(done.before, done.log, s.contact_settings.time_step / part.count);
     s.log.insert(s.log.end(), done.given.begin(), done.given.end());

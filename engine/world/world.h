@@ -147,12 +147,13 @@ class World {
   void take_parts(dynamics::ContactReport& contact, MovingState& snapshot);
   struct MovedPart;
   MovedPart move_part(const dynamics::StepPart& part, int pass);
-  /// What becomes of a part that was moved. Anything but `stands`: it is taken again, from its begin.
+  /// What becomes of a part of a step that was moved. Unless it is accepted, it is taken again from its
+  /// begin:
   enum class PartEnd : std::uint8_t {
-    stands,
-    divided,  // in shorter ones
-    broken,   // with the pieces in place of the whole
-    tried,    // to its end: nothing broke by it
+    accepted,
+    subdivided,           // in shorter parts
+    retaken_with_pieces,  // what broke in it is replaced by its pieces
+    retaken_in_full,      // it was a trial, which ends early, and nothing broke in it
   };
   PartEnd judge_part(const MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
                      dynamics::ContactReport& contact);
