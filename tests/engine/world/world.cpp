@@ -311,10 +311,10 @@ TEST_CASE("a scripted body follows its path through the door, and goes it once w
   plate.form = world::BoxDescription{Vec3(0.2, 0.01, 0.2)};
   plate.motion = body::Motion::scripted;
   plate.path =
-      world::PathDescription{{{0.0, Vec3(0, 0.5, 0), Vec3::Zero()}, {0.1, Vec3(0, 0.02, 0), Vec3::Zero()}}};
+      world::PathDescription{{{0.0, Vec3(0, 0.5, 0), Vec3::Zero()}, {0.2, Vec3(0, 0.02, 0), Vec3::Zero()}}};
   const body::BodyId id = w.add_body(plate).value();
   for (int i = 0; i < 12; ++i) w.step();
-  const double s = 0.5;
+  const double s = 0.25;
   CHECK(w.bodies().back().pose.translation.y() ==
         Approx(0.5 - 0.48 * s * s * (3.0 - 2.0 * s)).epsilon(1e-12));
   REQUIRE(w.report().scripted.size() == 1);
