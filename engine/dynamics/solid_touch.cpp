@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/collision/analytic_contact.h"
+#include "engine/geometry/moving_plane.h"
 
 namespace shatterbox::dynamics {
 namespace {
@@ -47,27 +48,6 @@ struct Corners {
   }
 };
 
-/// Three corners of a box's face and one of the other body, or its centre, at one time.
-struct FaceAndCorner {
-  Vec3 along, across, to_corner;  // m, from the first corner of the face: two of its sides, and to the corner
-};
-
-/// Whether that corner, on its straight way, stays at least `least` (m) above the plane of a face whose
-/// corners go straight as well: the sides' and the way's triple product is a cubic in time, and above its
-/// least Bernstein coefficient.
-bool stays_above(const FaceAndCorner& from, const FaceAndCorner& to, double least) {
-  const Vec3 first = from.along.cross(from.across), last = to.along.cross(to.across);
-  const Vec3 middle = 0.5 * (from.along.cross(to.across) + to.along.cross(from.across));
-  const double area = std::max({first.norm(), middle.norm(), last.norm()});
-  const double coefficients[] = {
-      first.dot(from.to_corner),
-      (first.dot(to.to_corner) + 2.0 * middle.dot(from.to_corner)) / 3.0,
-      (last.dot(from.to_corner) + 2.0 * middle.dot(to.to_corner)) / 3.0,
-      last.dot(to.to_corner),
-  };
-  return *std::min_element(std::begin(coefficients), std::end(coefficients)) >= least * area;
-}
-
 /// A face of a box that goes along with it as a separating plane: what turns about an edge comes nearer in
 /// every fixed direction, and not to the face.
 class MovingFace {
@@ -86,21 +66,22 @@ class MovingFace {
     }
   }
 
-  /// False of what has no faces.
+  /// Whether all corners of the other, on their straight ways, stay at least `least` (m) above it between
+  /// these shares. False of what has no faces.
   bool keeps_off(const Corners& other, double from, double to, double least) const {
     if (face_ == nullptr) return false;
+    const auto way = [&](const Corners& whose, int i) {
+      return geometry::LinearVector{whose.at(i, from) - corners_.at((*face_)[0], from),
+                                    whose.at(i, to) - corners_.at((*face_)[0], to)};
+    };
+    const geometry::MovingNormal normal(way(corners_, (*face_)[1]), way(corners_, (*face_)[2]));
     for (int i = 0; i < other.count(); ++i)
-      if (!stays_above(see(other, i, from), see(other, i, to), least)) return false;
+      for (const double product : normal.times(way(other, i)))
+        if (product < least * normal.longest()) return false;
     return true;
   }
 
  private:
-  FaceAndCorner see(const Corners& other, int corner, double time) const {
-    const Vec3 base = corners_.at((*face_)[0], time);
-    return {corners_.at((*face_)[1], time) - base, corners_.at((*face_)[2], time) - base,
-            other.at(corner, time) - base};
-  }
-
   const Corners& corners_;
   const geometry::Triangle* face_ = nullptr;
 };
@@ -160,7 +141,7 @@ void meet_where_nearest(const SolidWay& a, const SolidWay& b, double margin, dou
   constexpr int kLooks = 16;
   double nearest = 1e300;
   for (int i = kLooks; i >= 1; --i) {
-    const double time = touch.time + (1.0 - touch.time) * i / kLooks;
+    const double time = i == kLooks ? 1.0 : touch.time + (1.0 - touch.time) * i / kLooks;
     Vec3 normal;
     const double gap = collision::analytic_gap(*a.body.shape, blend(a.from, a.to, time), *b.body.shape,
                                                blend(b.from, b.to, time), normal);

@@ -14,13 +14,6 @@ using core::at;
 
 constexpr double kLostByRounding = 32.0 * std::numeric_limits<double>::epsilon();
 
-/// A vector that changes linearly, by its values at both ends.
-struct LinearVector {
-  Vec3 from, to;
-
-  double size() const { return std::max(from.norm(), to.norm()); }
-};
-
 constexpr std::array<std::pair<int, int>, 3> kPointTriangle{{{0, 1}, {0, 2}, {0, 3}}};
 constexpr std::array<std::pair<int, int>, 4> kEdgeEdge{{{0, 2}, {0, 3}, {1, 2}, {1, 3}}};
 
@@ -54,27 +47,21 @@ class MovingFeatures {
 
  private:
   double along(const LinearVector& p, const LinearVector& q, bool is_q_rounded) const {
-    // p x q is quadratic: its Bernstein coefficients.
-    const Vec3 first = p.from.cross(q.from), last = p.to.cross(q.to);
-    const Vec3 middle = 0.5 * (p.from.cross(q.to) + p.to.cross(q.from));
-    const double longest = std::max({first.norm(), middle.norm(), last.norm()});
-    if (!(longest > 0.0)) return 0.0;
-    const double side = first.dot(direction_) > 0.0 ? 1.0 : -1.0;
+    const MovingNormal normal(p, q);
+    if (!(normal.longest() > 0.0)) return 0.0;
+    const double side = normal.first().dot(direction_) > 0.0 ? 1.0 : -1.0;
     const double length_p = p.size(), length_q = q.size();
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [i, j] : pairs_) {
       const LinearVector d = between(i, j);
-      const double c0 = first.dot(d.from), c3 = last.dot(d.to);
-      const double c1 = (first.dot(d.to) + 2.0 * middle.dot(d.from)) / 3.0;
-      const double c2 = (2.0 * middle.dot(d.to) + last.dot(d.from)) / 3.0;
       // Vertices are rounded on their ways, and products.
       const double length = d.size();
       const double lost = kLostByRounding * (coordinate_ * (length_p * length_q + length_q * length +
                                                             (is_q_rounded ? length_p * length : 0.0)) +
                                              length_p * length_q * length);
-      least = std::min(least, std::min({side * c0, side * c1, side * c2, side * c3}) - lost);
+      for (const double c : normal.times(d)) least = std::min(least, side * c - lost);
     }
-    return std::max(0.0, least / longest);
+    return std::max(0.0, least / normal.longest());
   }
 
   const std::array<Vec3, 4>&start_, &end_;
@@ -84,6 +71,17 @@ class MovingFeatures {
 };
 
 }  // namespace
+
+MovingNormal::MovingNormal(const LinearVector& p, const LinearVector& q)
+    : first_(p.from.cross(q.from)),
+      middle_(0.5 * (p.from.cross(q.to) + p.to.cross(q.from))),
+      last_(p.to.cross(q.to)),
+      longest_(std::max({first_.norm(), middle_.norm(), last_.norm()})) {}
+
+std::array<double, 4> MovingNormal::times(const LinearVector& d) const {
+  return {first_.dot(d.from), (first_.dot(d.to) + 2.0 * middle_.dot(d.from)) / 3.0,
+          (2.0 * middle_.dot(d.to) + last_.dot(d.from)) / 3.0, last_.dot(d.to)};
+}
 
 double separation_by_moving_plane(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end,
                                   bool is_edge_edge, const Vec3& direction) {

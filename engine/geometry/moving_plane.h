@@ -2,11 +2,35 @@
 // out turns towards it. Along the normal of a plane that turns with them they do not.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "engine/core/vec.h"
 
 namespace shatterbox::geometry {
+
+/// A vector that changes linearly, by its values at both ends.
+struct LinearVector {
+  Vec3 from, to;
+
+  double size() const { return std::max(from.norm(), to.norm()); }
+};
+
+/// The normal p x q of a plane that goes with two such vectors: quadratic, by its Bernstein coefficients.
+class MovingNormal {
+ public:
+  MovingNormal(const LinearVector& p, const LinearVector& q);
+
+  const Vec3& first() const { return first_; }
+  /// Nowhere is it longer.
+  double longest() const { return longest_; }
+  /// Bernstein coefficients of its product with d, a cubic that is nowhere below the least of them.
+  std::array<double, 4> times(const LinearVector& d) const;
+
+ private:
+  Vec3 first_, middle_, last_;
+  double longest_;
+};
 
 /// m: at least so far apart two features stay, while their vertices go along straight lines from `start` to
 /// `end` (world, m): point 0 and the triangle of points 1 to 3, or the edges of points 0 and 1 and of points
