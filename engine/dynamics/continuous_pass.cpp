@@ -26,7 +26,9 @@ namespace {
 using collision::Contact;
 using core::at;
 
-constexpr int kLastRounds = 24;  // in which bodies only keep what they have
+constexpr int kLastRounds = 24;       // in which bodies only keep what they have
+constexpr int kLastPatience = 4;      // of these, without fewer hits
+constexpr std::size_t kFewHits = 20;  // but of no more than so many
 constexpr double kDeep =
     1.0;  // share of the kept gap by which a hit of surfaces must overshoot to be solved again
 constexpr double kDeepInHeap = 0.1;  // the same, of the pair's size, where a heap would be solved for it
@@ -44,6 +46,25 @@ double wanted_separation(double gap, double kept_gap) {
   const double safe = kSafe * kept_gap;
   return gap > 4.0 * safe ? std::max(2.0 * safe, 0.5 * std::min(gap, kept_gap)) : 0.96 * gap;
 }
+
+// Of rounds that go on as long as they get anywhere.
+class Patience {
+ public:
+  // A few hits are worth any number of rounds.
+  Patience(int rounds, std::size_t few) : rounds_(rounds), few_(few) {}
+
+  // False once that many rounds had no fewer hits than one before them.
+  bool lasts(std::size_t hits) {
+    since_ = hits < fewest_ || hits <= few_ ? 0 : since_ + 1;
+    fewest_ = std::min(fewest_, hits);
+    return since_ < rounds_;
+  }
+
+ private:
+  int rounds_, since_ = 0;
+  std::size_t few_;
+  std::size_t fewest_ = static_cast<std::size_t>(-1);
+};
 
 class Guard {
  public:
@@ -86,7 +107,8 @@ class Guard {
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
     // great shards cannot hold them apart by its mass.
     const int last_rounds = settings_.continuous_rounds > 0 ? kLastRounds : 0;
-    for (int round = 0; has_hits && round < last_rounds; ++round) {
+    Patience patience(kLastPatience, kFewHits);
+    for (int round = 0; has_hits && round < last_rounds && patience.lasts(hit_.size()); ++round) {
       ++report_.rounds;
       open(0.0, Yielding::alike);
       has_hits = test();
@@ -522,20 +544,18 @@ class Guard {
 
   // Pairs whose last test leaves more than their ends moved against each other are free still.
   void mark_due_since(const std::vector<Way>& before) {
-    std::vector<double> turns(work_.bodies.size());
-    std::vector<Vec3> shifts(work_.bodies.size());
+    std::vector<EndMove> moves(work_.bodies.size());
     std::vector<char> has_moved(work_.bodies.size());
-    for (std::size_t i = 0; i < turns.size(); ++i) {
+    for (std::size_t i = 0; i < moves.size(); ++i) {
       const WorkBody& w = work_.bodies[i];
       const bool is_straight = before[i].is_straight && w.straight_parts == 1;
-      turns[i] = is_straight ? turn_bound(before[i].end.rotation, w.end.rotation, w.reach) : kElsewhere;
-      shifts[i] = w.end.translation - before[i].end.translation;
-      has_moved[i] = turns[i] > 0.0 || !shifts[i].isZero(0.0);
+      moves[i].shift = w.end.translation - before[i].end.translation;
+      moves[i].turned =
+          is_straight ? turn_bound(before[i].end.rotation, w.end.rotation, w.reach) : kElsewhere;
+      has_moved[i] = !moves[i].is_none();
     }
-    mark_due(has_moved, [&](const WorkPair& pair) {
-      const double shift = (shifts[at(pair.a)] - shifts[at(pair.b)]).norm();
-      return (shift + turns[at(pair.a)] + turns[at(pair.b)]) * (1.0 + 1e-9);
-    });
+    mark_due(has_moved,
+             [&](const WorkPair& pair) { return move_between(moves[at(pair.a)], moves[at(pair.b)]); });
   }
 
   static bool is_due(WorkPair& pair, double moved, double& spare) {
@@ -549,24 +569,32 @@ class Guard {
     return spare <= 0.0;
   }
 
+  // Surfaces in one zone cannot meet, from now on; what is round keeps its radius, and may have begun too
+  // deep.
+  bool is_in_one_zone(const WorkPair& pair) {
+    return zones_ && !pair.has_sides && zones_->go_as_one(pair.a, pair.b);
+  }
+
   // By how far (m) the ends of each pair may have moved against each other; kElsewhere or more: anywhere.
   template <class MovedBy>
   void mark_due(const std::vector<char>& has_moved, const MovedBy& moved_by) {
     due_.clear();
     for (const std::size_t p : pairs_with(has_moved, hit_)) {
       const bool has_hit = !hits_[p].empty();
-      if (is_due(work_.pairs[p], moved_by(work_.pairs[p]), spare_[p]) || has_hit) make_due(p);
       hits_[p].clear();
+      if (is_in_one_zone(work_.pairs[p])) continue;
+      if (is_due(work_.pairs[p], moved_by(work_.pairs[p]), spare_[p]) || has_hit) make_due(p);
     }
     hit_.clear();
     add_missed_pairs();
   }
 
-  // Pairs whose last test leaves more than both bodies were moved (m) are free still.
-  void mark_due_by(const std::vector<double>& moves) {
+  // Pairs whose last test leaves more than their bodies were moved against each other are free still.
+  void mark_due_by(const std::vector<EndMove>& moves) {
     std::vector<char> has_moved(moves.size());
-    for (std::size_t i = 0; i < moves.size(); ++i) has_moved[i] = moves[i] != 0.0;
-    mark_due(has_moved, [&](const WorkPair& pair) { return moves[at(pair.a)] + moves[at(pair.b)]; });
+    for (std::size_t i = 0; i < moves.size(); ++i) has_moved[i] = !moves[i].is_none();
+    mark_due(has_moved,
+             [&](const WorkPair& pair) { return move_between(moves[at(pair.a)], moves[at(pair.b)]); });
   }
 
   void mark_due_with(const std::vector<char>& has_moved) {
@@ -587,21 +615,19 @@ class Guard {
       const double time = hits_[p].front().time;
       for (const int i : {a, b}) zones_->limit(i, stops || time < 0.05 ? 0.0 : 0.8 * time);
     }
+    const std::vector<Way> before = note_ways();
     const std::vector<char> has_moved = zones_->go();
     for (std::size_t i = 0; i < has_moved.size(); ++i) was_cut_[i] = was_cut_[i] || has_moved[i] ? 1 : 0;
-    mark_due_with(has_moved);
+    mark_due_since(before);
   }
 
   // Who meets a zone gives way to it first: if all that two united bodies came upon went with them, so would
   // soon all that lies close.
   bool open_zones_in_rounds(bool has_hits) {
-    std::size_t fewest = work_.pairs.size() + 1;
-    int since = 0;
-    for (int round = 0; has_hits && round < kZoneOpenings && since < kZonePatience; ++round) {
+    Patience patience(kZonePatience, 0);
+    for (int round = 0; has_hits && round < kZoneOpenings && patience.lasts(hit_.size()); ++round) {
       open_zones();
       has_hits = test();
-      since = hit_.size() < fewest ? 0 : since + 1;
-      fewest = std::min(fewest, hit_.size());
     }
     return has_hits;
   }

@@ -127,7 +127,7 @@ void ImpactZones::go_as_one(const std::vector<int>& members, double share) {
   }
 }
 
-std::vector<double> ImpactZones::open(std::vector<Opening>& openings, double time_step) {
+std::vector<EndMove> ImpactZones::open(std::vector<Opening>& openings, double time_step) {
   std::vector<std::vector<int>> members(work_.bodies.size());
   for (int i = 0; at(i) < members.size(); ++i)
     if (work_.bodies[at(i)].inverse_mass > 0.0 && share(i) >= 1.0) members[at(zone_of(i))].push_back(i);
@@ -152,7 +152,7 @@ std::vector<double> ImpactZones::open(std::vector<Opening>& openings, double tim
   for (std::size_t k = 0; k < openings.size(); ++k) openings[k].impulse = of_zones[k].impulse;
   std::erase_if(openings, [](const Opening& o) { return o.impulse <= 0.0; });
   remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work_);
-  std::vector<double> moved(work_.bodies.size(), 0.0);
+  std::vector<EndMove> moved(work_.bodies.size());
   for (std::size_t zone = 0; zone < members.size(); ++zone) {
     if (moves.shifts[zone].isZero(0.0) && moves.turns[zone].isZero(0.0)) continue;
     const Quat rotation = rotation_by(moves.turns[zone]);

@@ -24,6 +24,12 @@ class ImpactZones {
   /// stopped.
   bool unite(int a, int b);
 
+  /// True if they were united, or are in the zone of some that were.
+  bool go_as_one(int a, int b) {
+    const int zone = zone_of(a);
+    return zone == zone_of(b) && is_whole_[static_cast<std::size_t>(zone)] != 0;
+  }
+
   /// True if any were united.
   bool has_wholes() const { return std::find(is_whole_.begin(), is_whole_.end(), 1) != is_whole_.end(); }
 
@@ -35,9 +41,8 @@ class ImpactZones {
   std::vector<char> go();
 
   /// Opens gaps between zones, which give way as wholes by their masses; those that were stopped do not.
-  /// Their bodies lose approach one by one, as in open_gaps. Returns by how much the points of each were
-  /// moved at most, m.
-  std::vector<double> open(std::vector<Opening>& openings, double time_step);
+  /// Their bodies lose approach one by one, as in open_gaps. Returns by how much each was moved.
+  std::vector<EndMove> open(std::vector<Opening>& openings, double time_step);
 
   /// The least body of the zone that this one is in.
   int zone_of(int body) { return zones_.find(body); }

@@ -176,16 +176,18 @@ double closest_approach(const Vec3& apart, const Vec3& way) {
   return (apart + t * way).norm();
 }
 
-bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
-                         double margin) {
+double clearance_of_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
+                          double wanted) {
   const Vec3 way_a = end_a.translation - a.start.translation, way_b = end_b.translation - b.start.translation;
   const Vec3 apart = a.start.translation - b.start.translation, way = way_a - way_b;
-  const double kept = margin + find_bow(a) + find_bow(b);
-  if (closest_approach(apart, way) > (a.reach + b.reach + kept) * (1.0 + 1e-9)) return true;
-  if (turns_far(a) && turns_far(b)) return false;
+  const double bows = find_bow(a) + find_bow(b);
+  const double between = closest_approach(apart, way) * (1.0 - 1e-9) - (a.reach + b.reach + bows);
+  if (between > wanted || (turns_far(a) && turns_far(b))) return between;
   const WorkBody &ball = turns_far(a) ? a : b, &other = turns_far(a) ? b : a;
   const Vec3 relative = turns_far(a) ? way : Vec3(-way);
-  return !collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, kept);
+  const bool may_meet =
+      collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, wanted + bows);
+  return may_meet ? between : std::nextafter(wanted, 1e300);
 }
 
 double turn_bound(const WorkBody& body, const Pose& end) {

@@ -294,10 +294,10 @@ void sweep(WorkBody& body, const Pose& end);
 /// Two that are `apart` and go straight, `way` against each other, come no closer than this, m.
 double closest_approach(const Vec3& apart, const Vec3& way);
 
-/// True if two bodies, one of which turns far, surely keep `margin` apart: the one within a ball. Those that
-/// do not turn far must be swept to their ends.
-bool keep_apart_as_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
-                         double margin);
+/// Two bodies, one of which turns far, surely stay so far apart, m: the one within a ball, and both, if that
+/// tells that they keep more than is `wanted`. Those that do not turn far must be swept to their ends.
+double clearance_of_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
+                          double wanted);
 
 /// No point of the body moves further than this by its turn from start to `end`, m.
 double turn_bound(const WorkBody& body, const Pose& end);

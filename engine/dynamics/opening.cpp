@@ -182,15 +182,18 @@ Opening make_opening(const WorkPair& pair, const MotionWork& work, const Contact
   return o;
 }
 
-double move_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
-  const double moved = shift.norm() + turn.norm() * body.reach;
-  if (moved == 0.0) return 0.0;
-  shift_end(body, shift, turn);
-  return moved * (1.0 + 1e-9) + 1e-300;
+double move_between(const EndMove& a, const EndMove& b) {
+  return ((a.shift - b.shift).norm() + a.turned + b.turned) * (1.0 + 1e-9);
 }
 
-std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
-                              MotionWork& work) {
+EndMove move_end(WorkBody& body, const Vec3& shift, const Vec3& turn) {
+  const EndMove move{shift, turn.norm() * body.reach};
+  if (!move.is_none()) shift_end(body, shift, turn);
+  return move;
+}
+
+std::vector<EndMove> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
+                               MotionWork& work) {
   std::vector<Mover> movers(work.bodies.size());
   for (const Opening& o : openings)
     for (const int i : {o.a, o.b})
@@ -201,7 +204,7 @@ std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, 
     remove_approach(openings, time_step, body::ImpulseKind::continuous, 1, work);
   else
     remove_approach(openings, std::nullopt, body::ImpulseKind::continuous, kSweepsAlike, work);
-  std::vector<double> moved(work.bodies.size(), 0.0);
+  std::vector<EndMove> moved(work.bodies.size());
   for (std::size_t i = 0; i < work.bodies.size(); ++i)
     moved[i] = move_end(work.bodies[i], moves.shifts[i], moves.turns[i]);
   return moved;

@@ -58,14 +58,25 @@ double opening_weight(const Opening& opening, const Mover& a, const Mover& b, Yi
 /// `b`, the arms and the weights (by mass) of the openings are those of movers.
 Moves relax(std::vector<Opening>& openings, const std::vector<Mover>& movers, Yielding yielding);
 
-/// Moves a body's end pose; no point of it was moved further than what this returns, m.
-double move_end(WorkBody& body, const Vec3& shift, const Vec3& turn);
+/// By how much a body's end was moved: its centre by `shift`, its points by `turned` more at most, m.
+struct EndMove {
+  Vec3 shift = Vec3::Zero();
+  double turned = 0.0;
+
+  bool is_none() const { return turned == 0.0 && shift.isZero(0.0); }
+};
+
+/// No points of two bodies were moved further against each other, m.
+double move_between(const EndMove& a, const EndMove& b);
+
+/// Moves a body's end pose.
+EndMove move_end(WorkBody& body, const Vec3& shift, const Vec3& turn);
 
 /// Moves end poses until the gaps are as wanted, as far as that goes; takes away the approach of those that
-/// pushed and logs it: by no more than what opened them if they yield by mass. Returns by how much the points
-/// of each body were moved at most, m.
-std::vector<double> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
-                              MotionWork& work);
+/// pushed and logs it: by no more than what opened them if they yield by mass. Returns by how much each
+/// body was moved.
+std::vector<EndMove> open_gaps(std::vector<Opening>& openings, double time_step, Yielding yielding,
+                               MotionWork& work);
 
 /// Removes what closes along these constraints by impulses between the pairs, or turns it round by their
 /// restitution, `sweeps` times over, and logs them as `kind`. With a time step (s) each is at most what the

@@ -194,7 +194,8 @@ std::optional<NearestContacts> meet_features(const ContactSettings& settings, co
   const double slack = settings.search_slack * pair.size;
   const bool one_turns_far = turns_far(a) || turns_far(b);
   pair.least_gap = pair.margin;
-  if (one_turns_far && pair.is_fast && keep_apart_as_balls(a, a.predicted, b, b.predicted, pair.margin)) {
+  if (one_turns_far && pair.is_fast &&
+      clearance_of_balls(a, a.predicted, b, b.predicted, pair.margin) > pair.margin) {
     memory.forget_caches();
     pair.is_free_certified = true;
     return std::nullopt;

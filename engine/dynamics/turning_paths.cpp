@@ -110,19 +110,19 @@ bool TurningPaths::is_listed(const WorkPair& pair) const {
 
 void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
   bodies_.resize(work_.bodies.size());
-  are_followed_.resize(work_.pairs.size());
+  apart_.resize(work_.pairs.size());
   core::parallel_for(pairs.size(), 8, [&](std::size_t k) {
     const WorkPair& pair = work_.pairs[pairs[k]];
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
-    are_followed_[pairs[k]] =
-        is_listed(pair) || !keep_apart_as_balls(a, a.end, b, b.end, kNear * pair.kept_gap) ? 1 : 0;
+    const double wanted = kNear * pair.kept_gap;
+    apart_[pairs[k]] = is_listed(pair) ? 0.0 : clearance_of_balls(a, a.end, b, b.end, wanted);
   });
   enum class Need : char { nothing, ends, boxes };
   std::vector<std::array<Need, kLevels>> needs(work_.bodies.size());
   std::vector<std::size_t> to_list;
   for (const std::size_t p : pairs) {
-    if (!are_followed_[p]) continue;
     WorkPair& pair = work_.pairs[p];
+    if (apart_[p] > kNear * pair.kept_gap) continue;
     const std::size_t level = level_of(pair);
     const Need need = is_listed(pair) ? Need::ends : Need::boxes;
     for (const int i : {pair.a, pair.b}) needs[at(i)][level] = std::max(needs[at(i)][level], need);
@@ -196,8 +196,8 @@ void TurningPaths::list_parts(WorkPair& pair) const {
 std::vector<PathHit> TurningPaths::find_hits(std::size_t pair_number, double& spare) {
   WorkPair& pair = work_.pairs[pair_number];
   std::vector<PathHit> hits;
-  spare = pair.kept_gap;
-  if (!are_followed_[pair_number]) return hits;
+  spare = apart_[pair_number] - kSafe * pair.kept_gap;
+  if (apart_[pair_number] > kNear * pair.kept_gap) return hits;
   PathMemory& known = pair.known;
   spare = known.searched - (known.moved - known.listed_at) - kSafe * pair.kept_gap;
   spare = std::min(spare, kNear * pair.kept_gap);

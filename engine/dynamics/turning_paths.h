@@ -49,8 +49,8 @@ class TurningPaths {
 
   const ContactSettings& settings_;
   MotionWork& work_;
-  std::vector<Divided> bodies_;     // filled as pairs need
-  std::vector<char> are_followed_;  // per pair: balls about its bodies meet
+  std::vector<Divided> bodies_;  // filled as pairs need
+  std::vector<double> apart_;    // per pair, m: how far balls about its bodies stay apart, if that is enough
 };
 
 }  // namespace shatterbox::dynamics

@@ -65,6 +65,9 @@ TEST_CASE("a zone goes as one, with the momenta of its bodies' ways") {
   CHECK(zones.unite(1, 2));
   CHECK_FALSE(zones.unite(2, 1));
   CHECK_FALSE(zones.unite(0, 1));  // the floor does not move
+  CHECK(zones.go_as_one(1, 2));
+  CHECK_FALSE(zones.go_as_one(0, 1));
+  CHECK_FALSE(zones.go_as_one(3, 3));
   CHECK(flight.shift_between(1, 2) > 1e-3);
   CHECK(zones.go() == std::vector<char>{0, 1, 1, 0});
   CHECK(flight.shift_between(1, 2) < 1e-14);
@@ -117,26 +120,27 @@ TEST_CASE(
   opening.arm_b = centre - end_2;
   std::vector<dynamics::Opening> openings{opening};
   const Vec3 end_3 = flight.work.bodies[3].end.translation;
-  const std::vector<double> moves = zones.open(openings, 1.0 / 240.0);
-  CHECK(moves[0] == 0.0);
+  const std::vector<dynamics::EndMove> moves = zones.open(openings, 1.0 / 240.0);
+  CHECK(moves[0].is_none());
   CHECK(openings[0].impulse > 0.0);
   const double up = flight.work.bodies[3].end.translation.y() - end_3.y();
   const double down = end_1.y() - flight.work.bodies[1].end.translation.y();
   CHECK(up + down == Approx(1e-4));
-  CHECK(moves[1] >= down);
-  CHECK(moves[2] >= (flight.work.bodies[2].end.translation - end_2).norm());
-  CHECK(moves[3] >= up);
-  CHECK(moves[1] + moves[2] + moves[3] < 1e-3);
+  CHECK(moves[1].shift.y() == Approx(-down));
+  CHECK((moves[2].shift - (flight.work.bodies[2].end.translation - end_2)).norm() < 1e-14);
+  CHECK(moves[3].shift.y() == Approx(up));
+  CHECK(dynamics::move_between(moves[1], moves[3]) >= up + down);
+  CHECK(dynamics::move_between(moves[1], moves[3]) < 1e-3);
   CHECK(up * mass(3) == Approx(down * (mass(1) + mass(2))));
   CHECK(flight.shift_between(1, 2) < 1e-14);
 
   zones.limit(1, 0.9);
   zones.go();
   openings = {opening};
-  const std::vector<double> again = zones.open(openings, 1.0 / 240.0);
-  CHECK(again[1] == 0.0);
-  CHECK(again[2] == 0.0);
-  CHECK(again[3] > 0.0);
+  const std::vector<dynamics::EndMove> again = zones.open(openings, 1.0 / 240.0);
+  CHECK(again[1].is_none());
+  CHECK(again[2].is_none());
+  CHECK_FALSE(again[3].is_none());
 }
 
 TEST_CASE("sheets that spin together, a thousandth of a millimetre apart, are not in each other's way") {

@@ -151,7 +151,12 @@ TEST_CASE("what was let go only a little of a far turn is not taken for one that
   work.bodies[1].end = work.bodies[1].start;
   for (auto& b : work.bodies) dynamics::sweep(b, b.end);
   const auto &a = work.bodies[0], &b = work.bodies[1];
-  CHECK(!dynamics::keep_apart_as_balls(a, a.end, b, b.end, 1e-4));
+  CHECK(dynamics::clearance_of_balls(a, a.end, b, b.end, 1e-4) <= 1e-4);
+  // Further off it is told by how much: the bead from the ball that the stick is in, on its way.
+  for (Pose* pose : {&work.bodies[1].start, &work.bodies[1].end}) pose->translation.x() += 0.5;
+  const double apart = dynamics::clearance_of_balls(a, a.end, b, b.end, 1e-4);
+  CHECK(apart < (b.start.translation - a.start.translation).norm() - a.reach - b.reach);
+  CHECK(apart > 0.49);
 }
 
 TEST_CASE("a step in which many were cut goes on in shorter parts, from the part in which they were") {
