@@ -12,6 +12,7 @@
 #include "engine/geometry/solid_contacts.h"
 #include "engine/geometry/solid_cutter.h"
 #include "tests/engine/geometry/solids.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 using namespace shatterbox::fracture;
@@ -158,7 +159,7 @@ namespace {
 SolidDecision strike(const char* material, double speed, double spacing = 4.0, const Vec3& half = kHalf,
                      double scale = 1.0) {
   SolidSubject subject;
-  subject.complex = make_block(scale * half, scale * 0.025);
+  subject.complex = make_block(scale * half, scale * (test::kIsSanitized ? 0.032 : 0.025));
   subject.material = *material::find_preset(material);
   ImpactLoad load;
   load.point_material = scale * Vec3(0.03, half.y(), -0.02);

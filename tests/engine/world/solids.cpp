@@ -175,7 +175,7 @@ TEST_CASE("a solid that falls breaks into pieces of its mass and motion, and hol
 
 TEST_CASE("a solid whose elements are larger inside tells an impact as one of even ones, and breaks whole") {
   const auto drop_block = [](int grading, double height) {
-    return drop({Vec3(0.2, 0.17, 0.18), test::kIsSanitized ? 0.03 : 0.022, grading}, height, 0.0, 0.01);
+    return drop({Vec3(0.2, 0.17, 0.18), test::kIsSanitized ? 0.034 : 0.022, grading}, height, 0.0, 0.01);
   };
   const auto tetrahedra_of = [](const world::World& w) {
     for (const world::PartCount& part : w.inventory())
