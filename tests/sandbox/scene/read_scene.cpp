@@ -167,6 +167,19 @@ TEST_CASE("bodies without a name are called by their number") {
   CHECK(std::get<SphereForm>(reading.scene->bodies[0].form).radius == 0.25);
 }
 
+TEST_CASE("bodies that name no material are of what their kind is made of most often") {
+  const Reading reading = read(
+      "[[body]]\nshape = \"ornament\"\n[[body]]\nkind = \"solid\"\nshape = \"sphere\"\n"
+      "[[body]]\nkind = \"plane\"\n[[body]]\nkind = \"sphere\"\n"
+      "[[body]]\nkind = \"box\"\nsize = [1, 1, 1]\n[[body]]\nkind = \"capsule\"\n");
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  std::vector<std::string> materials;
+  for (const auto& body : reading.scene->bodies)
+    materials.push_back(reading.scene->materials.at(static_cast<std::size_t>(body.material)).material.name);
+  CHECK(materials == std::vector<std::string>{"glass", "ceramic", "ceramic", "steel", "steel", "steel"});
+}
+
 TEST_CASE("a body may have a force and a torque") {
   const Reading reading = read("[[body]]\nkind = \"sphere\"\nforce = [1, 2, 3]\ntorque = [4, 5, 6]\n");
   INFO(reading.text);
