@@ -707,7 +707,9 @@ class Guard {
       if (work_.pairs[p].passes) continue;
       const bool is_cut = in_zone_[p] && zones_->share(work_.pairs[p].a) < 1.0;
       memory.stuck_steps = is_cut ? memory.stuck_steps + 1 : 0;
-      report_.longest_cut = std::max(report_.longest_cut, memory.stuck_steps);
+      if (memory.stuck_steps <= report_.longest_cut) continue;
+      report_.longest_cut = memory.stuck_steps;
+      report_.longest_cut_pair = {memory.body_a, memory.body_b};
     }
   }
 

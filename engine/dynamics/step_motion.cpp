@@ -463,7 +463,10 @@ void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step) 
   step.ways_tested += moved.ways_tested;
   step.test_bytes = std::max(step.test_bytes, moved.test_bytes);
   step.failsafe_steps += moved.failsafe_steps;
-  step.longest_cut = std::max(step.longest_cut, moved.longest_cut);
+  if (moved.longest_cut > step.longest_cut) {
+    step.longest_cut = moved.longest_cut;
+    step.longest_cut_pair = moved.longest_cut_pair;
+  }
   step.crossing_pairs = moved.crossing_pairs;
   step.new_crossing_pairs.insert(step.new_crossing_pairs.end(), moved.new_crossing_pairs.begin(),
                                  moved.new_crossing_pairs.end());

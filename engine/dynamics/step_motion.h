@@ -30,8 +30,9 @@ struct ContactReport {
   long ways_tested = 0;  // pairs of bodies whose ways it tested, in all of them
   double test_bytes = 0.0;  // that it kept for that, hits apart
   int failsafe_steps = 0;   // bodies whose step was cut short
-  int longest_cut = 0;      // steps in a row, of the pair that was cut longest
-  int crossing_pairs = 0;   // crossed when they were first seen, and still do
+  int longest_cut = 0;      // steps in a row, of the pair that was cut longest:
+  std::pair<body::BodyId, body::BodyId> longest_cut_pair{};
+  int crossing_pairs = 0;  // crossed when they were first seen, and still do
   std::vector<std::pair<body::BodyId, body::BodyId>> new_crossing_pairs;  // seen in this step
   std::vector<std::pair<body::BodyId, body::BodyId>> parted;  // lay exactly in each other: parting.h
   double frozen_share = 0.0;  // of the motion of awake dynamic bodies: that of those cut short

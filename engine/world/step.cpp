@@ -105,7 +105,11 @@ void book_contact(const dynamics::ContactReport& contact, const std::vector<body
     if (figures.parted_names.size() < kMostNames)
       figures.parted_names.push_back(name_of(bodies, a) + " / " + name_of(bodies, b));
   }
-  figures.longest_cut = std::max(figures.longest_cut, contact.longest_cut);
+  if (contact.longest_cut > figures.longest_cut) {
+    const auto& [a, b] = contact.longest_cut_pair;
+    figures.longest_cut = contact.longest_cut;
+    figures.longest_cut_names = name_of(bodies, a) + " / " + name_of(bodies, b);
+  }
   figures.failsafe_steps += contact.failsafe_steps > 0 ? 1 : 0;
   figures.body_steps += contact.awake_bodies;
   figures.frozen_body_steps += contact.frozen_share * contact.awake_bodies;

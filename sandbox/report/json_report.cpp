@@ -233,6 +233,7 @@ Json make_json(const RunRecord& record) {
                      {"failsafe_steps", w.contact.failsafe_steps},
                      {"frozen_share", number(w.contact.frozen_share)},
                      {"longest_cut", w.contact.longest_cut},
+                     {"longest_cut_names", w.contact.longest_cut_names},
                      {"crossing_pairs_at_start", w.contact.crossing_pairs},
                      {"crossing_names", w.contact.crossing_names},
                      {"parted_names", w.contact.parted_names},

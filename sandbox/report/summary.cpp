@@ -158,6 +158,16 @@ std::string crossing_line(const RunRecord& record) {
                      contact.crossing_pairs > static_cast<long>(shown) ? ", ..." : "");
 }
 
+/// Two that find no room, of which one goes on to be pushed.
+std::string held_back_line(const RunRecord& record) {
+  constexpr int kNoticed = 12;  // steps in a row
+  const auto& contact = record.world.contact;
+  if (contact.longest_cut < kNoticed) return {};
+  return fmt::format(
+      "{} were held back by the failsafe for {} in a row: they find no room, and do not move as they would\n",
+      contact.longest_cut_names, counted(contact.longest_cut, "step"));
+}
+
 std::string parted_line(const RunRecord& record) {
   const auto& names = record.world.contact.parted_names;
   if (names.empty()) return {};
@@ -233,7 +243,7 @@ std::string make_summary(const RunRecord& record) {
   }
   text += bodies_line(record) + impact_lines(record) + break_lines(record) + dent_lines(record) +
           joint_line(record) + time_lines(record) + crossing_line(record) + parted_line(record) +
-          behind_lines(record) + error_line(record) + audit_line(record);
+          held_back_line(record) + behind_lines(record) + error_line(record) + audit_line(record);
   const double slowness =
       record.simulated_seconds > 0.0 ? record.wall_seconds / record.simulated_seconds : 0.0;
   const std::string pace =

@@ -26,8 +26,8 @@ void step_by_failsafe(test::Scene& scene) {
 }
 
 struct Outcome {
-  int forced = 0, cut = 0, longest = 0;  // cut: in forced steps
-  double most = 0.0;                     // J
+  int forced = 0, cut = 0, longest = 0, named = 0;  // cut: in forced steps
+  double most = 0.0;                                // J
 };
 
 Outcome run(test::Scene& scene, int steps) {
@@ -43,6 +43,12 @@ Outcome run(test::Scene& scene, int steps) {
       scene.step();
     }
     outcome.longest = std::max(outcome.longest, scene.report.longest_cut);
+    if (scene.report.longest_cut > 0) {
+      const auto& [a, b] = scene.report.longest_cut_pair;
+      CHECK(a < b);
+      CHECK(body::find_body(scene.bodies, b) != nullptr);
+      ++outcome.named;
+    }
     outcome.most = std::max(outcome.most, scene.energy());
   }
   CHECK(test::count_crossings(scene) == 0);
@@ -121,6 +127,7 @@ TEST_CASE("a pile whose solver fails every tenth step comes to rest where others
                  << twin.kinetic() << ", mean height ratio " << height(scene) / height(twin));
   CHECK(outcome.cut > (test::kIsSanitized ? 3 : 10));
   CHECK(outcome.longest <= 3);
+  CHECK(outcome.named > 0);
   CHECK(outcome.most <= energy * (1.0 + 1e-9));
   CHECK(height(scene) == Approx(height(twin)).epsilon(0.2));
   // Nothing hangs: with the failsafe gone it goes on as any pile.

@@ -113,6 +113,17 @@ TEST_CASE("the audit's findings are in the report and in the closing words") {
   CHECK(text.find("cup (7) and plate (8)") != std::string::npos);
 }
 
+TEST_CASE("who is held back step after step is named in the report and in the closing words") {
+  RunRecord record = some_record();
+  record.world.contact.longest_cut = 11;
+  record.world.contact.longest_cut_names = "drum / bead";
+  CHECK(make_summary(record).find("held back") == std::string::npos);
+  record.world.contact.longest_cut = 12;
+  CHECK(make_summary(record).find("drum / bead were held back by the failsafe for 12 steps in a row") !=
+        std::string::npos);
+  CHECK(make_json(record)["contact"]["longest_cut_names"] == "drum / bead");
+}
+
 TEST_CASE("that an interrupted run goes on is said of one that does") {
   RunRecord record = some_record();
   record.is_interrupted = true;
