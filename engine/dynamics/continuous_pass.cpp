@@ -475,7 +475,7 @@ class Guard {
         is_dirty[at(i)] = work_.bodies[at(i)].inverse_mass > 0.0;
     }
     std::vector<Opening> openings = find_openings(least_wanted, pairs_with(is_dirty));
-    mark_due_by(open_gaps(openings, settings_.time_step, yielding, work_));
+    mark_due(open_gaps(openings, settings_.time_step, yielding, work_));
   }
 
   void add_to_known(std::size_t p) {
@@ -545,17 +545,14 @@ class Guard {
   // Pairs whose last test leaves more than their ends moved against each other are free still.
   void mark_due_since(const std::vector<Way>& before) {
     std::vector<EndMove> moves(work_.bodies.size());
-    std::vector<char> has_moved(work_.bodies.size());
     for (std::size_t i = 0; i < moves.size(); ++i) {
       const WorkBody& w = work_.bodies[i];
       const bool is_straight = before[i].is_straight && w.straight_parts == 1;
       moves[i].shift = w.end.translation - before[i].end.translation;
       moves[i].turned =
           is_straight ? turn_bound(before[i].end.rotation, w.end.rotation, w.reach) : kElsewhere;
-      has_moved[i] = !moves[i].is_none();
     }
-    mark_due(has_moved,
-             [&](const WorkPair& pair) { return move_between(moves[at(pair.a)], moves[at(pair.b)]); });
+    mark_due(moves);
   }
 
   static bool is_due(WorkPair& pair, double moved, double& spare) {
@@ -572,35 +569,30 @@ class Guard {
   // Surfaces in one zone cannot meet, from now on; what is round keeps its radius, and may have begun too
   // deep.
   bool is_in_one_zone(const WorkPair& pair) {
-    return zones_ && !pair.has_sides && zones_->go_as_one(pair.a, pair.b);
+    return zones_ && !pair.has_sides && zones_->are_one(pair.a, pair.b);
   }
 
-  // By how far (m) the ends of each pair may have moved against each other; kElsewhere or more: anywhere.
-  template <class MovedBy>
-  void mark_due(const std::vector<char>& has_moved, const MovedBy& moved_by) {
+  // Pairs whose last test leaves more than their bodies were moved against each other are free still; who
+  // turned by kElsewhere may be anywhere.
+  void mark_due(const std::vector<EndMove>& moves) {
+    std::vector<char> has_moved(moves.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) has_moved[i] = !moves[i].is_none();
     due_.clear();
     for (const std::size_t p : pairs_with(has_moved, hit_)) {
       const bool has_hit = !hits_[p].empty();
       hits_[p].clear();
-      if (is_in_one_zone(work_.pairs[p])) continue;
-      if (is_due(work_.pairs[p], moved_by(work_.pairs[p]), spare_[p]) || has_hit) make_due(p);
+      WorkPair& pair = work_.pairs[p];
+      if (is_in_one_zone(pair)) continue;
+      if (is_due(pair, move_between(moves[at(pair.a)], moves[at(pair.b)]), spare_[p]) || has_hit) make_due(p);
     }
     hit_.clear();
     add_missed_pairs();
   }
 
-  // Pairs whose last test leaves more than their bodies were moved against each other are free still.
-  void mark_due_by(const std::vector<EndMove>& moves) {
-    std::vector<char> has_moved(moves.size());
-    for (std::size_t i = 0; i < moves.size(); ++i) has_moved[i] = !moves[i].is_none();
-    mark_due(has_moved,
-             [&](const WorkPair& pair) { return move_between(moves[at(pair.a)], moves[at(pair.b)]); });
-  }
-
   void mark_due_with(const std::vector<char>& has_moved) {
-    mark_due(has_moved, [&](const WorkPair& pair) {
-      return has_moved[at(pair.a)] || has_moved[at(pair.b)] ? kElsewhere : 0.0;
-    });
+    std::vector<EndMove> moves(has_moved.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) moves[i].turned = has_moved[i] ? kElsewhere : 0.0;
+    mark_due(moves);
   }
 
   // The last resort: bodies that are still in each other's way go as one, and as far as what cannot be moved
@@ -646,7 +638,7 @@ class Guard {
       return zones_->zone_of(work_.pairs[p].a) == zones_->zone_of(work_.pairs[p].b);
     });
     std::vector<Opening> openings = find_openings(kLastOpening, pairs);
-    mark_due_by(zones_->open(openings, settings_.time_step));
+    mark_due(zones_->open(openings, settings_.time_step));
   }
 
   // Velocities lose what closes between the bodies of a zone, by impulses between them, and what gravity gave

@@ -25,7 +25,7 @@ class ImpactZones {
   bool unite(int a, int b);
 
   /// True if they were united, or are in the zone of some that were.
-  bool go_as_one(int a, int b) {
+  bool are_one(int a, int b) {
     const int zone = zone_of(a);
     return zone == zone_of(b) && is_whole_[static_cast<std::size_t>(zone)] != 0;
   }

@@ -94,6 +94,10 @@ class PartFollower {
 
 }  // namespace
 
+bool TurningPaths::is_followed(std::size_t pair_number) const {
+  return apart_[pair_number] <= kNear * work_.pairs[pair_number].kept_gap;
+}
+
 std::size_t TurningPaths::level_of(const WorkPair& pair) const {
   const int parts =
       std::max(work_.bodies[at(pair.a)].straight_parts, work_.bodies[at(pair.b)].straight_parts);
@@ -121,8 +125,8 @@ void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
   std::vector<std::array<Need, kLevels>> needs(work_.bodies.size());
   std::vector<std::size_t> to_list;
   for (const std::size_t p : pairs) {
+    if (!is_followed(p)) continue;
     WorkPair& pair = work_.pairs[p];
-    if (apart_[p] > kNear * pair.kept_gap) continue;
     const std::size_t level = level_of(pair);
     const Need need = is_listed(pair) ? Need::ends : Need::boxes;
     for (const int i : {pair.a, pair.b}) needs[at(i)][level] = std::max(needs[at(i)][level], need);
@@ -197,7 +201,7 @@ std::vector<PathHit> TurningPaths::find_hits(std::size_t pair_number, double& sp
   WorkPair& pair = work_.pairs[pair_number];
   std::vector<PathHit> hits;
   spare = apart_[pair_number] - kSafe * pair.kept_gap;
-  if (apart_[pair_number] > kNear * pair.kept_gap) return hits;
+  if (!is_followed(pair_number)) return hits;
   PathMemory& known = pair.known;
   spare = known.searched - (known.moved - known.listed_at) - kSafe * pair.kept_gap;
   spare = std::min(spare, kNear * pair.kept_gap);

@@ -42,6 +42,7 @@ class TurningPaths {
   static constexpr int kLevels = 7;
   using Divided = std::array<std::vector<Part>, kLevels>;  // in 1, 2, 4, ..
 
+  bool is_followed(std::size_t pair_number) const;
   std::size_t level_of(const WorkPair& pair) const;
   void fill_parts(const WorkBody& body, std::size_t level, bool has_boxes, Divided& divided) const;
   void list_parts(WorkPair& pair) const;

@@ -65,9 +65,9 @@ TEST_CASE("a zone goes as one, with the momenta of its bodies' ways") {
   CHECK(zones.unite(1, 2));
   CHECK_FALSE(zones.unite(2, 1));
   CHECK_FALSE(zones.unite(0, 1));  // the floor does not move
-  CHECK(zones.go_as_one(1, 2));
-  CHECK_FALSE(zones.go_as_one(0, 1));
-  CHECK_FALSE(zones.go_as_one(3, 3));
+  CHECK(zones.are_one(1, 2));
+  CHECK_FALSE(zones.are_one(0, 1));
+  CHECK_FALSE(zones.are_one(3, 3));
   CHECK(flight.shift_between(1, 2) > 1e-3);
   CHECK(zones.go() == std::vector<char>{0, 1, 1, 0});
   CHECK(flight.shift_between(1, 2) < 1e-14);
