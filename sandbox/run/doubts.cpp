@@ -352,13 +352,18 @@ void doubt_joints(const scene::SceneDescription& scene, const scene::BuiltScene&
 }
 
 void doubt_waiting(const scene::SceneDescription& scene, scene::Problems& doubts) {
-  if (std::any_of(scene.bodies.begin(), scene.bodies.end(), scene::can_break)) return;
-  for (const scene::EventEntry& event : scene.events)
-    if (event.when == scene::When::first_break)
-      scene::book(
-          doubts, event.place,
-          fmt::format("event \"{}\" waits for the first break, and nothing here can break", event.name),
-          "shells and solids can: kind = \"shell\" or \"solid\"; or give it a time, at = 0.5");
+  const bool can_any = std::any_of(scene.bodies.begin(), scene.bodies.end(), scene::can_break);
+  for (const scene::EventEntry& event : scene.events) {
+    if (event.when != scene::When::first_break) continue;
+    const scene::BodyEntry* whose =
+        event.whose.body < 0 ? nullptr : &scene.bodies[static_cast<std::size_t>(event.whose.body)];
+    if (whose == nullptr ? can_any : scene::can_break(*whose)) continue;
+    const std::string who =
+        whose == nullptr ? "nothing here can break" : fmt::format("\"{}\" cannot break", whose->name);
+    scene::book(doubts, event.place,
+                fmt::format("event \"{}\" waits for the first break, and {}", event.name, who),
+                "shells and solids can: kind = \"shell\" or \"solid\"; or give it a time, at = 0.5");
+  }
 }
 
 /// What is moved or let go when no hand holds it. A hand whose time is not known may hold from the start.

@@ -94,7 +94,7 @@ struct Caption {
 
 enum class When : std::uint8_t {
   time,         // at `at`
-  first_break,  // `at` after the step in which something first breaks
+  first_break,  // `at` after the step in which something first breaks, or `whose` parts first do
   rest,         // `at` after everything that can move has been quiet for kRestTime
 };
 
@@ -105,6 +105,7 @@ struct EventEntry {
   std::string name;
   When when = When::time;
   double at = 0.0;  // s
+  BodyRef whose;    // break it waits for; nobody: whoever breaks
   BodyRef who;      // what comes in (with its copies), is pushed or goes
   std::variant<Projectile, Drop, Push, Remove, Gravity, Explosion, Grab, Carry, Release, Speed, CameraChange,
                OverlayChange, Caption>

@@ -46,7 +46,7 @@ void refuse_other_keys(TableReader& reader) {
   }
 }
 
-void read_when(TableReader& reader, EventEntry& event) {
+void read_when(TableReader& reader, const SceneDescription& scene, EventEntry& event) {
   const auto at = reader.number("at", between(0.0, 1e6, "s"));
   const auto when = reader.choice("when", kWhenNames);
   const auto after = reader.number("after", between(0.0, 1e6, "s"));
@@ -64,6 +64,10 @@ void read_when(TableReader& reader, EventEntry& event) {
                           "write at = 0.5 (s), or add when = \"first break\"");
   event.at = at.value_or(after.value_or(0.0));
   if (when) event.when = *when == "rest" ? When::rest : When::first_break;
+  event.whose = read_named_body(reader, "of", scene);
+  if (reader.has("of") && event.when != When::first_break)
+    reader.add_problem_at("of", "it says whose break is waited for, and none is",
+                          "add when = \"first break\"");
 }
 
 /// What is thrown is one body, which goes where it is thrown.
@@ -92,7 +96,7 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   event.place = table.place;
   TableReader reader(table, fmt::format("event \"{}\"", event.name), problems);
   reader.text("name");
-  read_when(reader, event);
+  read_when(reader, scene, event);
   const auto verb = reader.choice("do", kEventVerbs);
   if (!reader.has("do")) {
     reader.add_problem(table.place, fmt::format("{} does nothing", reader.what()),

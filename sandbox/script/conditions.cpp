@@ -25,9 +25,24 @@ bool is_quiet(const world::World& world) {
 
 }  // namespace
 
-void Conditions::look(const world::World& world) {
+void Conditions::look_for_breaks(const scene::BuiltScene& built) {
+  const std::vector<world::BreakRow>& breaks = built.world.report().breaks;
+  for (; breaks_seen_ < breaks.size(); ++breaks_seen_) {
+    const auto found = built.origins.find(built.world.ancestry(breaks[breaks_seen_].id).original);
+    if (found == built.origins.end()) continue;
+    const scene::Origin& whose = found->second;
+    const bool is_known =
+        std::any_of(first_breaks_.begin(), first_breaks_.end(), [&](const FirstBreak& first) {
+          return first.whose.entry == whose.entry && first.whose.copy == whose.copy;
+        });
+    if (!is_known) first_breaks_.push_back({whose, built.world.steps()});
+  }
+}
+
+void Conditions::look(const scene::BuiltScene& built) {
+  const world::World& world = built.world;
   const long now = world.steps();
-  if (!first_break_ && !world.report().breaks.empty()) first_break_ = now;
+  look_for_breaks(built);
   if (rest_) return;
   if (!is_quiet(world)) {
     quiet_since_.reset();
@@ -38,9 +53,13 @@ void Conditions::look(const world::World& world) {
     rest_ = now;
 }
 
-std::optional<long> Conditions::since(scene::When when) const {
-  if (when == scene::When::time) return 0;
-  return when == scene::When::rest ? rest_ : first_break_;
+std::optional<long> Conditions::since(const scene::EventEntry& event) const {
+  if (event.when == scene::When::time) return 0;
+  if (event.when == scene::When::rest) return rest_;
+  const auto first = std::find_if(first_breaks_.begin(), first_breaks_.end(), [&](const FirstBreak& one) {
+    return event.whose.body < 0 || event.whose.includes(one.whose.entry, one.whose.copy);
+  });
+  return first == first_breaks_.end() ? std::nullopt : std::optional<long>(first->step);
 }
 
 }  // namespace shatterbox::sandbox::script

@@ -194,12 +194,13 @@ std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& 
   return {};
 }
 
-std::vector<std::size_t> Script::take_due(const world::World& world) {
-  conditions_.look(world);
+std::vector<std::size_t> Script::take_due(const scene::BuiltScene& built) {
+  conditions_.look(built);
+  const world::World& world = built.world;
   std::vector<std::pair<long, std::size_t>> due;
   std::erase_if(coming_, [&](std::size_t number) {
     const scene::EventEntry& event = scene_.events[number];
-    const auto since = conditions_.since(event.when);
+    const auto since = conditions_.since(event);
     if (!since) return false;
     const long step = *since + step_of(event.at, world.settings().steps_per_second);
     if (step <= world.steps()) due.emplace_back(step, number);
@@ -240,7 +241,7 @@ std::string Script::play_event(const scene::EventEntry& event, scene::BuiltScene
 }
 
 void Script::play_events(scene::BuiltScene& built, const Look& sight, std::vector<std::string>& faults) {
-  for (const std::size_t number : take_due(built.world)) {
+  for (const std::size_t number : take_due(built)) {
     const scene::EventEntry& event = scene_.events[number];
     const std::string fault = play_event(event, built, sight, faults);
     if (!fault.empty())

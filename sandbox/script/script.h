@@ -68,7 +68,7 @@ class Script {
   using Look = std::function<Sight()>;
   void play_events(scene::BuiltScene& built, const Look& sight, std::vector<std::string>& faults);
   /// The events that are due, in the order of their times, then of the scene.
-  std::vector<std::size_t> take_due(const world::World& world);
+  std::vector<std::size_t> take_due(const scene::BuiltScene& built);
   /// A sentence why it could not be done, or nothing.
   std::string play_event(const scene::EventEntry& event, scene::BuiltScene& built, const Look& sight,
                          std::vector<std::string>& faults);

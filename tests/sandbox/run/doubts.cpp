@@ -60,7 +60,11 @@ TEST_CASE(
       "[[event]]\nname = \"slow\"\nwhen = \"first break\"\ndo = \"speed\"\nfactor = 0.1\n";
   CHECK(
       has(doubts_of(crate + waits), "event \"slow\" waits for the first break, and nothing here can break"));
-  CHECK(doubts_of("[[body]]\nname = \"cup\"\nshape = \"bowl\"\n" + waits).empty());
+  const std::string cup = "[[body]]\nname = \"cup\"\nshape = \"bowl\"\nposition = [3, 0, 0]\n";
+  CHECK(doubts_of(cup + waits).empty());
+  CHECK(doubts_of(crate + cup + waits + "of = \"cup\"\n").empty());
+  CHECK(has(doubts_of(crate + cup + waits + "of = \"crate\"\n"),
+            "event \"slow\" waits for the first break, and \"crate\" cannot break"));
 }
 
 TEST_CASE("what is moved or let go with no hand on it is doubted") {

@@ -277,6 +277,12 @@ const Broken kCorpus[] = {
      "both a time and a condition", "keep at"},
     {"[[event]]\nat = 1\nafter = 1\ndo = \"speed\"\nfactor = 1\n", "t.toml:3:9", "something to wait for",
      "at = 0.5"},
+    {"[[event]]\nat = 1\nof = \"ball\"\ndo = \"speed\"\nfactor = 1\n[[body]]\nname = \"ball\"\n"
+     "kind = \"sphere\"\n",
+     "t.toml:3:1", "whose break is waited for", "add when"},
+    {"[[event]]\nwhen = \"first break\"\nof = \"bal\"\ndo = \"speed\"\nfactor = 1\n[[body]]\n"
+     "name = \"ball\"\nkind = \"sphere\"\n",
+     "t.toml:3:6", "there is no body \"bal\"", "did you mean \"ball\"?"},
     {"[[event]]\nwhen = \"first brake\"\ndo = \"speed\"\nfactor = 1\n", "t.toml:2:8", "unknown when",
      "did you mean \"first break\"?"},
     {"[[event]]\nat = 1\ndo = \"camera\"\nmove = \"dolly\"\n", "t.toml:1:", "changes nothing",

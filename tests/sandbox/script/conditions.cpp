@@ -1,4 +1,7 @@
 // Events that wait for something to happen.
+#include <map>
+#include <string>
+
 #include <catch2/catch.hpp>
 
 #include "sandbox/script/script.h"
@@ -67,4 +70,43 @@ TEST_CASE("an event that waits for the first break comes on the border after its
   const long broken = built->world.steps();
   CHECK(find_entry(text + "[[event]]\nwhen = \"first break\"\n" + kDrop, 100) == broken);
   CHECK(find_entry(text + "[[event]]\nwhen = \"first break\"\nafter = 0.05\n" + kDrop, 100) == broken + 12);
+}
+
+TEST_CASE("an event may wait for the first break of one body, of one of its copies, or of what is thrown") {
+  const auto glass = [](const std::string& name, const std::string& more) {
+    return "[[body]]\nname = \"" + name +
+           "\"\nkind = \"shell\"\nshape = \"sphere\"\nradius = 0.05\nthickness = 0.0006\n"
+           "edge_length = 0.012\nmaterial = \"glass\"\n" +
+           more;
+  };
+  const auto waits = [](const std::string& name, const std::string& of) {
+    return "[[event]]\nname = \"" + name + "\"\nwhen = \"first break\"\n" + of +
+           "do = \"caption\"\ntext = \"crack\"\n";
+  };
+  const auto reading = scene::read(
+      "[[body]]\nkind = \"plane\"\n" +
+      glass("cup",
+            "velocity = [0,-6,0]\nposition = [0,0.1,0]\nrepeat = {count = 2, spacing = [0.3,0.12,0]}\n") +
+      glass("jar", "") +
+      "[[event]]\nat = 0.05\ndo = \"projectile\"\nbody = \"jar\"\nfrom = [1,0.3,0]\n"
+      "at_point = [1,0,0]\nspeed = 6\n" +
+      waits("thrown", "of = \"jar\"\n") + waits("second", "of = \"cup[2]\"\n") +
+      waits("either", "of = \"cup\"\n") + waits("any", ""));
+  auto built = build(reading);
+  script::Script script(*reading.scene);
+  std::map<std::string, long> came, broke;  // steps
+  while (built->world.steps() < 60) {
+    CHECK(script.play(*built).empty());
+    for (const scene::Cue& cue : script.take_cues()) came[cue.event->name] = built->world.steps();
+    built->world.step();
+    for (const world::BreakRow& row : built->world.report().breaks)
+      broke.emplace(row.body, built->world.steps());
+  }
+  CHECK(came.size() == 4);
+  CHECK(came["any"] == broke.at("cup[1]"));
+  CHECK(came["either"] == broke.at("cup[1]"));
+  CHECK(came["second"] == broke.at("cup[2]"));
+  CHECK(came["thrown"] == broke.at("jar"));
+  CHECK(came["either"] < came["second"]);
+  CHECK(came["second"] < came["thrown"]);
 }
