@@ -8,8 +8,11 @@ namespace shatterbox::geometry {
 namespace {
 
 constexpr int kSamples = 1024;
-constexpr double kLeastRing = 8.0;  // edges of the narrowest ring
-constexpr double kGrading = 0.3;    // growth of the edge length per metre of distance
+constexpr double kLeastRing = 8.0;    // edges of a ring at a corner of the profile
+constexpr double kLeastRound = 10.0;  // edges about a circle of curvature between corners
+constexpr double kLeastSlope = 1e-3;  // sine of a slope
+constexpr int kPlaces = 16;           // of a segment where that is asked
+constexpr double kGrading = 0.3;      // growth of the edge length per metre of distance
 
 }  // namespace
 
@@ -26,16 +29,22 @@ Profile::Profile(const std::vector<ProfileSegment>& segments, double edge_length
     start += arc.back();
     arcs_.push_back(std::move(arc));
   }
-  // A ring on the axis is a point and asks for nothing; any other wants kLeastRing edges, a short segment one
-  // row.
-  const auto narrow = [&](double s, double r, double segment_length) {
+  // A ring on the axis is a point and asks for nothing; at a corner any other wants kLeastRing edges, a short
+  // segment one row; between corners a stem is as narrow as its rings, a disc is not.
+  const auto narrow = [&](double s, double circle, double segment_length) {
     double size = std::min(edge_length, segment_length / kRowHeight);
-    if (r > 0.0) size = std::min(size, 2.0 * core::kPi * r / kLeastRing);
+    if (circle > 0.0) size = std::min(size, circle);
     narrows_.push_back({s, size});
   };
+  const auto circle_of = [](double radius) { return 2.0 * core::kPi * radius; };
   for (std::size_t i = 0; i < segments_.size(); ++i) {
-    narrow(starts_[i], segments_[i].from.x(), length(i));
-    narrow(starts_[i] + length(i), segments_[i].to.x(), length(i));
+    narrow(starts_[i], circle_of(segments_[i].from.x()) / kLeastRing, length(i));
+    narrow(starts_[i] + length(i), circle_of(segments_[i].to.x()) / kLeastRing, length(i));
+    for (int k = 1; k < kPlaces; ++k) {
+      const double s = k * length(i) / kPlaces;
+      const double radius = point(i, s).x() / std::max(std::abs(direction(i, s).y()), kLeastSlope);
+      narrow(starts_[i] + s, circle_of(radius) / kLeastRound, length(i));
+    }
   }
 }
 
