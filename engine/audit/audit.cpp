@@ -238,6 +238,53 @@ std::vector<std::pair<int, int>> Audit::find_pairs(const std::vector<Actor>& act
   return pairs;
 }
 
+Audit::PairResult Audit::audit_pair(const Actor& one, const Actor& other) {
+  const auto rank = [](const Actor& x) {
+    return x.kind == ShapeKind::plane ? 2 : x.kind == ShapeKind::sphere ? 1 : 0;
+  };
+  const bool is_flipped = rank(one) > rank(other);
+  const Actor &a = is_flipped ? other : one, &b = is_flipped ? one : other;
+  bool is_new = a.is_new || b.is_new;
+  PairResult result;
+  if (a.group >= 0 && a.group == b.group && (a.family == 0 || a.family != b.family)) {
+    result.is_one_group = true;
+    result.findings.has_crossing = b.surface->triangles.size() > 0 &&
+                                   do_cross(*a.surface, a.moving, *b.surface, b.moving, &MovingSurface::end);
+    return result;
+  }
+  if (b.kind == ShapeKind::plane) {
+    if (is_new) result.crossed_at_start = is_below_plane(a.moving.start, a.radius, b.end);
+    audit_plane(a.moving, a.radius, b.end, result.findings);
+  } else if (a.kind == ShapeKind::sphere) {
+    const auto ball = [](const Actor& actor, const MovingSurface& leg) {
+      return MovingBall{{leg.start.front(), leg.end.front()}, actor.radius};
+    };
+    follow(a, b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+      if (std::exchange(is_new, false))
+        result.crossed_at_start = do_balls_cross_at_start(ball(a, leg_a), ball(b, leg_b));
+      audit_balls(ball(a, leg_a), ball(b, leg_b), is_end, result.findings);
+    });
+  } else if (b.kind == ShapeKind::sphere) {
+    follow(a, b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+      if (std::exchange(is_new, false))
+        result.crossed_at_start = crosses_sphere_at_start(*a.surface, leg_a, leg_b.start.front(), b.radius);
+      audit_sphere(*a.surface, leg_a, leg_b.start.front(), leg_b.end.front(), b.radius, is_end,
+                   result.findings);
+    });
+  } else {
+    follow(a, b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
+      if (std::exchange(is_new, false))
+        result.crossed_at_start = do_cross(*a.surface, leg_a, *b.surface, leg_b, &MovingSurface::start);
+      audit_surfaces(*a.surface, leg_a, *b.surface, leg_b, is_end, result.findings);
+    });
+  }
+  for (Finding& finding : result.findings.list) {
+    finding.a = a.id;
+    finding.b = b.id;
+  }
+  return result;
+}
+
 void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> births,
                      std::span<const body::Way> ways, double time) {
   ++report_.steps;
@@ -245,67 +292,21 @@ void Audit::end_step(std::span<const body::Body> bodies, std::span<const Birth> 
   const auto pairs = find_pairs(actors);
   std::vector<PairResult> results(pairs.size());
   core::parallel_for(pairs.size(), 4, [&](std::size_t i) {
-    const Actor* a = &actors[at(pairs[i].first)];
-    const Actor* b = &actors[at(pairs[i].second)];
-    const auto rank = [](const Actor& x) {
-      return x.kind == ShapeKind::plane ? 2 : x.kind == ShapeKind::sphere ? 1 : 0;
-    };
-    const bool is_flipped = rank(*a) > rank(*b);
-    if (is_flipped) std::swap(a, b);
-    bool is_new = a->is_new || b->is_new;
-    PairResult& result = results[i];
-    if (a->group >= 0 && a->group == b->group && (a->family == 0 || a->family != b->family)) {
-      result.is_one_group = true;
-      result.findings.has_crossing =
-          b->surface->triangles.size() > 0 &&
-          do_cross(*a->surface, a->moving, *b->surface, b->moving, &MovingSurface::end);
-      return;
-    }
-    if (b->kind == ShapeKind::plane) {
-      if (is_new) result.crossed_at_start = is_below_plane(a->moving.start, a->radius, b->end);
-      audit_plane(a->moving, a->radius, b->end, result.findings);
-    } else if (a->kind == ShapeKind::sphere) {
-      const auto ball = [](const Actor& actor, const MovingSurface& leg) {
-        return MovingBall{{leg.start.front(), leg.end.front()}, actor.radius};
-      };
-      follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
-        if (std::exchange(is_new, false))
-          result.crossed_at_start = do_balls_cross_at_start(ball(*a, leg_a), ball(*b, leg_b));
-        audit_balls(ball(*a, leg_a), ball(*b, leg_b), is_end, result.findings);
-      });
-    } else if (b->kind == ShapeKind::sphere) {
-      follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
-        if (std::exchange(is_new, false))
-          result.crossed_at_start =
-              crosses_sphere_at_start(*a->surface, leg_a, leg_b.start.front(), b->radius);
-        audit_sphere(*a->surface, leg_a, leg_b.start.front(), leg_b.end.front(), b->radius, is_end,
-                     result.findings);
-      });
-    } else {
-      follow(*a, *b, [&](const MovingSurface& leg_a, const MovingSurface& leg_b, bool is_end) {
-        if (std::exchange(is_new, false))
-          result.crossed_at_start = do_cross(*a->surface, leg_a, *b->surface, leg_b, &MovingSurface::start);
-        audit_surfaces(*a->surface, leg_a, *b->surface, leg_b, is_end, result.findings);
-      });
-    }
-    for (Finding& finding : result.findings.list) {
-      finding.a = a->id;
-      finding.b = b->id;
-    }
+    results[i] = audit_pair(actors[at(pairs[i].first)], actors[at(pairs[i].second)]);
   });
   long group_pairs = 0;
-  auto crossing_before = std::move(crossing_);
-  crossing_.clear();
+  const auto crossing_before = std::exchange(crossing_, {});
   for (std::size_t i = 0; i < pairs.size(); ++i) {
+    PairResult& result = results[i];
     const std::pair<BodyId, BodyId> ids{actors[at(pairs[i].first)].id, actors[at(pairs[i].second)].id};
     const auto before = crossing_before.find(ids);
     const bool was_exempt = before != crossing_before.end() && before->second;
-    const bool is_exempt = was_exempt || results[i].crossed_at_start;
+    const bool is_exempt = was_exempt || result.crossed_at_start;
     if (is_exempt && !was_exempt) ++report_.exempt_pairs;
-    if (results[i].findings.has_crossing) crossing_[ids] = is_exempt;
-    if (results[i].is_one_group && results[i].findings.has_crossing) ++group_pairs;
-    report_.unsettled += results[i].findings.unsettled;
-    book(results[i].findings.list, is_exempt, time);
+    if (result.findings.has_crossing) crossing_[ids] = is_exempt;
+    if (result.is_one_group && result.findings.has_crossing) ++group_pairs;
+    report_.unsettled += result.findings.unsettled;
+    book(result.findings.list, is_exempt, time);
   }
   report_.group_pairs = std::max(report_.group_pairs, group_pairs);
   known_.clear();

@@ -89,6 +89,8 @@ class Audit {
   Actor make_actor(const body::Body& body, const body::Way* way, std::span<const Birth> births);
   std::shared_ptr<const Surface> surface_of(const std::shared_ptr<const body::Shape>& shape);
   std::vector<std::pair<int, int>> find_pairs(const std::vector<Actor>& actors) const;
+  /// The one of lesser id first.
+  static PairResult audit_pair(const Actor& one, const Actor& other);
   void book(std::vector<Finding>& found, bool is_exempt, double time);
 
   std::map<body::BodyId, Start> starts_;

@@ -139,6 +139,97 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
   }
 }
 
+// Both ways round: one of the two, and the other, by their numbers. Nothing if one is not there.
+template <class Two, class Visit>
+void each_of_two(const std::vector<Body>& bodies, const Two& two, const Visit& visit) {
+  const int a = find_number(bodies, two.body_a), b = find_number(bodies, two.body_b);
+  if (a < 0 || b < 0) return;
+  visit(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+  visit(static_cast<std::size_t>(b), static_cast<std::size_t>(a));
+}
+
+// Those that are being brought out of another, which leaves them no speed.
+std::vector<char> find_parting(const std::vector<Body>& bodies, const ContactState& state) {
+  std::vector<char> is_parting(bodies.size(), 0);
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_exempt) continue;
+    for (const BodyId id : {pair.body_a, pair.body_b})
+      if (const int i = find_number(bodies, id); i >= 0) is_parting[static_cast<std::size_t>(i)] = 1;
+  }
+  return is_parting;
+}
+
+// Whether anyone has been quiet for long enough.
+bool count_quiet_times(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
+  const std::vector<char> is_parting = find_parting(bodies, state);
+  bool is_anyone_tired = false;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Body& b = bodies[i];
+    if (!b.is_dynamic() || !b.is_awake) continue;
+    const bool is_still =
+        !is_parting[i] && is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
+    // Or it trembles in a nest, without getting anywhere.
+    BodyState* memory = find_memory(state, b.id);
+    const bool stays = memory != nullptr && stays_near(settings, b, memory->rest_pose);
+    if (!stays && memory != nullptr) memory->rest_pose = b.pose;
+    b.quiet_time = is_still || stays ? b.quiet_time + settings.time_step : 0.0;
+    is_anyone_tired = is_anyone_tired || b.quiet_time >= time_to_rest(settings, b);
+  }
+  return is_anyone_tired;
+}
+
+// Who touches something, or hangs on what cannot move.
+std::vector<char> find_held(const std::vector<Body>& bodies, const ContactState& state) {
+  std::vector<char> is_held(bodies.size(), 0);
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_touching) continue;
+    for (const BodyId id : {pair.body_a, pair.body_b})
+      if (const int i = find_number(bodies, id); i >= 0) is_held[static_cast<std::size_t>(i)] = 1;
+  }
+  for (const Joint& joint : state.joints)
+    each_of_two(bodies, joint, [&](std::size_t one, std::size_t other) {
+      if (!bodies[other].is_dynamic()) is_held[one] = 1;
+    });
+  mark_joined(bodies, state, is_held);
+  return is_held;
+}
+
+// Who has no rest yet; who touches nothing must not sleep in the air.
+std::vector<char> find_restless(const std::vector<Body>& bodies, const ContactSettings& settings,
+                                const ContactState& state) {
+  const bool is_weightless = settings.gravity.squaredNorm() == 0.0;
+  const std::vector<char> is_held = find_held(bodies, state);
+  std::vector<char> is_restless(bodies.size(), 0);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& b = bodies[i];
+    if (!b.is_dynamic() || !b.is_awake) continue;
+    is_restless[i] = b.quiet_time < time_to_rest(settings, b) || (!is_held[i] && !is_weightless) ? 1 : 0;
+  }
+  mark_joined(bodies, state, is_restless);
+  return is_restless;
+}
+
+// They, and who touches somebody that has no rest yet and could move it, or goes on by itself.
+std::vector<char> find_kept_up(const std::vector<Body>& bodies, const ContactSettings& settings,
+                               const ContactState& state) {
+  const std::vector<char> is_restless = find_restless(bodies, settings, state);
+  std::vector<char> is_kept_up = is_restless;
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_touching) continue;
+    each_of_two(bodies, pair, [&](std::size_t one, std::size_t other) {
+      if (bodies[one].is_driven() || (is_restless[one] && bodies[other].is_dynamic() &&
+                                      could_move(settings, bodies[one], bodies[other])))
+        is_kept_up[other] = 1;
+    });
+  }
+  for (const Joint& joint : state.joints)
+    each_of_two(bodies, joint, [&](std::size_t one, std::size_t other) {
+      if (bodies[one].is_driven()) is_kept_up[other] = 1;
+    });
+  mark_joined(bodies, state, is_kept_up);
+  return is_kept_up;
+}
+
 }  // namespace
 
 double impact_threshold(const ContactSettings& settings, double kept_gap) {
@@ -251,75 +342,8 @@ void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, con
 }
 
 void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
-  if (!settings.has_sleep) return;
-  std::vector<char> is_held(bodies.size(), 0), is_parting;
-  // What brings bodies out of each other leaves them no speed.
-  for (const PairState& pair : state.pairs) {
-    if (!pair.is_exempt) continue;
-    is_parting.resize(bodies.size(), 0);
-    for (const BodyId id : {pair.body_a, pair.body_b})
-      if (const int i = find_number(bodies, id); i >= 0) is_parting[static_cast<std::size_t>(i)] = 1;
-  }
-  bool anyone_tired = false;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Body& b = bodies[i];
-    if (!b.is_dynamic() || !b.is_awake) continue;
-    const bool is_still = (is_parting.empty() || !is_parting[i]) &&
-                          is_quiet(settings, b.velocity, b.angular_velocity, b.shape->bounding_radius);
-    // Or it trembles in a nest, without getting anywhere.
-    BodyState* memory = find_memory(state, b.id);
-    const bool stays = memory != nullptr && stays_near(settings, b, memory->rest_pose);
-    if (!stays && memory != nullptr) memory->rest_pose = b.pose;
-    b.quiet_time = is_still || stays ? b.quiet_time + settings.time_step : 0.0;
-    anyone_tired = anyone_tired || b.quiet_time >= time_to_rest(settings, b);
-  }
-  if (!anyone_tired) return;
-  // Who touches nothing must not sleep in the air.
-  for (const PairState& pair : state.pairs) {
-    if (!pair.is_touching) continue;
-    for (const BodyId id : {pair.body_a, pair.body_b}) {
-      if (const int i = find_number(bodies, id); i >= 0) is_held[static_cast<std::size_t>(i)] = 1;
-    }
-  }
-  for (const Joint& joint : state.joints) {
-    const int ends[2] = {find_number(bodies, joint.body_a), find_number(bodies, joint.body_b)};
-    for (int k = 0; k < 2; ++k) {
-      if (ends[k] >= 0 && ends[1 - k] >= 0 && !bodies[static_cast<std::size_t>(ends[1 - k])].is_dynamic())
-        is_held[static_cast<std::size_t>(ends[k])] = 1;
-    }
-  }
-  mark_joined(bodies, state, is_held);
-  // Nor who touches somebody that has no rest yet and could move it, or goes on by itself.
-  const bool is_weightless = settings.gravity.squaredNorm() == 0.0;
-  std::vector<char> is_restless(bodies.size(), 0);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Body& b = bodies[i];
-    if (!b.is_dynamic() || !b.is_awake) continue;
-    is_restless[i] = b.quiet_time < time_to_rest(settings, b) || (!is_held[i] && !is_weightless) ? 1 : 0;
-  }
-  mark_joined(bodies, state, is_restless);
-  std::vector<char> is_kept_up = is_restless;
-  for (const PairState& pair : state.pairs) {
-    if (!pair.is_touching) continue;
-    const int ends[2] = {find_number(bodies, pair.body_a), find_number(bodies, pair.body_b)};
-    for (int k = 0; k < 2; ++k) {
-      if (ends[k] < 0 || ends[1 - k] < 0) continue;
-      const auto other = static_cast<std::size_t>(ends[1 - k]);
-      if (bodies[static_cast<std::size_t>(ends[k])].is_driven()) is_kept_up[other] = 1;
-      if (!is_restless[static_cast<std::size_t>(ends[k])]) continue;
-      if (bodies[other].is_dynamic() &&
-          could_move(settings, bodies[static_cast<std::size_t>(ends[k])], bodies[other]))
-        is_kept_up[other] = 1;
-    }
-  }
-  for (const Joint& joint : state.joints) {
-    const int ends[2] = {find_number(bodies, joint.body_a), find_number(bodies, joint.body_b)};
-    for (int k = 0; k < 2; ++k) {
-      if (ends[k] >= 0 && ends[1 - k] >= 0 && bodies[static_cast<std::size_t>(ends[1 - k])].is_driven())
-        is_kept_up[static_cast<std::size_t>(ends[k])] = 1;
-    }
-  }
-  mark_joined(bodies, state, is_kept_up);
+  if (!settings.has_sleep || !count_quiet_times(bodies, settings, state)) return;
+  const std::vector<char> is_kept_up = find_kept_up(bodies, settings, state);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake || is_kept_up[i]) continue;

@@ -83,6 +83,65 @@ void draw_flaws(fracture::SolidSubject& solid, const material::Material& materia
         fracture::make_space_grains(solid.complex->elements->mesh, material, seed));
 }
 
+/// Held somewhere, or without an end.
+bool stays_in_place(const BodyDescription& description) {
+  if (const auto* shell = std::get_if<ShellDescription>(&description.form)) return !shell->clamped.empty();
+  if (const auto* solid = std::get_if<SolidDescription>(&description.form)) return !solid->held.empty();
+  return std::holds_alternative<PlaneDescription>(description.form) &&
+         description.motion == body::Motion::dynamic;
+}
+
+core::Result<SharedForm> find_form(std::vector<SharedForm>& forms, const BodyDescription& description,
+                                   const material::Material& material) {
+  const double density = description.density.value_or(material.density);
+  const auto substance_of = [&](bool is_breakable) {
+    return Substance{material, description.material, density,
+                     is_breakable && description.motion != body::Motion::scripted};
+  };
+  if (const auto* shell = std::get_if<ShellDescription>(&description.form))
+    return share_form(forms, *shell, substance_of(shell->is_breakable));
+  if (const auto* solid = std::get_if<SolidDescription>(&description.form))
+    return share_form(forms, *solid, substance_of(solid->is_breakable));
+  SharedForm form;
+  form.shape = make_analytic_shape(description, density);
+  return form;
+}
+
+/// Where it is at the start, and how it moves.
+void set_motion(const BodyDescription& description, const Vec3& centre, body::Body& born) {
+  born.motion = stays_in_place(description) ? body::Motion::fixed : description.motion;
+  born.pose = description.pose;
+  born.pose.rotation.normalize();
+  // The mesh's own frame is that of the description; material space has its origin at the centre of mass.
+  born.pose.translation = born.pose.apply(centre);
+  if (born.motion == body::Motion::dynamic) {
+    born.inverse_mass = 1.0 / born.shape->mass;
+    born.inverse_inertia = born.shape->inertia.inverse();
+    born.force = description.force;
+    born.torque = description.torque;
+    born.locked = description.locked;
+  }
+  if (born.motion != body::Motion::fixed) {
+    born.velocity = born.locked.let_move(description.velocity);
+    born.angular_velocity = born.locked.let_turn(description.angular_velocity);
+  }
+  if (description.path && born.motion == body::Motion::scripted) {
+    const PathDescription& path = *description.path;
+    born.script.path =
+        std::make_shared<const body::ScriptedPath>(path.keys, path.between, path.turn, centre - path.pivot);
+    born.pose = born.script.path->pose_at(0.0);
+  }
+}
+
+void set_material(const BodyDescription& description, const material::Material& material, body::Body& born) {
+  born.friction = material.friction;
+  born.rolling_friction = material.rolling_friction;
+  born.restitution = material.restitution;
+  born.young = material.young;
+  born.poisson = material.poisson;
+  born.material = description.material;
+}
+
 }  // namespace
 
 core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
@@ -99,63 +158,19 @@ core::Result<body::BodyId> World::add_body(const BodyDescription& description) {
   const material::Material& material = s.materials[static_cast<std::size_t>(description.material)];
   if (material.surface_compression > 0.0 && std::holds_alternative<SolidDescription>(description.form))
     return refuse("surface_compression is of sheets, and this is a solid: make it a shell, or set it to 0");
-  const double density = description.density.value_or(material.density);
-  const auto substance_of = [&](bool is_breakable) {
-    return Substance{material, description.material, density,
-                     is_breakable && description.motion != body::Motion::scripted};
-  };
+  auto form = find_form(s.forms, description, material);
+  if (!form) return refuse(form.error());
+
   body::Body born;
   born.name = description.name;
-  born.motion = description.motion;
-  born.pose = description.pose;
-  born.pose.rotation.normalize();
-  SharedForm form;
-  if (const auto* shell = std::get_if<ShellDescription>(&description.form)) {
-    auto made = share_form(s.forms, *shell, substance_of(shell->is_breakable));
-    if (!made) return refuse(made.error());
-    form = std::move(made.value());
-    if (!shell->clamped.empty()) born.motion = body::Motion::fixed;
-  } else if (const auto* solid = std::get_if<SolidDescription>(&description.form)) {
-    auto made = share_form(s.forms, *solid, substance_of(solid->is_breakable));
-    if (!made) return refuse(made.error());
-    form = std::move(made.value());
-    if (!solid->held.empty()) born.motion = body::Motion::fixed;
-  } else {
-    form.shape = make_analytic_shape(description, density);
-    if (form.shape->kind == body::ShapeKind::plane && born.motion == body::Motion::dynamic)
-      born.motion = body::Motion::fixed;
-  }
-  born.shape = form.shape;
-  // The mesh's own frame is that of the description; material space has its origin at the centre of mass.
-  born.pose.translation = born.pose.apply(form.centre);
-  if (born.motion == body::Motion::dynamic) {
-    born.inverse_mass = 1.0 / born.shape->mass;
-    born.inverse_inertia = born.shape->inertia.inverse();
-    born.force = description.force;
-    born.torque = description.torque;
-    born.locked = description.locked;
-  }
-  if (born.motion != body::Motion::fixed) {
-    born.velocity = born.locked.let_move(description.velocity);
-    born.angular_velocity = born.locked.let_turn(description.angular_velocity);
-  }
-  if (description.path && born.motion == body::Motion::scripted) {
-    const PathDescription& path = *description.path;
-    born.script.path = std::make_shared<const body::ScriptedPath>(path.keys, path.between, path.turn,
-                                                                  form.centre - path.pivot);
-    born.pose = born.script.path->pose_at(0.0);
-  }
-  born.friction = material.friction;
-  born.rolling_friction = material.rolling_friction;
-  born.restitution = material.restitution;
-  born.young = material.young;
-  born.poisson = material.poisson;
+  born.shape = form.value().shape;
   born.group = description.group;
-  born.material = description.material;
+  set_motion(description, form.value().centre, born);
+  set_material(description, material, born);
   born.id = s.moving.next_id++;
   born.family = born.id;
-  if (form.fragile) {
-    auto own = std::make_shared<Fragile>(*form.fragile);
+  if (form.value().fragile) {
+    auto own = std::make_shared<Fragile>(*form.value().fragile);
     const std::uint64_t seed = core::Hash(s.settings.seed).add(std::uint64_t{born.id}).value();
     std::visit([&](auto& subject) { draw_flaws(subject, material, seed); }, own->subject);
     own->contact_duration = description.contact_duration;

@@ -331,30 +331,28 @@ void await_dent(const EvaluatedImpact& impact, const body::Body& body, ImpactMem
       impact.decision);
 }
 
-}  // namespace
-
-std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
-                                             const body::ImpulseLog& log, const Fragiles& fragiles,
-                                             const WorldSettings& settings,
-                                             const dynamics::ContactSettings& contact, double time,
-                                             std::map<body::BodyId, ImpactMemory>& memories,
-                                             BorneImpacts& borne, EvaluationFigures& figures,
-                                             const PartBegin* begin) {
-  const Judge judge{bodies, memories, settings, contact, begin, log};
+/// Breakable bodies that impulses of this part of a step act on, ascending.
+std::vector<body::BodyId> find_touched(const body::ImpulseLog& log, const Fragiles& fragiles) {
   std::vector<body::BodyId> touched;
   for (const body::LoggedImpulse& entry : log)
     for (const body::BodyId id : {entry.body_a, entry.body_b})
       if (fragiles.count(id)) touched.push_back(id);
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  return touched;
+}
 
-  const std::vector<OwnImpulses> impulses = sort_by_body(log, touched);
-
+/// Impacts that have to be judged: of those like one that was borne the verdict is kept.
+std::vector<Candidate> gather_candidates(const Judge& judge, const Fragiles& fragiles, double time,
+                                         std::map<body::BodyId, ImpactMemory>& memories,
+                                         const BorneImpacts& borne, EvaluationFigures& figures) {
+  const std::vector<body::BodyId> touched = find_touched(judge.log, fragiles);
+  const std::vector<OwnImpulses> impulses = sort_by_body(judge.log, touched);
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < touched.size(); ++i) {
     const body::BodyId id = touched[i];
     Candidate candidate;
-    candidate.body = body::find_body(bodies, id);
+    candidate.body = body::find_body(judge.bodies, id);
     if (!candidate.body) continue;
     candidate.fragile = fragiles.at(id).get();
     if (!gather_impact(judge, impulses[i], *candidate.body, time, memories[id], candidate, figures)) continue;
@@ -365,55 +363,81 @@ std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodi
       candidates.push_back(std::move(candidate));
     }
   }
+  return candidates;
+}
 
+fracture::FractureSettings how_to_decide(const WorldSettings& settings, const Candidate& candidate) {
+  fracture::FractureSettings how;
+  how.most_generations = candidate.is_piece ? std::min(settings.piece_generations, settings.crack_generations)
+                                            : settings.crack_generations;
+  // Cracks of solids go on for longer before they part anything, and their solves cost less.
+  if (std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject))
+    how.most_generations = kSolidGenerations;
+  if (candidate.has_used_all) how.most_generations = 1;  // for the verdict
+  how.has_energy_guard = settings.has_energy_guard;
+  how.solve_residual = settings.solve_residual;
+  how.least_width = kLeastWidth * candidate.fragile->size;
+  // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
+  if (candidate.is_piece) how.core_spacing = 0.0;
+  return how;
+}
+
+EvaluatedImpact judge_impact(const WorldSettings& settings, const Candidate& candidate) {
+  const fracture::FractureSettings how = how_to_decide(settings, candidate);
+  EvaluatedImpact impact;
+  impact.id = candidate.body->id;
+  impact.hardest = candidate.hardest;
+  impact.is_struck = candidate.is_struck;
+  impact.first_time = candidate.first_time;
+  impact.has_used_all = candidate.has_used_all;
+  if (const auto* shell = std::get_if<fracture::ShellSubject>(&candidate.fragile->subject))
+    impact.decision = fracture::decide_shell(*shell, candidate.impact, how);
+  else if (const auto* solid = std::get_if<fracture::SolidSubject>(&candidate.fragile->subject))
+    impact.decision = fracture::decide_solid(*solid, candidate.impact, how);
+  return impact;
+}
+
+/// What later steps are to know of it.
+void remember(const EvaluatedImpact& impact, Candidate& candidate, ImpactMemory& memory,
+              BorneImpacts& borne) {
+  const fracture::DecisionFigures& decision = impact.figures();
+  const double ratio = decision.verdict.ratio;
+  const double duration = impact.is_struck ? decision.verdict.duration : 0.0;
+  const double tested_growth =
+      ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
+  const bool holds = decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only();
+  if (impact.has_used_all)
+    borne[impact.id] = {std::move(candidate.loads), kUsedAgain, duration, tested_growth, true};
+  else if (holds && !has_yielded(decision.verdict))
+    borne[impact.id] = {std::move(candidate.loads), most_growth_of(decision.verdict), duration, tested_growth,
+                        false};
+  if (!decision.needed_no_solve()) {
+    memory.solved_contact = holds && !impact.is_cracked_only() ? candidate.contact_force : 0.0;
+    memory.solved_ratio = ratio;
+  }
+  if (impact.is_struck) await_dent(impact, *candidate.body, memory);
+  if (const fracture::Perforation* asked = find_perforation(impact); asked && !asked->is_through())
+    for (Load& load : memory.event) load.was_asked = true;
+  keep_verdict(duration, tested_growth, memory);
+}
+
+}  // namespace
+
+std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
+                                             const body::ImpulseLog& log, const Fragiles& fragiles,
+                                             const WorldSettings& settings,
+                                             const dynamics::ContactSettings& contact, double time,
+                                             std::map<body::BodyId, ImpactMemory>& memories,
+                                             BorneImpacts& borne, EvaluationFigures& figures,
+                                             const PartBegin* begin) {
+  const Judge judge{bodies, memories, settings, contact, begin, log};
+  std::vector<Candidate> candidates = gather_candidates(judge, fragiles, time, memories, borne, figures);
   std::vector<EvaluatedImpact> evaluated(candidates.size());
-  core::parallel_for(candidates.size(), 1, [&](std::size_t i) {
-    const Candidate& candidate = candidates[i];
-    fracture::FractureSettings how;
-    how.most_generations = candidate.is_piece
-                               ? std::min(settings.piece_generations, settings.crack_generations)
-                               : settings.crack_generations;
-    // Cracks of solids go on for longer before they part anything, and their solves cost less.
-    if (std::holds_alternative<fracture::SolidSubject>(candidate.fragile->subject))
-      how.most_generations = kSolidGenerations;
-    if (candidate.has_used_all) how.most_generations = 1;  // for the verdict
-    how.has_energy_guard = settings.has_energy_guard;
-    how.solve_residual = settings.solve_residual;
-    how.least_width = kLeastWidth * candidate.fragile->size;
-    // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
-    if (candidate.is_piece) how.core_spacing = 0.0;
-    evaluated[i].id = candidate.body->id;
-    evaluated[i].hardest = candidate.hardest;
-    evaluated[i].is_struck = candidate.is_struck;
-    evaluated[i].first_time = candidate.first_time;
-    evaluated[i].has_used_all = candidate.has_used_all;
-    if (const auto* shell = std::get_if<fracture::ShellSubject>(&candidate.fragile->subject))
-      evaluated[i].decision = fracture::decide_shell(*shell, candidate.impact, how);
-    else if (const auto* solid = std::get_if<fracture::SolidSubject>(&candidate.fragile->subject))
-      evaluated[i].decision = fracture::decide_solid(*solid, candidate.impact, how);
-  });
+  core::parallel_for(candidates.size(), 1,
+                     [&](std::size_t i) { evaluated[i] = judge_impact(settings, candidates[i]); });
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    const EvaluatedImpact& impact = evaluated[i];
-    const fracture::DecisionFigures& decision = impact.figures();
-    const double ratio = decision.verdict.ratio;
-    const double duration = impact.is_struck ? decision.verdict.duration : 0.0;
-    const double tested_growth =
-        ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;
-    const bool holds = decision.verdict.outcome == fracture::Outcome::held || impact.is_cracked_only();
-    if (impact.has_used_all)
-      borne[impact.id] = {std::move(candidates[i].loads), kUsedAgain, duration, tested_growth, true};
-    else if (holds && !has_yielded(decision.verdict))
-      borne[impact.id] = {std::move(candidates[i].loads), most_growth_of(decision.verdict), duration,
-                          tested_growth, false};
-    ImpactMemory& memory = memories[impact.id];
-    if (!decision.needed_no_solve()) {
-      memory.solved_contact = holds && !impact.is_cracked_only() ? candidates[i].contact_force : 0.0;
-      memory.solved_ratio = ratio;
-    }
-    if (impact.is_struck) await_dent(impact, *candidates[i].body, memory);
-    if (const fracture::Perforation* asked = find_perforation(impact); asked && !asked->is_through())
-      for (Load& load : memory.event) load.was_asked = true;
-    keep_verdict(duration, tested_growth, memory);
+    remember(evaluated[i], candidates[i], memories[evaluated[i].id], borne);
+    const fracture::DecisionFigures& decision = evaluated[i].figures();
     figures.solves += decision.generations;
     figures.factorisations += decision.factorisations;
     if (decision.needed_no_solve()) ++figures.skipped;

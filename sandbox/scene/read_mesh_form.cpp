@@ -115,95 +115,113 @@ void read_scaled(TableReader& reader, NamedSize lead, const std::vector<NamedSiz
     *other.size = reader.number(other.key, extent()).value_or(*other.size * (*lead.size / usual));
 }
 
+void read_size(TableReader& reader, const char* key, double& size) {
+  size = reader.number(key, extent()).value_or(size);
+}
+
+geometry::OrnamentSizes read_ornament(TableReader& reader) {
+  geometry::OrnamentSizes sizes;
+  read_size(reader, "radius", sizes.radius);
+  sizes.neck_radius = 0.225 * sizes.radius;
+  sizes.neck_height = 0.2 * sizes.radius;
+  read_size(reader, "neck_radius", sizes.neck_radius);
+  read_size(reader, "neck_height", sizes.neck_height);
+  sizes.has_cap = reader.truth("cap").value_or(true);
+  return sizes;
+}
+
+geometry::BowlSizes read_bowl(TableReader& reader) {
+  geometry::BowlSizes sizes;
+  read_size(reader, "radius", sizes.rim_radius);
+  sizes.foot_radius = 0.44 * sizes.rim_radius;
+  sizes.foot_height = 0.075 * sizes.rim_radius;
+  sizes.height = 0.875 * sizes.rim_radius;
+  read_size(reader, "foot_radius", sizes.foot_radius);
+  sizes.foot_height = reader.number("foot_height", not_negative("m")).value_or(sizes.foot_height);
+  read_size(reader, "height", sizes.height);
+  return sizes;
+}
+
+PaneShape read_pane(TableReader& reader) {
+  PaneShape sizes;
+  read_size(reader, "width", sizes.width);
+  read_size(reader, "height", sizes.height);
+  return sizes;
+}
+
+geometry::BoatSizes read_boat(TableReader& reader) {
+  geometry::BoatSizes sizes;
+  read_size(reader, "length", sizes.length);
+  sizes.beam = 0.4 * sizes.length;
+  sizes.depth = 0.2 * sizes.length;
+  sizes.sheer = 0.1 * sizes.length;
+  read_size(reader, "beam", sizes.beam);
+  read_size(reader, "depth", sizes.depth);
+  sizes.sheer = reader.number("sheer", not_negative("m")).value_or(sizes.sheer);
+  return sizes;
+}
+
+geometry::VaseSizes read_vase(TableReader& reader) {
+  geometry::VaseSizes sizes;
+  read_scaled(reader, {"height", &sizes.height},
+              {{"foot_radius", &sizes.foot_radius},
+               {"belly_radius", &sizes.belly_radius},
+               {"neck_radius", &sizes.neck_radius},
+               {"rim_radius", &sizes.rim_radius},
+               {"wall", &sizes.wall}});
+  return sizes;
+}
+
+MeshShape read_bottle(TableReader& reader, bool is_sheet) {
+  geometry::BottleSizes sizes;
+  std::vector<NamedSize> others{
+      {"radius", &sizes.radius}, {"neck_radius", &sizes.neck_radius}, {"neck_length", &sizes.neck_length}};
+  // A sheet's wall is its thickness; here it only rounds the edge of the bottom.
+  const double edge = sizes.wall * reader.number("height", extent()).value_or(sizes.height) / sizes.height;
+  if (!is_sheet) others.push_back({"wall", &sizes.wall});
+  read_scaled(reader, {"height", &sizes.height}, others);
+  if (!is_sheet) return sizes;
+  sizes.wall = edge;
+  return BottleSheet{sizes};
+}
+
+geometry::WineGlassSizes read_wine_glass(TableReader& reader) {
+  geometry::WineGlassSizes sizes;
+  read_scaled(reader, {"height", &sizes.height},
+              {{"radius", &sizes.radius},
+               {"rim_radius", &sizes.rim_radius},
+               {"foot_radius", &sizes.foot_radius},
+               {"stem_radius", &sizes.stem_radius},
+               {"stem_length", &sizes.stem_length}});
+  return sizes;
+}
+
+geometry::EggSizes read_egg(TableReader& reader) {
+  geometry::EggSizes sizes;
+  read_scaled(reader, {"radius", &sizes.radius},
+              {{"blunt_height", &sizes.blunt_height}, {"pointed_height", &sizes.pointed_height}});
+  return sizes;
+}
+
+FigureShape read_figure(TableReader& reader) {
+  FigureShape sizes;
+  read_size(reader, "height", sizes.height);
+  return sizes;
+}
+
 MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_sheet) {
   if (shape == "slab") return read_slab(reader);
-  const auto set = [&reader](const char* key, double& target, const Range& range) {
-    target = reader.number(key, range).value_or(target);
-  };
-  if (shape == "ornament") {
-    geometry::OrnamentSizes sizes;
-    sizes.has_cap = true;
-    set("radius", sizes.radius, extent());
-    sizes.neck_radius = 0.225 * sizes.radius;
-    sizes.neck_height = 0.2 * sizes.radius;
-    set("neck_radius", sizes.neck_radius, extent());
-    set("neck_height", sizes.neck_height, extent());
-    sizes.has_cap = reader.truth("cap").value_or(sizes.has_cap);
-    return sizes;
-  }
-  if (shape == "bowl") {
-    geometry::BowlSizes sizes;
-    set("radius", sizes.rim_radius, extent());
-    sizes.foot_radius = 0.44 * sizes.rim_radius;
-    sizes.foot_height = 0.075 * sizes.rim_radius;
-    sizes.height = 0.875 * sizes.rim_radius;
-    set("foot_radius", sizes.foot_radius, extent());
-    set("foot_height", sizes.foot_height, not_negative("m"));
-    set("height", sizes.height, extent());
-    return sizes;
-  }
-  if (shape == "pane") {
-    PaneShape sizes;
-    set("width", sizes.width, extent());
-    set("height", sizes.height, extent());
-    return sizes;
-  }
-  if (shape == "boat") {
-    geometry::BoatSizes sizes;
-    set("length", sizes.length, extent());
-    sizes.beam = 0.4 * sizes.length;
-    sizes.depth = 0.2 * sizes.length;
-    sizes.sheer = 0.1 * sizes.length;
-    set("beam", sizes.beam, extent());
-    set("depth", sizes.depth, extent());
-    set("sheer", sizes.sheer, not_negative("m"));
-    return sizes;
-  }
-  if (shape == "vase") {
-    geometry::VaseSizes sizes;
-    read_scaled(reader, {"height", &sizes.height},
-                {{"foot_radius", &sizes.foot_radius},
-                 {"belly_radius", &sizes.belly_radius},
-                 {"neck_radius", &sizes.neck_radius},
-                 {"rim_radius", &sizes.rim_radius},
-                 {"wall", &sizes.wall}});
-    return sizes;
-  }
-  if (shape == "bottle") {
-    geometry::BottleSizes sizes;
-    std::vector<NamedSize> others{
-        {"radius", &sizes.radius}, {"neck_radius", &sizes.neck_radius}, {"neck_length", &sizes.neck_length}};
-    // A sheet's wall is its thickness; here it only rounds the edge of the bottom.
-    double edge = sizes.wall * reader.number("height", extent()).value_or(sizes.height) / sizes.height;
-    if (!is_sheet) others.push_back({"wall", &sizes.wall});
-    read_scaled(reader, {"height", &sizes.height}, others);
-    if (!is_sheet) return sizes;
-    sizes.wall = edge;
-    return BottleSheet{sizes};
-  }
-  if (shape == "wine_glass") {
-    geometry::WineGlassSizes sizes;
-    read_scaled(reader, {"height", &sizes.height},
-                {{"radius", &sizes.radius},
-                 {"rim_radius", &sizes.rim_radius},
-                 {"foot_radius", &sizes.foot_radius},
-                 {"stem_radius", &sizes.stem_radius},
-                 {"stem_length", &sizes.stem_length}});
-    return sizes;
-  }
-  if (shape == "figure") {
-    FigureShape sizes;
-    set("height", sizes.height, extent());
-    return sizes;
-  }
-  if (shape == "egg") {
-    geometry::EggSizes sizes;
-    read_scaled(reader, {"radius", &sizes.radius},
-                {{"blunt_height", &sizes.blunt_height}, {"pointed_height", &sizes.pointed_height}});
-    return sizes;
-  }
+  if (shape == "ornament") return read_ornament(reader);
+  if (shape == "bowl") return read_bowl(reader);
+  if (shape == "pane") return read_pane(reader);
+  if (shape == "boat") return read_boat(reader);
+  if (shape == "vase") return read_vase(reader);
+  if (shape == "bottle") return read_bottle(reader, is_sheet);
+  if (shape == "wine_glass") return read_wine_glass(reader);
+  if (shape == "figure") return read_figure(reader);
+  if (shape == "egg") return read_egg(reader);
   SphereShape sizes;
-  set("radius", sizes.radius, extent());
+  read_size(reader, "radius", sizes.radius);
   return sizes;
 }
 
