@@ -279,7 +279,7 @@ const Broken kCorpus[] = {
      "at = 0.5"},
     {"[[event]]\nat = 1\nof = \"ball\"\ndo = \"speed\"\nfactor = 1\n[[body]]\nname = \"ball\"\n"
      "kind = \"sphere\"\n",
-     "t.toml:3:1", "whose break is waited for", "add when"},
+     "t.toml:3:6", "whose break is waited for", "add when"},
     {"[[event]]\nwhen = \"first break\"\nof = \"bal\"\ndo = \"speed\"\nfactor = 1\n[[body]]\n"
      "name = \"ball\"\nkind = \"sphere\"\n",
      "t.toml:3:6", "there is no body \"bal\"", "did you mean \"ball\"?"},
