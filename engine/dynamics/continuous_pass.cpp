@@ -27,6 +27,7 @@ using collision::Contact;
 using core::at;
 
 constexpr int kLastRounds = 24;       // in which bodies only keep what they have
+constexpr int kWideRounds = 4;        // the first of these ask for room all the same, if there is any
 constexpr int kLastPatience = 4;      // of these, without fewer hits
 constexpr std::size_t kFewHits = 20;  // but of no more than so many
 constexpr double kDeep =
@@ -105,12 +106,13 @@ class Guard {
     if (!work_.to_wake.empty()) return;
     content_with_less();
     // Where there is no room to open, bodies keep what they have; all give way alike, for a splinter between
-    // great shards cannot hold them apart by its mass.
+    // great shards cannot hold them apart by its mass. At first they are asked for a little: what came to be
+    // picometres from another would have to be moved as exactly to keep that.
     const int last_rounds = settings_.continuous_rounds > 0 ? kLastRounds : 0;
     Patience patience(kLastPatience, kFewHits);
     for (int round = 0; has_hits && round < last_rounds && patience.lasts(hit_.size()); ++round) {
       ++report_.rounds;
-      open(0.0, Yielding::alike);
+      open(round < kWideRounds ? kLastOpening : 0.0, Yielding::alike);
       has_hits = test();
     }
     note_trouble();

@@ -190,9 +190,9 @@ void add_face(const Mesh& mesh, Face face, const std::vector<glm::vec3>& normals
 }
 
 // A quad from the outer to the inner face along every boundary edge, smooth along the boundary where it runs
-// on; lines along those that are cracks.
+// on; and a line along it.
 void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::vec3>& offsets,
-             Builder& builder, std::vector<std::uint32_t>& crack_lines) {
+             Builder& builder, std::vector<std::uint32_t>& rim_lines) {
   const std::vector<Corner> boundary = find_boundary(mesh);
   const float half = 0.5F * mesh.thickness;
   for (const Corner c : boundary) {
@@ -210,7 +210,7 @@ void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::
     const std::uint32_t b_in = builder.vertex(b, face, part, out, -half * offsets[b]);
     builder.triangle(a_out, a_in, b_in);
     builder.triangle(a_out, b_in, b_out);
-    if (is_crack) crack_lines.insert(crack_lines.end(), {a_out, b_out});
+    rim_lines.insert(rim_lines.end(), {a_out, b_out});
   }
 }
 
@@ -284,12 +284,12 @@ DrawnMesh expand(const Mesh& mesh) {
     out.outer = range_since(0);
     add_face(mesh, Face::inside, normals, offsets, -0.5F * mesh.thickness, builder);
     out.inner = range_since(out.outer.count);
-    std::vector<std::uint32_t> crack_lines;
-    if (mesh.thickness > 0.0F) add_rim(mesh, faces, offsets, builder, crack_lines);
+    std::vector<std::uint32_t> rim_lines;
+    if (mesh.thickness > 0.0F) add_rim(mesh, faces, offsets, builder, rim_lines);
     out.rim = range_since(out.outer.count + out.inner.count);
-    out.crack_lines = {static_cast<std::uint32_t>(out.indices.size()),
-                       static_cast<std::uint32_t>(crack_lines.size())};
-    out.indices.insert(out.indices.end(), crack_lines.begin(), crack_lines.end());
+    out.rim_lines = {static_cast<std::uint32_t>(out.indices.size()),
+                     static_cast<std::uint32_t>(rim_lines.size())};
+    out.indices.insert(out.indices.end(), rim_lines.begin(), rim_lines.end());
   }
   find_bounds(out);
   return out;

@@ -29,8 +29,7 @@ struct DrawnMesh {
   std::vector<DrawnVertex> vertices;
   std::vector<std::uint32_t> indices;
   IndexRange outer, inner, rim;  // of indices, in this order; solids have outer only
-  IndexRange
-      crack_lines;  // after them, pairs: cracked edges of the outer face, so that thin rims do not fray
+  IndexRange rim_lines;  // after them, pairs: boundary edges of the outer face, so that thin rims do not fray
   glm::vec3 centre{0.0F};  // of the bounding box, and the radius about it
   float radius = 0.0F;
   glm::vec3 box_least{0.0F}, box_most{0.0F};

@@ -297,9 +297,9 @@ void MeshStore::draw(const Item& item, Part part) const {
       return draw_range(GL_TRIANGLES, 0, shape.outer.count);
     case Part::rims:
       draw_range(GL_TRIANGLES, shape.rim.first, shape.rim.count);
-      return draw_range(GL_LINES, shape.crack_lines.first, shape.crack_lines.count);
-    case Part::crack_lines:
-      return draw_range(GL_LINES, shape.crack_lines.first, shape.crack_lines.count);
+      return draw_range(GL_LINES, shape.rim_lines.first, shape.rim_lines.count);
+    case Part::rim_lines:
+      return draw_range(GL_LINES, shape.rim_lines.first, shape.rim_lines.count);
   }
 }
 

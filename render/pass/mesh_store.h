@@ -42,7 +42,7 @@ struct Item {
   bool is_as_before = false;  // under the same camera it gives the samples and the shadow that it gave
 };
 
-enum class Part { all, outer, rims, crack_lines };  // rims: with crack lines
+enum class Part { all, outer, rims, rim_lines };  // rims: with their lines
 
 class MeshStore {
  public:

@@ -5,7 +5,7 @@
 namespace shatterbox::render::pass {
 namespace {
 
-constexpr float kLineSamples = 1.3F;  // a rim no wider is drawn as a line where it is a crack
+constexpr float kLineSamples = 1.3F;  // a rim no wider is drawn as a line
 
 // part: of each item.
 template <typename PartOf>
@@ -75,7 +75,7 @@ void SurfacePass::run_glass(const MeshStore& meshes, const Tiles& tiles, const C
   glEnable(GL_CULL_FACE);
   const auto samples = static_cast<float>(samples_across_);
   draw_items(meshes, changes, true, [samples](const Item& item) {
-    return samples * item.rim_pixels > kLineSamples ? Part::rims : Part::crack_lines;
+    return samples * item.rim_pixels > kLineSamples ? Part::rims : Part::rim_lines;
   });
   glDisable(GL_CULL_FACE);
 }
