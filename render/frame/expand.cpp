@@ -190,7 +190,7 @@ void add_face(const Mesh& mesh, Face face, const std::vector<glm::vec3>& normals
 }
 
 // A quad from the outer to the inner face along every boundary edge, smooth along the boundary where it runs
-// on; and a line along it.
+// on; and a line along it: between pieces at their common edge, elsewhere half a thickness from it.
 void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::vec3>& offsets,
              Builder& builder, std::vector<std::uint32_t>& rim_lines) {
   const std::vector<Corner> boundary = find_boundary(mesh);
@@ -210,7 +210,14 @@ void add_rim(const Mesh& mesh, const FaceNormals& faces, const std::vector<glm::
     const std::uint32_t b_in = builder.vertex(b, face, part, out, -half * offsets[b]);
     builder.triangle(a_out, a_in, b_in);
     builder.triangle(a_out, b_in, b_out);
-    rim_lines.insert(rim_lines.end(), {a_out, b_out});
+    if (is_crack) {
+      rim_lines.insert(rim_lines.end(), {a_out, b_out});
+      continue;
+    }
+    // In front of a frame that it touches, not in it.
+    const glm::vec3 inset = -half * out;
+    rim_lines.push_back(builder.vertex(a, face, part, out, half * offsets[a] + inset));
+    rim_lines.push_back(builder.vertex(b, face, part, out, half * offsets[b] + inset));
   }
 }
 

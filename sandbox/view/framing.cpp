@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/elementary.h"
 #include "engine/geometry/bvh.h"
@@ -50,8 +51,25 @@ struct Side {
   }
   double back() const { return 0.5 * (most - least) / slope; }
   double back_at(double middle) const { return std::max(most - middle, middle - least) / slope; }
-  double middle() const { return 0.5 * (most + least); }
 };
+
+// Where beside the eye must be, that as much is left free on the one side of the picture as on the other: of
+// points (place, depth), from so far back (more than any depth). What is highest in the picture depends on
+// where the eye is: a few times the two that were are made even.
+double even_middle(const std::vector<Vec2>& points, double back) {
+  constexpr int kTimes = 8;
+  double middle = 0.0;
+  for (int k = 0; k < kTimes; ++k) {
+    const auto slope = [&](const Vec2& p) { return (p.x() - middle) / (back - p.y()); };
+    const auto [low, high] = std::minmax_element(
+        points.begin(), points.end(), [&](const Vec2& p, const Vec2& q) { return slope(p) < slope(q); });
+    const double far_low = back - low->y(), far_high = back - high->y();
+    const double before =
+        std::exchange(middle, (low->x() * far_high + high->x() * far_low) / (far_low + far_high));
+    if (middle == before) break;
+  }
+  return middle;
+}
 
 }  // namespace
 
@@ -61,26 +79,28 @@ Viewpoint frame_points(const std::vector<Vec3>& points, const Framing& framing) 
   const double half = framing.fov * core::kPi / 360.0;
   const double slope = kFilled * core::sin(half) / core::cos(half);
   Side across{kAspect * slope}, along{slope};
+  std::vector<Vec2> places_across, places_along;
   geometry::Box box;
   double nearest = -1e300;
   for (const Vec3& p : points) {
-    nearest = std::max(nearest, p.dot(away));
-    across.include(p.dot(right), p.dot(away));
-    along.include(p.dot(upwards), p.dot(away));
+    const double depth = p.dot(away);
+    nearest = std::max(nearest, depth);
+    across.include(p.dot(right), depth);
+    along.include(p.dot(upwards), depth);
+    places_across.emplace_back(p.dot(right), depth);
+    places_along.emplace_back(p.dot(upwards), depth);
     box.include(p);
   }
-  Vec3 target = framing.target.value_or(0.5 * (box.low + box.high));
-  double back = 0.0;
-  if (framing.target) {
-    back = std::max(across.back_at(target.dot(right)), along.back_at(target.dot(upwards)));
-  } else {
-    back = std::max(across.back(), along.back());
-    target +=
-        (across.middle() - target.dot(right)) * right + (along.middle() - target.dot(upwards)) * upwards;
-  }
   const double size = std::max((box.high - box.low).norm(), kLeastSize);
-  const double distance = std::max(back, nearest + kLeastDistance * size) - target.dot(away);
-  return {target + distance * away, target, framing.fov, kAspect};
+  Vec3 target = framing.target.value_or(0.5 * (box.low + box.high));
+  double back = framing.target
+                    ? std::max(across.back_at(target.dot(right)), along.back_at(target.dot(upwards)))
+                    : std::max(across.back(), along.back());
+  back = std::max(back, nearest + kLeastDistance * size);
+  if (!framing.target)
+    target += (even_middle(places_across, back) - target.dot(right)) * right +
+              (even_middle(places_along, back) - target.dot(upwards)) * upwards;
+  return {target + (back - target.dot(away)) * away, target, framing.fov, kAspect};
 }
 
 }  // namespace shatterbox::sandbox::view

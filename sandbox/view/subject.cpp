@@ -13,6 +13,7 @@ namespace shatterbox::sandbox::view {
 namespace {
 
 constexpr double kRoomForPieces = 2.0;   // times as wide as what fell
+constexpr double kRoomToTip = 1.2;       // of its height, to either side of its middle
 constexpr double kWorthGoing = 1.3;      // times as far the eye would have to be, to see all of the fall
 constexpr double kSideways = 0.5;        // m/s: what goes aside faster does not just fall
 constexpr double kRoomForScenery = 1.0;  // on each side, of the size of what moves or breaks
@@ -54,11 +55,19 @@ Scenery find_scenery(const scene::SceneDescription& scene, const scene::ScenePla
 }
 
 // The way that what has these corners would fall to the nearest plane below it that is at most `kSteepest`
-// steep, or to scenery; none if there is none, or if nothing pulls.
-Vec3 way_down(const scene::SceneDescription& scene, const Scenery& scenery, const Corners& corners) {
-  constexpr double kSteepest = 0.7;  // cosine of the angle between gravity and the plane's normal
+// steep, or to scenery; zero if it stands there, nothing if there is none, or if nothing pulls.
+std::optional<Vec3> way_down(const scene::SceneDescription& scene, const Scenery& scenery,
+                             const Corners& corners) {
+  constexpr double kSteepest = 0.7;   // cosine of the angle between gravity and the plane's normal
+  constexpr double kStanding = 0.01;  // of its height
   const Vec3& gravity = scene.world.gravity;
-  double nearest = std::numeric_limits<double>::max();
+  if (gravity.isZero(0.0)) return std::nullopt;
+  const geometry::Box from = upright(corners, gravity.normalized());
+  const double standing = kStanding * (from.high.y() - from.low.y()) / gravity.norm();
+  std::optional<double> nearest;
+  const auto lands = [&](double way) {
+    if (way >= -standing && way < nearest.value_or(1e300)) nearest = std::max(way, 0.0);
+  };
   for (const scene::BodyEntry& entry : scene.bodies) {
     if (!std::holds_alternative<scene::PlaneForm>(entry.form)) continue;
     const Vec3 normal = entry.rotation * Vec3::UnitY();
@@ -66,18 +75,14 @@ Vec3 way_down(const scene::SceneDescription& scene, const Scenery& scenery, cons
     if (sinking <= kSteepest * gravity.norm()) continue;
     double way = std::numeric_limits<double>::max();
     for (const Vec3& corner : corners) way = std::min(way, normal.dot(corner - entry.position) / sinking);
-    if (way > 0.0) nearest = std::min(nearest, way);
+    lands(way);
   }
-  if (!scenery.upright.empty()) {
-    const geometry::Box from = upright(corners, gravity.normalized());
-    for (const geometry::Box& below : scenery.upright) {
-      const double way = below.low.y() - from.high.y();
-      geometry::Box passed = from;
-      passed.high.y() = below.low.y();
-      if (way >= 0.0 && geometry::overlaps(passed, below)) nearest = std::min(nearest, way / gravity.norm());
-    }
+  for (const geometry::Box& below : scenery.upright) {
+    geometry::Box passed = from;
+    passed.high.y() = std::max(below.low.y(), from.high.y());
+    if (geometry::overlaps(passed, below)) lands((below.low.y() - from.high.y()) / gravity.norm());
   }
-  return nearest < std::numeric_limits<double>::max() ? Vec3(nearest * gravity) : Vec3(Vec3::Zero());
+  return nearest ? std::optional<Vec3>(*nearest * gravity) : std::nullopt;
 }
 
 // s, in which something with this velocity falls that way.
@@ -93,18 +98,23 @@ Vec3 way_aside(const Vec3& gravity, const Vec3& velocity, const Vec3& way) {
   return fall_time(gravity, velocity, way) * (velocity - velocity.dot(down) * down);
 }
 
-// What fell, on the floor, with room for pieces around it.
-Corners spread_out(Corners corners, const Vec3& way) {
-  if (way.isZero(0.0)) return corners;
-  Vec3 middle = Vec3::Zero();
+// What fell that way, or stands, on the floor, with room to tip over, and around it for the pieces of what
+// fell; where it is, if there is no floor.
+Corners spread_out(const Corners& corners, const std::optional<Vec3>& way, const Vec3& gravity) {
+  if (!way) return corners;
+  const Vec3 down = gravity.normalized(), aside = down.unitOrthogonal(), across = down.cross(aside);
+  Vec3 middle = *way;
   for (const Vec3& corner : corners) middle += corner / 8.0;
-  const Vec3 down = way.normalized();
-  for (Vec3& corner : corners) {
-    const Vec3 from_middle = corner - middle;
-    corner =
-        middle + way + kRoomForPieces * from_middle - (kRoomForPieces - 1.0) * from_middle.dot(down) * down;
-  }
-  return corners;
+  const geometry::Box box = upright(corners, down);
+  const Vec3 half = 0.5 * (box.high - box.low);
+  const double wider = way->isZero(0.0) ? 1.0 : kRoomForPieces, to_tip = kRoomToTip * half.y();
+  const Vec3 side = std::max(wider * half.x(), to_tip) * aside,
+             depth = std::max(wider * half.z(), to_tip) * across;
+  Corners room;
+  for (std::size_t k = 0; k < room.size(); ++k)
+    room[k] =
+        middle + (k & 1 ? side : -side) + (k & 2 ? half.y() : -half.y()) * down + (k & 4 ? depth : -depth);
+  return room;
 }
 
 // The room about these points, in which others are looked at as well.
@@ -206,10 +216,10 @@ std::optional<Fall> find_fall(const scene::SceneDescription& scene, const scene:
     if (is_falling && (speed < 0.0 || (body.velocity - speed * down).norm() > kSideways)) return std::nullopt;
     for (const Pose& pose : scene::copy_poses(body, scene.world.seed, i)) {
       const Corners corners = corners_of(plan.bodies[i].box, pose);
-      const Vec3 way = is_falling ? way_down(scene, scenery, corners) : Vec3(Vec3::Zero());
+      const auto way = is_falling ? way_down(scene, scenery, corners) : std::nullopt;
       append(corners, fall.from);
-      append(spread_out(corners, way), fall.to);
-      for (const Vec3& corner : corners) landed.push_back(corner + way);
+      append(spread_out(corners, way, scene.world.gravity), fall.to);
+      for (const Vec3& corner : corners) landed.push_back(corner + way.value_or(Vec3::Zero()));
       if (!is_on_axle(body)) continue;
       for (auto* points : {&fall.from, &fall.to})
         append(corners_on_axle(body, plan.bodies[i], pose), *points);
@@ -273,9 +283,13 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
         const Pose pose{own.rotation, own.translation + shift};
         const Corners corners = corners_of(planned.box, pose);
         const bool flies = can_fall(body, is_hung[i] != 0);
-        const Vec3 way = flies ? way_down(scene, scenery, corners) : Vec3(Vec3::Zero());
-        if (const auto met = flies ? find_target(scene, body, corners, way, targets) : std::nullopt) {
-          for (const Vec3& corner : corners) subject.corners.push_back(corner + *met);
+        const auto way = flies ? way_down(scene, scenery, corners) : std::nullopt;
+        const Vec3 down = way.value_or(Vec3::Zero());
+        if (const auto met = flies ? find_target(scene, body, corners, down, targets) : std::nullopt) {
+          Corners there = corners;
+          for (Vec3& corner : there) corner += *met;
+          append(there, subject.corners);
+          append(spread_out(there, way_down(scene, scenery, there), scene.world.gravity), subject.corners);
           thrown.push_back(corners);
           continue;
         }
@@ -285,11 +299,11 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
         for (const Vec3& carried : find_carries(scene, i, pose.apply(planned.centre))) {
           const Corners there = corners_of(planned.box, {pose.rotation, pose.translation + carried});
           append(there, subject.corners);
-          append(spread_out(there, way_down(scene, scenery, there)), subject.corners);
+          append(spread_out(there, way_down(scene, scenery, there), scene.world.gravity), subject.corners);
         }
-        if (way.isZero(0.0)) continue;
-        const Vec3 aside = way_aside(scene.world.gravity, body.velocity, way);
-        for (const Vec3& corner : spread_out(corners, way)) subject.corners.push_back(corner + aside);
+        const Vec3 aside = way_aside(scene.world.gravity, body.velocity, down);
+        for (const Vec3& corner : spread_out(corners, way, scene.world.gravity))
+          subject.corners.push_back(corner + aside);
       }
     }
   }

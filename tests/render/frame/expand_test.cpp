@@ -2,6 +2,7 @@
 // shell ends.
 #include "render/frame/expand.h"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,9 +23,14 @@ Mesh square_shell(float thickness) {
   return mesh;
 }
 
+// Behind them are lines.
+std::size_t triangle_corners(const DrawnMesh& drawn) {
+  return drawn.outer.count + drawn.inner.count + drawn.rim.count;
+}
+
 double signed_volume(const DrawnMesh& drawn) {
   double sum = 0;
-  for (std::size_t i = 0; i < drawn.indices.size(); i += 3) {
+  for (std::size_t i = 0; i < triangle_corners(drawn); i += 3) {
     const glm::dvec3 a(drawn.vertices[drawn.indices[i]].position),
         b(drawn.vertices[drawn.indices[i + 1]].position), c(drawn.vertices[drawn.indices[i + 2]].position);
     sum += glm::dot(a, glm::cross(b, c)) / 6.0;
@@ -40,7 +46,7 @@ bool is_closed(const DrawnMesh& drawn) {
     const glm::vec3 p = drawn.vertices[drawn.indices[i]].position;
     return Place{p.x, p.y, p.z};
   };
-  for (std::size_t i = 0; i < drawn.indices.size(); i += 3) {
+  for (std::size_t i = 0; i < triangle_corners(drawn); i += 3) {
     for (std::size_t k = 0; k < 3; ++k) {
       ++edges[{place(i + k), place(i + (k + 1) % 3)}];
       --edges[{place(i + (k + 1) % 3), place(i + k)}];
@@ -61,6 +67,29 @@ TEST_CASE("a shell is drawn as a closed slab of its area times its thickness") {
   CHECK(drawn.outer.count == 6);
   CHECK(drawn.inner.count == 6);
   CHECK(drawn.rim.count == 4 * 6);
+}
+
+TEST_CASE("a line goes along every edge where a shell ends: a crack's in it, the others within the face") {
+  Mesh mesh = square_shell(0.1F);
+  mesh.cracks = {kCrackEdge0, 0};  // edge 0-1, at y = 0
+  const DrawnMesh drawn = expand(mesh);
+  REQUIRE(drawn.rim_lines.count == 4 * 2);
+  REQUIRE(drawn.rim_lines.first == triangle_corners(drawn));
+  CHECK(drawn.indices.size() == triangle_corners(drawn) + 4 * 2);
+  const std::array<glm::vec3, 8> expected{{{0, 0, 0.05F},
+                                           {1, 0, 0.05F},
+                                           {0.95F, 0, 0.05F},
+                                           {0.95F, 1, 0.05F},
+                                           {1, 0.95F, 0.05F},
+                                           {0, 0.95F, 0.05F},
+                                           {0.05F, 1, 0.05F},
+                                           {0.05F, 0, 0.05F}}};
+  for (const glm::vec3& place : expected) {
+    const bool is_there =
+        std::any_of(drawn.indices.begin() + drawn.rim_lines.first, drawn.indices.end(),
+                    [&](std::uint32_t i) { return glm::length(drawn.vertices[i].position - place) < 1e-6F; });
+    CHECK(is_there);
+  }
 }
 
 TEST_CASE("only cracked boundary edges take the look of the bare material") {
