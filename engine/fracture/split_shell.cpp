@@ -178,11 +178,17 @@ class Merger {
         close(closable[pair.first], closable[pair.second], closings);
     }
     if (closings.empty()) return false;
+    std::vector<char> is_joined(at(count), 0);
     for (int p = 0; p < count; ++p) {
       const int q = partner[at(p)];
       if (q < 0 || (partner[at(q)] == p && q > p)) continue;  // of two that join each other one is counted
       ++split.merged_count;
-      split.merged_area += area[at(p)];
+      is_joined[at(p)] = 1;
+    }
+    was_merged_.resize(mesh_.cells.size(), 0);
+    for (Size c = 0; c < mesh_.cells.size(); ++c) {
+      if (!is_joined[at(label[c])] || std::exchange(was_merged_[c], 1)) continue;
+      split.merged_area += mesh_.cells[c].area;
     }
     mesh_ = close_faces(mesh_, std::move(closings));
     return true;
@@ -216,6 +222,7 @@ class Merger {
   }
 
   ShellMesh& mesh_;
+  std::vector<char> was_merged_;  // per cell; empty: none
   const SplitSettings& settings_;
   int next_id_ = -1;
 };

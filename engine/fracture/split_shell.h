@@ -20,7 +20,7 @@ struct SplitSettings {
 struct ShellSplit {
   std::vector<geometry::ShellMesh> pieces;  // by descending area; degrees of freedom are the piece's own
   int merged_count = 0;      // pieces that joined a neighbour because nothing could resolve them
-  double merged_area = 0.0;  // m2
+  double merged_area = 0.0;  // m2, of them; material that was joined time and again counts once
 };
 
 /// Flood fill: the number of the piece of each cell, numbered by their first cells.

@@ -150,10 +150,12 @@ bool SolidSplitter::unite(const std::set<std::pair<int, int>>& pairs) {
     const auto pair = std::minmax(piece_of_[at(facet.cells[0])], piece_of_[at(facet.cells[1])]);
     if (pairs.count(pair) > 0) facet.kind = FacetKind::grain;
   }
-  for (const auto& [larger, smaller] : pairs) {
-    ++merged_count_;
-    merged_volume_ += volumes_[at(smaller)];
-  }
+  merged_count_ += static_cast<int>(pairs.size());
+  std::vector<char> is_joined(volumes_.size(), 0);
+  for (const auto& [larger, smaller] : pairs) is_joined[at(smaller)] = 1;
+  was_merged_.resize(complex_.cells.size(), 0);
+  for (Size c = 0; c < was_merged_.size(); ++c)
+    if (is_joined[at(piece_of_[c])]) was_merged_[c] = 1;
   label();
   return true;
 }
@@ -161,7 +163,8 @@ bool SolidSplitter::unite(const std::set<std::pair<int, int>>& pairs) {
 SolidSplit SolidSplitter::split() const {
   SolidSplit split;
   split.merged_count = merged_count_;
-  split.merged_volume = merged_volume_;
+  for (Size c = 0; c < was_merged_.size(); ++c)
+    if (was_merged_[c]) split.merged_volume += complex_.cells[c].volume;
   std::vector<std::vector<int>> cells(volumes_.size());
   for (Size c = 0; c < piece_of_.size(); ++c) cells[at(piece_of_[c])].push_back(static_cast<int>(c));
   // No two pieces' cells share a copy of a node, but where nothing more than nodes ever joined them.

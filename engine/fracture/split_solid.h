@@ -20,7 +20,7 @@ struct SolidPiece {
 struct SolidSplit {
   std::vector<SolidPiece> pieces;  // by descending volume
   int merged_count = 0;            // pieces that joined a neighbour because nothing could resolve them
-  double merged_volume = 0.0;      // m3
+  double merged_volume = 0.0;      // m3, of them; material that was joined time and again counts once
 };
 
 /// A piece of a split that cannot be as it is, by its number: what it would be born in, another piece or, if
@@ -54,7 +54,7 @@ class SolidSplitter {
   std::vector<int> piece_of_;    // per cell
   std::vector<double> volumes_;  // per piece, m3, descending
   int merged_count_ = 0;
-  double merged_volume_ = 0.0;  // m3
+  std::vector<char> was_merged_;  // per cell; empty: none
 };
 
 /// The pieces of a complex, none of which clash.

@@ -188,7 +188,8 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
     born = make_bodies(parent, split.pieces);
   }
   row.merged = split.merged_count;
-  row.merged_mass_share = split.merged_share;
+  row.mass = parent.shape->mass;
+  row.merged_mass = split.merged_share * parent.shape->mass;
   const std::vector<Piece>& pieces = split.pieces;
   row.pieces = static_cast<int>(pieces.size());
   for (const Piece& piece : pieces) row.shapes.push_back(piece.shape);

@@ -52,8 +52,9 @@ struct BreakRow {
   int crack_generations = 0;            // solves of the cracking body
   bool energy_guard_active = false;
   bool generation_bound_active = false;
-  int merged = 0;  // pieces too small to resolve that joined a neighbour
-  double merged_mass_share = 0.0;
+  double mass = 0.0;  // kg, of what broke
+  int merged = 0;     // pieces that joined a neighbour: nothing could resolve them, or there was no room
+  double merged_mass = 0.0;   // kg, of them
   Vec3 place = Vec3::Zero();  // m, world: where the hit was
   /// Cracks as segments in the parent's material space (x, y, z of both ends), for studies of their
   /// orientation.

@@ -110,12 +110,13 @@ Json joints(const world::WorldReport& report) {
 
 Json merged(const world::WorldReport& report) {
   int count = 0;
-  double share = 0.0;
+  double merged = 0.0, broken = 0.0;
   for (const world::BreakRow& row : report.breaks) {
     count += row.merged;
-    share = std::max(share, row.merged_mass_share);
+    merged += row.merged_mass;
+    broken += row.mass;
   }
-  return {{"count", count}, {"mass_share", number(share)}};
+  return {{"count", count}, {"mass_share", number(broken > 0.0 ? merged / broken : 0.0)}};
 }
 
 /// The first findings; all of them would be a flood.

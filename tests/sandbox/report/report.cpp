@@ -34,7 +34,8 @@ RunRecord some_record() {
   row.body = "vase";
   row.pieces = 12;
   row.merged = 2;
-  row.merged_mass_share = 1e-6;
+  row.mass = 2.0;
+  row.merged_mass = 0.5;
   record.world.breaks.push_back(row);
   for (int i = 0; i < 4; ++i) {
     FrameRecord frame;
@@ -89,6 +90,7 @@ TEST_CASE("the report has the fields of its description, by name") {
     }
   }
   CHECK(json["merged"]["count"] == 2);
+  CHECK(json["merged"]["mass_share"] == 0.25);
   CHECK(json["time_ms"]["stages"]["motion"]["median"] == 2.5);
   CHECK(json["time_ms"]["passes"]["shadow"]["max"] == 3.0);
 }
