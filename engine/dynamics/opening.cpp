@@ -80,7 +80,7 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
                    pose_b.translation + there.arm_b,
                    there.normal,
                    there.gap};
-  if (pair.is_plane || pair.is_analytic || knot == 1.0) return place;
+  if (pair.is_plane || knot == 1.0) return place;
   // A knot of the one is none of the other, if that turns less.
   const Vec3 there_a = on_straight_way(a, contact.on_a, knot),
              there_b = on_straight_way(b, contact.on_b, knot);

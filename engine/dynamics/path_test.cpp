@@ -58,6 +58,14 @@ bool is_held_by_joint(const WorkPair& pair, const MotionWork& work) {
   return off_at_end(work.joints[at(pair.joint)], work) <= std::max(kMostOff * pair.least_gap, usual);
 }
 
+// A part of so many of a body's way: all of one of its own straight parts, or a share of that.
+SolidWay part_of_way(const WorkBody& w, int part, int parts) {
+  const int shares = parts / w.straight_parts, own = part / shares, share = part % shares;
+  return {w, pose_on_way(w, static_cast<double>(own) / w.straight_parts),
+          pose_on_way(w, static_cast<double>(own + 1) / w.straight_parts),
+          static_cast<double>(share) / shares, static_cast<double>(share + 1) / shares};
+}
+
 // Where a body began is free.
 bool stays(const WorkBody& w) {
   return is_same_pose(w.start, w.end) && w.knots.empty();
@@ -207,8 +215,7 @@ std::vector<PathHit> PathTest::test_solids(const WorkPair& pair) const {
   for (int part = 0; part < parts && hits.empty(); ++part) {
     const double begin = static_cast<double>(part) / parts, end = static_cast<double>(part + 1) / parts;
     const SolidTouch touch =
-        find_first_touch({a, pose_on_way(a, begin), pose_on_way(a, end)},
-                         {b, pose_on_way(b, begin), pose_on_way(b, end)}, least, pair.kept_gap);
+        find_first_touch(part_of_way(a, part, parts), part_of_way(b, part, parts), least, pair.kept_gap);
     if (!touch.has_touched) continue;
     const double knot = touch.knot == 1.0 ? end : begin + touch.knot / parts;
     for (const auto& c : touch.contacts) hits.push_back({begin + touch.time / parts, knot, c, c.gap});

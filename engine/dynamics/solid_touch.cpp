@@ -11,6 +11,8 @@ namespace {
 
 using collision::Contact;
 
+constexpr int kMostAdvances = 200;
+
 // Corners of a box, or the centre of a ball, where they begin and end.
 struct Corners {
   std::vector<Vec3> from, to;
@@ -18,6 +20,11 @@ struct Corners {
   explicit Corners(const SolidWay& way) {
     place_at(way.body, way.from, from);
     place_at(way.body, way.to, to);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Vec3 whole = to[i] - from[i];
+      if (way.end < 1.0) to[i] = from[i] + way.end * whole;
+      if (way.begin > 0.0) from[i] += way.begin * whole;
+    }
   }
   int count() const { return static_cast<int>(from.size()); }
   Vec3 at(int corner, double time) const {
@@ -130,8 +137,8 @@ void see_from_start(const SolidWay& a, const Pose& pose_a, const SolidWay& b, co
 
 /// m, along its normal, of a contact seen from the start, where the ways end.
 double gap_at_end(const SolidWay& a, const SolidWay& b, const Contact& c) {
-  const Vec3 on_a = carry(a.body, c.on_a, a.body.start, a.to);
-  return c.normal.dot(on_a - carry(b.body, c.on_b, b.body.start, b.to));
+  const Vec3 on_a = carry(a.body, c.on_a, a.body.start, a.pose_at(1.0));
+  return c.normal.dot(on_a - carry(b.body, c.on_b, b.body.start, b.pose_at(1.0)));
 }
 
 /// What touched comes apart again on its way: the contacts of where they are nearest from then on, which
@@ -143,13 +150,13 @@ void meet_where_nearest(const SolidWay& a, const SolidWay& b, double margin, dou
   for (int i = kLooks; i >= 1; --i) {
     const double time = i == kLooks ? 1.0 : touch.time + (1.0 - touch.time) * i / kLooks;
     Vec3 normal;
-    const double gap = collision::analytic_gap(*a.body.shape, blend(a.from, a.to, time), *b.body.shape,
-                                               blend(b.from, b.to, time), normal);
+    const double gap =
+        collision::analytic_gap(*a.body.shape, a.pose_at(time), *b.body.shape, b.pose_at(time), normal);
     if (gap >= nearest) continue;
     nearest = gap;
     touch.knot = time;
   }
-  const Pose pose_a = blend(a.from, a.to, touch.knot), pose_b = blend(b.from, b.to, touch.knot);
+  const Pose pose_a = a.pose_at(touch.knot), pose_b = b.pose_at(touch.knot);
   std::vector<Contact> contacts;
   collision::find_analytic_contacts(*a.body.shape, pose_a, *b.body.shape, pose_b,
                                     margin + std::max({0.0, least, nearest}), contacts);
@@ -165,8 +172,9 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
   const double close_enough = std::max(0.0, 0.1 * least);
   SolidTouch result;
   double time = 0.0;
-  for (int i = 0; i < 200; ++i) {
-    const Pose pose_a = blend(a.from, a.to, time), pose_b = blend(b.from, b.to, time);
+  for (int i = 0; i < kMostAdvances; ++i) {
+    const bool is_last = i + 1 == kMostAdvances;  // who is not through by then has touched
+    const Pose pose_a = a.pose_at(time), pose_b = b.pose_at(time);
     Vec3 normal;
     const double gap = collision::analytic_gap(*a.body.shape, pose_a, *b.body.shape, pose_b, normal);
     const auto separation = [&](double t) {
@@ -179,11 +187,11 @@ SolidTouch find_first_touch(const SolidWay& a, const SolidWay& b, double least, 
     const double until = kept_off_until(a, corners_a, b, corners_b, normal, time, least,
                                         closing > 0.0 ? std::max(0.0, room / closing) : 0.0);
     if (until == 1.0) return result;
-    if (until > time) {
+    if (until > time && !is_last) {
       time = until;
       continue;
     }
-    if (room <= close_enough || closing <= 0.0 || i == 199) {
+    if (room <= close_enough || closing <= 0.0 || is_last) {
       // Corners that go straight touch where rigid bodies, which turn, may still be farther apart.
       collision::find_analytic_contacts(*a.body.shape, pose_a, *b.body.shape, pose_b,
                                         margin + std::max({0.0, least, gap}), result.contacts);

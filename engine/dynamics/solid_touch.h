@@ -9,10 +9,14 @@
 
 namespace shatterbox::dynamics {
 
-/// One body on a straight part of its way.
+/// One body on a straight part of its way, or between two shares of it: who turns less has longer parts.
 struct SolidWay {
   const WorkBody& body;
-  Pose from, to;
+  Pose from, to;  // of the whole part: its points go straight
+  double begin = 0.0, end = 1.0;
+
+  /// At a share of what is followed.
+  Pose pose_at(double time) const { return blend(from, to, begin + time * (end - begin)); }
 };
 
 struct SolidTouch {

@@ -8,6 +8,7 @@
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
 #include "engine/world/world.h"
+#include "tests/engine/world/audited.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/untrapped.h"
 
@@ -367,4 +368,98 @@ TEST_CASE("a support that holds nothing of a solid is told") {
   const auto id = w.add_body(wall);
   REQUIRE(!id.ok());
   CHECK(id.error().find("support holds none") != std::string::npos);
+}
+
+TEST_CASE(
+    "a stack of bricks that is thrown down at 50 m/s ends up as it may, but none passes through another") {
+  // They turn in one step by up to four radians, some of them by more than their neighbours.
+  for (const double down : {200.0, 400.0, 800.0}) {
+    world::WorldSettings settings;
+    settings.steps_per_second = 60;
+    world::World w(settings);
+    const int terracotta = w.add_material(*material::find_preset("terracotta")).value();
+    world::BodyDescription floor;
+    floor.form = world::PlaneDescription{};
+    floor.material = terracotta;
+    REQUIRE(w.add_body(floor).ok());
+    std::vector<body::BodyId> bricks;
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        world::BodyDescription brick;
+        brick.form = world::BoxDescription{Vec3(0.05, 0.017, 0.025)};
+        brick.material = terracotta;
+        brick.pose.translation = Vec3(0.1003 * (column + 0.5 * (row % 2)), 0.01703 + 0.03403 * row, 0);
+        bricks.push_back(w.add_body(brick).value());
+      }
+    }
+    test::run_audited(w, 0.5);
+    for (const body::BodyId id : bricks) {
+      const body::Body& brick = *body::find_body(w.bodies(), id);
+      REQUIRE(w.push_body(id, Vec3(5, -down, 46) / 12.0, brick.pose.translation));
+    }
+    const audit::AuditReport audit = test::run_audited(w, 1.0);
+    INFO(down << " N s");
+    CHECK(audit.crossings == 0);
+    CHECK(audit.passages == 0);
+  }
+}
+
+TEST_CASE("a box that another's face follows round for long is stopped all the same, at last") {
+  struct Pile {
+    const char* material;
+    Vec3 size, first;
+    int wide, high;
+    Vec3 spacing, spin;
+  };
+  const std::vector<Pile> piles{{"terracotta",
+                                 {0.04379, 0.08785, 0.06637},
+                                 {-0.01277, 0.044, 0.01316},
+                                 2,
+                                 1,
+                                 {0.04423, 0, 0},
+                                 {0.636, 22.5, -1.81}},
+                                {"ceramic",
+                                 {0.0481, 0.07344, 0.07788},
+                                 {-0.009008, 0.1257, -0.008822},
+                                 2,
+                                 1,
+                                 {0.04858, 0, 0},
+                                 {7.05e-05, 30.9, -0.254}},
+                                {"steel",
+                                 {0.06502, 0.09633, 0.06332},
+                                 {0.009109, 0.2114, -0.005118},
+                                 1,
+                                 2,
+                                 {0, 0.09729, 0},
+                                 {20.1, 4.79, -0.0897}},
+                                {"steel",
+                                 {0.07942, 0.06408, 0.05122},
+                                 {0.001167, 0.39, 0.01021},
+                                 3,
+                                 3,
+                                 {0.08021, 0.06472, 0},
+                                 {-0.54, -0.393, -46.9}}};
+  world::WorldSettings settings;
+  settings.steps_per_second = 60;
+  world::World w(settings);
+  world::BodyDescription floor;
+  floor.form = world::PlaneDescription{};
+  floor.material = w.add_material(*material::find_preset("ceramic")).value();
+  REQUIRE(w.add_body(floor).ok());
+  for (const Pile& pile : piles) {
+    const int number = w.add_material(*material::find_preset(pile.material)).value();
+    for (int y = 0; y < pile.high; ++y) {
+      for (int x = 0; x < pile.wide; ++x) {
+        world::BodyDescription box;
+        box.form = world::BoxDescription{0.5 * pile.size};
+        box.material = number;
+        box.pose.translation = pile.first + Vec3(x * pile.spacing.x(), y * pile.spacing.y(), 0);
+        box.angular_velocity = pile.spin;
+        REQUIRE(w.add_body(box).ok());
+      }
+    }
+  }
+  const audit::AuditReport audit = test::run_audited(w, 0.15);
+  CHECK(audit.crossings == 0);
+  CHECK(audit.passages == 0);
 }
