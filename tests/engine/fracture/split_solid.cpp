@@ -3,8 +3,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/geometry/edge_topology.h"
+#include "engine/geometry/generators.h"
 #include "engine/geometry/solid_surface.h"
+#include "engine/geometry/tetrahedralise.h"
 #include "engine/geometry/vertex_fans.h"
 #include "tests/engine/geometry/solids.h"
 #include "tests/support/sanitized.h"
@@ -179,4 +182,98 @@ TEST_CASE("split solid: 1e4 random cuts") {
 TEST_CASE("split solid: 1e6 random cuts", "[.][long]") {
   int cuts = 0;
   for (int trial = 0; cuts < 1'000'000; ++trial) cuts += try_random_cuts(trial);
+}
+
+namespace {
+
+/// Our own figure, 1 m high, its material divided among coarse tetrahedra; what is inside x < 0.6 is most of
+/// it, as of the cube.
+SolidComplex make_figure_complex() {
+  Meshing meshing;
+  meshing.edge_length = 0.05;
+  TriangleMesh surface = make_figure(1.0, meshing).value();
+  for (Vec3& p : surface.positions) p.x() += 0.4;
+  TetrahedraOptions options;
+  options.element_size = 0.08;
+  const EmbeddedSolid solid = tetrahedralise(surface, options).value();
+  SolidComplex complex = build_solid_complex(solid.elements, solid.embedded.material);
+  settle(complex);
+  return complex;
+}
+
+/// The greatest Euler characteristic of a connected part of a surface, and whether each is even: 2 of what is
+/// a sphere, 0 of a torus.
+std::pair<long, bool> euler_of_parts(const TriangleMesh& mesh) {
+  const EdgeTopology topology = build_edge_topology(mesh.triangles);
+  core::DisjointSets parts(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 1; k < 3; ++k) parts.unite(t[0], t[k]);
+  std::vector<long> euler(mesh.positions.size(), 0);
+  const auto of = [&](int vertex) -> long& { return euler[static_cast<std::size_t>(parts.find(vertex))]; };
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) ++of(static_cast<int>(v));
+  for (const auto& edge : topology.edges) --of(edge[0]);
+  for (const Triangle& t : mesh.triangles) ++of(t[0]);
+  bool is_even = true;
+  for (const long e : euler) is_even = is_even && e % 2 == 0;
+  return {*std::max_element(euler.begin(), euler.end()), is_even};
+}
+
+/// As try_random_cuts, of the figure; adds the pieces it came to. Returns the number of cuts.
+int try_figure_cuts(const SolidComplex& whole, int trial, std::size_t& pieces) {
+  core::Random random(12, static_cast<std::uint64_t>(trial));
+  const double volume = total_volume(whole);
+  SolidComplex complex = whole;
+  SolidCutter cutter(complex, trial % 3 == 0 ? SolidCutter::kLeastSnap : SolidCutter::kUsualSnap);
+  SolidCut last = test::plane_cut(complex, Vec3::UnitX(), 0.4);
+  const int count = 1 + static_cast<int>(random.index(4));
+  for (int i = 0; i < count; ++i) {
+    SolidCut cut = test::random_cut(complex, random, i, &last);
+    if (random.index(3) == 0) keep_off_nodes(complex, 0.05, cut);
+    cutter.cut(cut);
+  }
+  const auto split = split_solid(complex);
+  pieces += split.pieces.size();
+  double sum = 0.0, least = volume;
+  bool is_closed = true, is_even = true;
+  long euler = 2;
+  std::string fault;
+  std::vector<MassProperties> masses;
+  for (const auto& piece : split.pieces) {
+    is_closed = is_closed && are_cells_closed(piece.complex);
+    sum += total_volume(piece.complex);
+    least = std::min(least, total_volume(piece.complex));
+    const SolidSurface surface = extract_surface(piece.complex);
+    if (fault.empty()) fault = fault_of(surface, piece.complex);
+    const auto [greatest, even] = euler_of_parts(surface.mesh);
+    euler = std::max(euler, greatest);
+    is_even = is_even && even;
+    masses.push_back(solid_mass_properties(piece.complex, 1000.0));
+  }
+  const MassProperties all = combined(masses), before = solid_mass_properties(whole, 1000.0);
+  INFO("trial " << trial << ": " << split.pieces.size() << " pieces of " << count << " cuts: " << fault);
+  CHECK(is_closed);
+  CHECK(fault.empty());
+  CHECK(is_even);
+  CHECK(euler == 2);
+  CHECK(least > 0.0);
+  CHECK(std::abs(sum / volume - 1.0) < 1e-10);
+  CHECK(std::abs(all.mass / before.mass - 1.0) < 1e-10);
+  CHECK((all.centre - before.centre).norm() < 1e-10);
+  CHECK((all.inertia - before.inertia).norm() < 1e-10 * before.inertia.norm());
+  return count;
+}
+
+void cut_figure(int most) {
+  const SolidComplex whole = make_figure_complex();
+  REQUIRE(fault_of(extract_surface(whole), whole).empty());
+  std::size_t pieces = 0;
+  int cuts = 0, trials = 0;
+  for (; cuts < most; ++trials) cuts += try_figure_cuts(whole, trials, pieces);
+  CHECK(pieces > 2 * static_cast<std::size_t>(trials));
+}
+
+}  // namespace
+
+TEST_CASE("split solid: 1e2 random cuts of a figure") {
+  cut_figure(static_cast<int>(test::how_many(100, 5)));
 }
