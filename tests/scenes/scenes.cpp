@@ -63,17 +63,22 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
 
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
-  for (
-      const char* scene :
-      {"ornament",        "window",      "bowl",     "boats_pile", "boats_edge", "ornaments", "card_house",
-       "plate_stack",     "bowls",       "rain",     "reel",       "tablet",     "lintel",    "wall",
-       "brick_wall",      "mortar_wall", "dominoes", "blast",      "arch",       "vase",      "egg",
-       "bottle",          "slab",        "walls",    "armadillo",  "step_size",  "tempered",  "wrecking_ball",
-       "champagne_tower", "crater"}) {
-    const Outcome outcome = program(folder, std::string("check ") + scene);
-    INFO(outcome.err);
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SHATTERBOX_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".toml" && entry.path().stem() != "reel") continue;
+    const std::string scene = entry.path().stem().string();
+    const Outcome outcome = program(folder, "check " + scene);
+    INFO(scene << "\n" << outcome.err);
+    ++count;
+    // The mesh of this one comes with a package that nothing else needs.
+    if (scene == "bunny" && !std::filesystem::exists("/usr/share/glmark2/models/bunny.obj")) {
+      CHECK(outcome.err.find("apt install glmark2-data") != std::string::npos);
+      CHECK(outcome.status == 2);
+      continue;
+    }
     CHECK(outcome.status == 0);
   }
+  CHECK(count >= 33);
 }
 
 TEST_CASE("arch: twenty-five stones stand by friction alone, and come down without their crown") {
