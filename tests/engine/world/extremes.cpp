@@ -279,6 +279,9 @@ double drift_at_rest(long steps) {
   auto w = make_world(settings);
   add(w, plane());
   add(w, box(0.1, Vec3(0.0, 0.1002, 0.0)));
+  geometry::Meshing meshing;
+  meshing.edge_length = 0.03;
+  add(w, shell(geometry::make_bowl(geometry::BowlSizes{}, meshing).value(), Vec3(0.5, 1e-4, 0.0), 2e-3));
   run(w, 1.0);
   const std::vector<body::Body> before(w.bodies().begin(), w.bodies().end());
   for (long i = 0; i < steps; ++i) w.step();
