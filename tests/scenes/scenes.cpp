@@ -94,7 +94,7 @@ namespace {
 
 void check_nobody_hangs(const nlohmann::json& report) {
   CHECK(report["contact"]["longest_cut"].get<int>() <= 4);
-  CHECK(report["contact"]["frozen_share"].get<double>() < 0.03);
+  CHECK(report["contact"]["frozen_share"].get<double>() < 0.01);
   CHECK(report["contact"]["crossing_pairs_at_start"] == 0);
   CHECK(report["audit"]["crossings"] == 0);
   CHECK(report["audit"]["passages"] == 0);
