@@ -7,30 +7,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/sandbox/run/running.h"
+#include "tests/scenes/play.h"
 
 using namespace shatterbox::sandbox::run;
 
 namespace {
-
-nlohmann::json play(const Folder& folder, const std::string& arguments) {
-  const Outcome outcome = program(folder, "run " + arguments + " --no-render --report r.json");
-  INFO(arguments << "\n" << outcome.out << outcome.err);
-  REQUIRE(outcome.status == 0);
-  return read_json(folder / "r.json");
-}
-
-void check_breaks(const nlohmann::json& report) {
-  for (const auto& row : report["breaks"]) {
-    INFO(row.dump(1));
-    CHECK(row["mass_error"].get<double>() < 1e-10);
-    CHECK(row["momentum_error"].get<double>() < 1e-10);
-    CHECK(row["angular_momentum_error"].get<double>() < 1e-10);
-    CHECK(std::abs(row["energy_gain"].get<double>()) < 1e-10);
-    CHECK(row["overlap"] == 0);
-    CHECK(row["fracture_energy_j"].get<double>() <= row["elastic_energy_j"].get<double>());
-  }
-}
 
 double worst_ratio(const nlohmann::json& report) {
   double worst = 0.0;
