@@ -143,7 +143,7 @@ TEST_CASE("ten boxes stand for 60 s whether the highest weighs as much or a thou
                                    << ", moved in a minute " << rest.moved << " m, gaps " << rest.least_gap
                                    << " to " << rest.greatest_gap << ", cut " << rest.cut);
     CHECK(rest.weight_error < 1e-3);
-    CHECK(rest.moved < 2e-2);
+    CHECK(rest.moved < (ratio > 10.0 ? 2.4e-3 : 2e-4));  // three times what it is
     CHECK(rest.greatest_gap < 1e-3);
     CHECK(rest.cut == 0);
     CHECK(scene.bodies.back().pose.translation.y() == Approx(1.9).margin(4e-3));
