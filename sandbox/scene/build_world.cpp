@@ -337,9 +337,16 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
   if (problems.size() > before) return std::nullopt;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodyEntry& body = scene.bodies[i];
-    if (body.is_held_back) {  // what comes in later cannot be tried now
+    const auto refuse = [&](const std::string& name, std::string fault) {
+      const std::string own = "body '" + name + "': ";  // as the engine begins
+      if (fault.starts_with(own)) fault.erase(0, own.size());
+      book(problems, body.place, fmt::format("body \"{}\": {}", name, fault), "");
+    };
+    if (body.is_held_back) {  // what comes in later is tried in another world
       std::string fault;
       clean_crossings(body, built.plan.bodies[i], built.plan.notes, fault);
+      const auto id = built.world.copy().add_body(built.plan.bodies[i].description);
+      if (!id) refuse(body.name, id.error());
       continue;
     }
     const std::vector<Pose> poses = copy_poses(body, scene.world.seed, i);
@@ -357,9 +364,7 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
         if (!id) fault = id.error();
       }
       if (!id) {
-        const std::string own = "body '" + description.name + "': ";  // as the engine begins
-        if (fault.starts_with(own)) fault.erase(0, own.size());
-        book(problems, body.place, fmt::format("body \"{}\": {}", description.name, fault), "");
+        refuse(description.name, fault);
         break;
       }
       built.origins[id.value()] = {static_cast<int>(i), static_cast<int>(copy)};

@@ -117,15 +117,17 @@ std::vector<Named> names_in(const TomlValue& tree) {
 
 /// Names share one space: bodies, materials, joints, events and the words that --set knows.
 void check_names(const TomlValue& tree, Problems& problems) {
+  // In --set and for copies; of pieces, in groups of meshes and between columns of tables.
+  constexpr const char* kTaken = ".[]=\"/#,";
   const std::vector<std::string> words{"scene", "camera", "light", "render", "pair"};
   std::vector<Named> seen;
   for (const Named& named : names_in(tree)) {
     const std::string& name = named.name;
-    const auto bad = name.find_first_of(".[]=\"");
+    const auto bad = name.find_first_of(kTaken);
     if (name.empty() || bad != std::string::npos) {
       const std::string what = name.empty() ? "is empty" : fmt::format("contains '{}'", name[bad]);
       book(problems, named.place, fmt::format("the name \"{}\" {}", name, what),
-           "names are used as in --set NAME.key=value and name[2]: use letters, digits, - and _");
+           "names are used as in --set NAME.key=value, name[2] and name/0: use letters, digits, - and _");
       continue;
     }
     if (std::find(words.begin(), words.end(), name) != words.end()) {

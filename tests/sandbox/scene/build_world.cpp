@@ -343,6 +343,11 @@ TEST_CASE("bodies that cannot be are refused at their place") {
       "[[body]]\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.2, 0.01]\nmaterial = "
       "\"tempered_glass\"\n",
       "surface_compression is of sheets");
+  // Nor what is to come in later.
+  refused(
+      "[[body]]\nname = \"q\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [0.2, 0.2, 0.01]\nmaterial = "
+      "\"tempered_glass\"\n[[event]]\nat = 1\ndo = \"drop\"\nbody = \"q\"\n",
+      "body \"q\": surface_compression is of sheets");
   refused("[[body]]\nkind = \"shell\"\nshape = \"sphere\"\nradius = 1\nscale = 1e6\n", "scale = 0.001");
 }
 

@@ -66,6 +66,9 @@ const Broken kCorpus[] = {
      "t.toml:3:", "more than 100000 copies in a layer", ""},
     // Names.
     {"[[body]]\nname = \"a.b\"\nkind = \"sphere\"\n", "t.toml:2:8", "contains '.'", "--set NAME.key=value"},
+    {"[[body]]\nname = \"a/0\"\nkind = \"sphere\"\n", "t.toml:2:8", "contains '/'", "name/0"},
+    {"[[body]]\nname = \"c#5\"\nkind = \"sphere\"\n", "t.toml:2:8", "contains '#'", "letters, digits"},
+    {"[[body]]\nname = \"x,y\"\nkind = \"sphere\"\n", "t.toml:2:8", "contains ','", "letters, digits"},
     {"[[body]]\nname = \"\"\nkind = \"sphere\"\n", "t.toml:2:8", "is empty", ""},
     {"[[body]]\nname = \"a\"\nkind = \"sphere\"\n[[body]]\nname = \"a\"\nkind = \"sphere\"\n", "t.toml:5:8",
      "the name \"a\" is taken", "the first is at t.toml:2:8"},
