@@ -57,6 +57,14 @@ PartCount count_resting(const std::vector<body::Body>& bodies) {
 
 }  // namespace
 
+std::optional<geometry::TetQuality> World::tetrahedra(body::BodyId id) const {
+  const auto fragile = state_->moving.fragiles.find(id);
+  if (fragile == state_->moving.fragiles.end()) return std::nullopt;
+  const auto* solid = std::get_if<fracture::SolidSubject>(&fragile->second->subject);
+  if (solid == nullptr) return std::nullopt;
+  return geometry::measure_quality(solid->complex->elements->mesh);
+}
+
 std::vector<PartCount> World::inventory() const {
   const State& s = *state_;
   std::set<const body::Shape*> surfaces;

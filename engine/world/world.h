@@ -14,6 +14,7 @@
 #include "engine/core/result.h"
 #include "engine/core/stop.h"
 #include "engine/dynamics/blast.h"
+#include "engine/geometry/tet_quality.h"
 #include "engine/material/material.h"
 #include "engine/world/description.h"
 #include "engine/world/inventory.h"
@@ -125,6 +126,8 @@ class World {
 
   /// What it has made of its optional parts.
   std::vector<PartCount> inventory() const;
+  /// How well-shaped the tetrahedra of a solid that can break are; nothing of others.
+  std::optional<geometry::TetQuality> tetrahedra(body::BodyId id) const;
 
   double time() const;  // s
   long steps() const;

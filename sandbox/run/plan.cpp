@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/core/clock.h"
+#include "engine/core/elementary.h"
 #include "engine/core/parallel.h"
 #include "engine/world/forms.h"
 #include "sandbox/run/exposure.h"
@@ -88,6 +90,24 @@ void tell_inventory(const std::vector<world::PartCount>& rows) {
   fmt::print("made of them when loaded\n");
   for (const world::PartCount& row : rows)
     fmt::print("    {:<17} {:>6} {:>10.2f} MB\n", row.part, row.count, row.bytes / 1e6);
+}
+
+/// Of each [[body]] that is a solid which can break, its first copy.
+void tell_tetrahedra(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
+  const auto degrees = [](double angle) { return angle * 180.0 / core::kPi; };
+  std::set<int> told;
+  for (const auto& [id, origin] : built.origins) {
+    const auto quality = built.world.tetrahedra(id);
+    if (!quality || !told.insert(origin.entry).second) continue;
+    if (told.size() == 1) fmt::print("tetrahedra of what can break\n");
+    fmt::print(
+        "    {:<17} {:>6} of {:.2g} m; dihedral angles {:.0f} to {:.0f} degrees, half have none below "
+        "{:.0f}; "
+        "aspect {:.2g}, at worst {:.2g}\n",
+        scene.bodies[static_cast<std::size_t>(origin.entry)].name, quality->count, quality->mean_edge_length,
+        degrees(quality->least_dihedral), degrees(quality->greatest_dihedral),
+        degrees(quality->median_least_dihedral), quality->median_aspect, quality->worst_aspect);
+  }
 }
 
 void tell_foreseen(const std::vector<Foreseen>& all, const scene::SceneDescription& scene) {
@@ -210,6 +230,7 @@ int plan_one(const Options& options, bool is_lean) {
   tell_parts(parts, true, "needs");
   tell_parts(parts, false, "leaves out");
   tell_inventory(made);
+  tell_tetrahedra(*job.scene, *job.built);
   const Measured measured = measure(job, recorder);
   const std::vector<Foreseen> foreseen = foresee(*job.scene, job.built->plan, kMostTrials);
   tell_foreseen(foreseen, *job.scene);

@@ -85,6 +85,29 @@ TEST_CASE("plan tells what a scene needs and why, and the report what of it was 
   CHECK(line_of(glass.out, "shell_stress").find("\"ball\" can break") != std::string::npos);
   CHECK(glass.out.find("light.shadow=false") != std::string::npos);
   CHECK(!fs::exists(folder / "glass.mp4"));
+  CHECK(glass.out.find("tetrahedra of what can break") == std::string::npos);
+  write_text(folder / "brick.toml",
+             "[scene]\nseconds = 0.1\n[[body]]\nname = \"brick\"\nkind = \"solid\"\nshape = \"slab\"\n"
+             "size = [0.2, 0.06, 0.1]\nelement_size = 0.04\nmaterial = \"brick\"\nrepeat = {count = 2, "
+             "spacing = [0.3, 0, 0]}\n");
+  const Outcome brick = program(folder, "plan brick.toml --no-render");
+  INFO(brick.err << brick.out);
+  const std::size_t told = brick.out.find("tetrahedra of what can break\n    brick ");
+  REQUIRE(told != std::string::npos);
+  CHECK(brick.out.find("    brick ", told + 40) == std::string::npos);  // once for both
+  double least = 0.0, most = 0.0, least_median = 0.0, aspect = 0.0, worst = 0.0;
+  const std::size_t angles = brick.out.find("dihedral angles", told);
+  REQUIRE(angles != std::string::npos);
+  REQUIRE(
+      std::sscanf(brick.out.c_str() + angles,
+                  "dihedral angles %lf to %lf degrees, half have none below %lf; aspect %lf, at worst %lf",
+                  &least, &most, &least_median, &aspect, &worst) == 5);
+  CHECK(least > 5.0);
+  CHECK(least <= least_median);
+  CHECK(least_median < 71.0);  // a regular one has 70.5
+  CHECK(most < 175.0);
+  CHECK(aspect > 1.2);
+  CHECK(worst >= aspect);
 
   const auto has = [](const nlohmann::json& list, const char* name) {
     return std::find(list.begin(), list.end(), name) != list.end();
