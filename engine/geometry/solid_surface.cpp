@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
 
 #include "engine/core/disjoint_sets.h"
 #include "engine/core/index.h"
@@ -41,6 +42,7 @@ class BorderBuilder {
     chain_loops();
     add_triangles();
     part_doubled_edges();
+    part_doubled_vertices();
     drop_needless_vertices();
     return std::move(surface_);
   }
@@ -358,6 +360,18 @@ class BorderBuilder {
       triangulate_loops(l, join_holes({points[l - first]}), {points[l - first]});
   }
 
+  /// True of a triangle that has a corner twice, where a loop comes to a vertex again: it is left out, and
+  /// its two other sides are one.
+  bool join_over_doubled(const Triangle& triangle, const std::array<int, 3>& keys) {
+    for (Size k = 0; k < 3; ++k) {
+      if (triangle[k] != triangle[(k + 1) % 3]) continue;
+      joined_keys_.push_back({keys[(k + 1) % 3], keys[(k + 2) % 3]});
+      doubled_.push_back(triangle[k]);
+      return true;
+    }
+    return false;
+  }
+
   void triangulate_loops(Size first, const std::vector<std::array<int, 2>>& ring,
                          const std::vector<std::vector<Vec2>>& points) {
     if (ring.size() == 2)  // what has no width has no triangle: its two edges are one
@@ -381,11 +395,12 @@ class BorderBuilder {
         const auto& a = ring[at(t[k])];
         triangle[k] = loops_[first + at(a[0])].vertices[at(a[1])];
       }
+      std::array<int, 3> keys;  // of its sides
+      for (Size k = 0; k < 3; ++k) keys[k] = key_between(ring[at(t[k])], ring[at(t[(k + 1) % 3])]);
+      if (join_over_doubled(triangle, keys)) continue;
       for (Size k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
-        spokes_.push_back({{low, high},
-                           key_between(ring[at(t[k])], ring[at(t[(k + 1) % 3])]),
-                           static_cast<int>(surface_.mesh.triangles.size())});
+        spokes_.push_back({{low, high}, keys[k], static_cast<int>(surface_.mesh.triangles.size())});
       }
       add_triangle(triangle, borders_[at(loops_[first].region)]);
     }
@@ -457,34 +472,86 @@ class BorderBuilder {
     }
   }
 
+  /// Each fan of triangles about a vertex to which a loop came again gets one of its own.
+  void part_doubled_vertices() {
+    std::sort(doubled_.begin(), doubled_.end());
+    doubled_.erase(std::unique(doubled_.begin(), doubled_.end()), doubled_.end());
+    for (const int vertex : doubled_) {
+      std::vector<Size> around;  // triangles
+      for (Size t = 0; t < surface_.mesh.triangles.size(); ++t)
+        if (std::count(surface_.mesh.triangles[t].begin(), surface_.mesh.triangles[t].end(), vertex) > 0)
+          around.push_back(t);
+      bool is_first = true;
+      while (!around.empty()) {
+        const std::vector<Size> fan = take_fan(vertex, around);
+        if (!std::exchange(is_first, false)) give_copy(vertex, fan);
+      }
+    }
+  }
+
+  /// Takes from the triangles around a vertex those that hang together by edges with the first.
+  std::vector<Size> take_fan(int vertex, std::vector<Size>& around) const {
+    const auto shares_edge = [&](Size t, Size other) {
+      const Triangle &a = surface_.mesh.triangles[t], &b = surface_.mesh.triangles[other];
+      return std::any_of(a.begin(), a.end(),
+                         [&](int v) { return v != vertex && std::find(b.begin(), b.end(), v) != b.end(); });
+    };
+    std::vector<Size> fan{around.front()};
+    around.erase(around.begin());
+    for (Size k = 0; k < fan.size(); ++k) {
+      const auto rest = std::stable_partition(around.begin(), around.end(),
+                                              [&](Size t) { return !shares_edge(fan[k], t); });
+      fan.insert(fan.end(), rest, around.end());
+      around.erase(rest, around.end());
+    }
+    return fan;
+  }
+
+  void give_copy(int vertex, const std::vector<Size>& fan) {
+    const int copy = static_cast<int>(surface_.mesh.positions.size());
+    surface_.mesh.positions.push_back(Vec3(surface_.mesh.positions[at(vertex)]));
+    surface_.vertex_sources.push_back(int(surface_.vertex_sources[at(vertex)]));
+    surface_.has_kerf.push_back(std::uint8_t(surface_.has_kerf[at(vertex)]));
+    for (const Size t : fan) {
+      Triangle& triangle = surface_.mesh.triangles[t];
+      for (SolidSurface::OnEdge& on : surface_.on_edges) {
+        const int other = on.from == vertex ? on.to : on.to == vertex ? on.from : -1;
+        if (other < 0 || std::find(triangle.begin(), triangle.end(), other) == triangle.end()) continue;
+        (on.from == vertex ? on.from : on.to) = copy;
+      }
+      std::replace(triangle.begin(), triangle.end(), vertex, copy);
+    }
+  }
+
   /// Divides a triangle at a vertex on its side; of a triangle divided before, the part that has the side.
   void split_triangle(int number, const std::array<int, 2>& ends, int middle) {
-    for (Size t = at(number);; t = at(divided_into(static_cast<int>(t)))) {
-      Triangle& triangle = surface_.mesh.triangles[t];
+    std::vector<int> parts{number};
+    for (const auto& [whole, part] : divided_)
+      if (std::find(parts.begin(), parts.end(), whole) != parts.end()) parts.push_back(part);
+    for (const int t : parts) {
+      Triangle& triangle = surface_.mesh.triangles[at(t)];
       for (Size k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
         if (low != ends[0] || high != ends[1]) continue;
         Triangle other = triangle;
         triangle[(k + 1) % 3] = middle;
         other[k] = middle;
-        divided_.push_back({static_cast<int>(t), static_cast<int>(surface_.mesh.triangles.size())});
-        surface_.mesh.triangles.push_back(other);
-        surface_.triangle_cells.push_back(int(surface_.triangle_cells[t]));
-        surface_.triangle_grains.push_back(int(surface_.triangle_grains[t]));
-        surface_.triangle_sources.push_back(int(surface_.triangle_sources[t]));
-        surface_.triangle_facets.push_back(int(surface_.triangle_facets[t]));
-        surface_.is_crack_face.push_back(std::uint8_t(surface_.is_crack_face[t]));
-        surface_.is_old_face.push_back(std::uint8_t(surface_.is_old_face[t]));
+        divided_.push_back({t, static_cast<int>(surface_.mesh.triangles.size())});
+        add_part(other, at(t));
         return;
       }
-      if (divided_into(static_cast<int>(t)) < 0) return;
     }
   }
 
-  int divided_into(int triangle) const {
-    for (auto d = divided_.rbegin(); d != divided_.rend(); ++d)
-      if ((*d)[0] == triangle) return (*d)[1];
-    return -1;
+  /// A triangle that is of the same facet as another.
+  void add_part(const Triangle& triangle, Size of) {
+    surface_.mesh.triangles.push_back(triangle);
+    surface_.triangle_cells.push_back(int(surface_.triangle_cells[of]));
+    surface_.triangle_grains.push_back(int(surface_.triangle_grains[of]));
+    surface_.triangle_sources.push_back(int(surface_.triangle_sources[of]));
+    surface_.triangle_facets.push_back(int(surface_.triangle_facets[of]));
+    surface_.is_crack_face.push_back(std::uint8_t(surface_.is_crack_face[of]));
+    surface_.is_old_face.push_back(std::uint8_t(surface_.is_old_face[of]));
   }
 
   const SolidComplex& complex_;
@@ -498,6 +565,7 @@ class BorderBuilder {
   std::vector<Loop> loops_;
   int next_key_ = 0;
   std::vector<std::array<int, 2>> joined_keys_;
+  std::vector<int> doubled_;  // vertices to which loops came again
   std::vector<Spoke> spokes_;
   std::vector<std::array<int, 2>> divided_;  // triangle, its second part
   SolidSurface surface_;

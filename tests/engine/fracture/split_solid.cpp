@@ -277,3 +277,14 @@ void cut_figure(int most) {
 TEST_CASE("split solid: 1e2 random cuts of a figure") {
   cut_figure(static_cast<int>(test::how_many(100, 5)));
 }
+
+TEST_CASE("split solid: 1e3 random cuts of a figure", "[.][long]") {
+  cut_figure(1000);
+}
+
+TEST_CASE("split solid: a rim that comes to a vertex again and a triangle that is divided twice") {
+  const SolidComplex whole = make_figure_complex();
+  std::size_t pieces = 0;
+  for (const int trial : {79, 166, 370}) try_figure_cuts(whole, trial, pieces);
+  CHECK(pieces == 19 + 65 + 31);
+}
