@@ -196,10 +196,14 @@ struct World::MovedPart {
   std::vector<body::Body> before;  // at its begin
   body::ImpulseLog given, log;     // all impulses; those of motion alone
   dynamics::ContactReport moved;
+  // Where pieces inherit the motion of what broke in it, and ways are kept: the bodies at its end, and how
+  // many breaks there were before.
+  std::vector<body::Body> unbroken;
+  std::size_t known_breaks = 0;
 };
 
 World::MovedPart World::move_part(const dynamics::StepPart& part, int pass) {
-  MovedPart done{part, pass, {}, act(part), {}, {}};
+  MovedPart done{part, pass, {}, act(part), {}, {}, {}, 0};
   tell_watcher("acts", part, pass);
   done.before = state_->moving.bodies;
   done.moved = move_bodies(part, done.log);
@@ -210,7 +214,7 @@ World::MovedPart World::move_part(const dynamics::StepPart& part, int pass) {
   return done;
 }
 
-World::PartEnd World::judge_part(const MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
+World::PartEnd World::judge_part(MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
                                  dynamics::ContactReport& contact) {
   State& s = *state_;
   const double step = s.contact_settings.time_step;
@@ -235,6 +239,10 @@ World::PartEnd World::judge_part(const MovedPart& done, MovingState& snapshot, d
   }
   for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
   const std::size_t known_breaks = s.report.breaks.size();
+  if (s.contact_settings.has_ways && s.settings.after_break == AfterBreak::inherit) {
+    done.unbroken = s.moving.bodies;
+    done.known_breaks = known_breaks;
+  }
   std::vector<const EvaluatedImpact*> broken;
   const bool goes_back = s.report.stages.time("fracture", [&] {
     broken = book_verdicts(impacts, snapshot, done.pass);
@@ -276,6 +284,9 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     book_conservation(done.before, done.log, s.contact_settings.time_step / part.count);
     s.log.insert(s.log.end(), done.given.begin(), done.given.end());
     dynamics::add_part(part, std::move(done.moved), contact);
+    if (!done.unbroken.empty())
+      divide_ways(done.unbroken, std::span(s.report.breaks).subspan(done.known_breaks), s.moving.bodies,
+                  std::min((part.number + 1.0) / part.count, kDentTime), contact.ways, s.ended_ways);
     if (s.wants_to_stop && !s.begin.moving)
       s.begin.moving = std::move(snapshot);  // the next part has its own
     ++part.number;

@@ -158,7 +158,7 @@ class World {
     retaken_with_pieces,  // what broke in it is replaced by its pieces
     retaken_in_full,      // it was a trial, which ends early, and nothing broke in it
   };
-  PartEnd judge_part(const MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
+  PartEnd judge_part(MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
                      dynamics::ContactReport& contact);
   /// Stages "dents" and "sleep", behind the last of `count` parts.
   void finish_parts(int count, const MovingState& snapshot, dynamics::ContactReport& contact);

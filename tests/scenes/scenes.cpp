@@ -298,3 +298,36 @@ TEST_CASE("a broken scene gives the same bits with one thread and two") {
   CHECK(one["pieces"].get<int>() > 0);
   CHECK(one["state_hash"] == two["state_hash"]);
 }
+
+TEST_CASE("pieces that inherit the motion of what broke are followed on its way until then") {
+  const Folder folder;
+  folder.write("inherit.toml",
+               "[scene]\n"
+               "seconds = 0.42\n"
+               "after_break = \"inherit\"\n"
+               "[[body]]\n"
+               "name = \"floor\"\n"
+               "kind = \"plane\"\n"
+               "material = \"eggshell\"\n"
+               "[[body]]\n"
+               "name = \"bauble\"\n"
+               "shape = \"ornament\"\n"
+               "radius = 0.0575\n"
+               "thickness = 0.0018\n"
+               "material = \"eggshell\"\n"
+               "position = [0.1865, 0.105, 0]\n"
+               "[[event]]\n"
+               "do = \"projectile\"\n"
+               "at = 0.354\n"
+               "from = [-0.1, 0.23, 0.58]\n"
+               "at_body = \"bauble\"\n"
+               "speed = 13.7\n"
+               "body = { kind = \"solid\", material = \"concrete\", shape = \"slab\", size = [0.032, 0.016, "
+               "0.0225], element_size = 0.008 }\n");
+  for (const char* seed : {"1", "8"}) {
+    const auto report = play(folder, std::string("inherit.toml --audit --seed ") + seed);
+    CHECK(report["breaks"].size() > 3);
+    CHECK(report["audit"]["crossings"] == 0);
+    CHECK(report["audit"]["passages"] == 0);
+  }
+}
