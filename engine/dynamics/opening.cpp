@@ -80,7 +80,9 @@ PlaceOnWay meet_on_way(const WorkPair& pair, const MotionWork& work, const Conta
                    pose_b.translation + there.arm_b,
                    there.normal,
                    there.gap};
-  if (pair.is_plane || knot == 1.0) return place;
+  // What solids touch with within one part was found where they turn.
+  const bool has_turned = pair.is_analytic && a.straight_parts == b.straight_parts;
+  if (pair.is_plane || has_turned || knot == 1.0) return place;
   // A knot of the one is none of the other, if that turns less.
   const Vec3 there_a = on_straight_way(a, contact.on_a, knot),
              there_b = on_straight_way(b, contact.on_b, knot);
