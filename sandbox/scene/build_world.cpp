@@ -335,6 +335,7 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
   BuiltScene built{world::World(scene.world), std::move(plan), {}};
   add_materials(scene, built.world, problems);
   if (problems.size() > before) return std::nullopt;
+  std::optional<world::World> trial;  // of what comes in later
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodyEntry& body = scene.bodies[i];
     const auto refuse = [&](const std::string& name, std::string fault) {
@@ -342,10 +343,11 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
       if (fault.starts_with(own)) fault.erase(0, own.size());
       book(problems, body.place, fmt::format("body \"{}\": {}", name, fault), "");
     };
-    if (body.is_held_back) {  // what comes in later is tried in another world
+    if (body.is_held_back) {
       std::string fault;
       clean_crossings(body, built.plan.bodies[i], built.plan.notes, fault);
-      const auto id = built.world.copy().add_body(built.plan.bodies[i].description);
+      if (!trial) trial = built.world.copy();
+      const auto id = trial->add_body(built.plan.bodies[i].description);
       if (!id) refuse(body.name, id.error());
       continue;
     }
