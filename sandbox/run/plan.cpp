@@ -97,13 +97,14 @@ void tell_tetrahedra(const scene::SceneDescription& scene, const scene::BuiltSce
   const auto degrees = [](double angle) { return angle * 180.0 / core::kPi; };
   std::set<int> told;
   for (const auto& [id, origin] : built.origins) {
+    if (told.count(origin.entry) > 0) continue;
     const auto quality = built.world.tetrahedra(id);
-    if (!quality || !told.insert(origin.entry).second) continue;
+    if (!quality) continue;
+    told.insert(origin.entry);
     if (told.size() == 1) fmt::print("tetrahedra of what can break\n");
     fmt::print(
         "    {:<17} {:>6} of {:.2g} m; dihedral angles {:.0f} to {:.0f} degrees, half have none below "
-        "{:.0f}; "
-        "aspect {:.2g}, at worst {:.2g}\n",
+        "{:.0f}; aspect {:.2g}, at worst {:.2g}\n",
         scene.bodies[static_cast<std::size_t>(origin.entry)].name, quality->count, quality->mean_edge_length,
         degrees(quality->least_dihedral), degrees(quality->greatest_dihedral),
         degrees(quality->median_least_dihedral), quality->median_aspect, quality->worst_aspect);
