@@ -44,6 +44,7 @@ SolverContact make_solver_contact(const PairState& memory, const MotionWork& wor
   if (known != memory.contacts.end() && known->feature_key == found.key) {
     c.was_loaded = known->was_loaded;
     c.arrival_before = known->arrival_speed;
+    c.hit_left_before = known->hit_left;
     c.creep_before = known->creep;
     c.warm_start = {known->normal_impulse, c.tangent_u.dot(known->friction_impulse),
                     c.tangent_v.dot(known->friction_impulse)};

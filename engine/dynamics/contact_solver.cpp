@@ -69,6 +69,7 @@ void IslandSolver::take_substeps() {
   for (int i = 0; i < settings_.substeps; ++i) {
     ride(i);
     if (i == 0) prepare(0);  // later ones begin where the one before ended
+    if (island_.may_break) begin_hits(i == 0);
     double gone = 0.0;
     for (int cut = 0; gone < substep_; ++cut) {
       part_start_ = i * substep_ + gone;
@@ -78,6 +79,7 @@ void IslandSolver::take_substeps() {
       take_part(i + 1);
       gone = step_ < substep_ - gone ? gone + step_ : substep_;
     }
+    if (island_.may_break) book_hits();
     each_body([&](WorkBody& b) {
       if (b.shape->kind == body::ShapeKind::sphere) return;
       if (i == 0) b.substep_poses.reserve(at(settings_.substeps));
@@ -85,9 +87,10 @@ void IslandSolver::take_substeps() {
     });
   }
   set_step(substep_);
+  if (island_.may_break) end_hits();
   // What bore and was not hit is logged with its effective mass at the end.
   each([&](std::size_t, SolverContact& c, Found&) {
-    if (c.effective_mass == 0.0 && c.impulse_a.squaredNorm() > 0.0) respond(c);
+    if (c.effective_mass == 0.0 && c.given.impulse_a.squaredNorm() > 0.0) respond(c);
   });
 }
 
@@ -172,12 +175,9 @@ void IslandSolver::begin() {
     c.impulse.setZero();
     reset_axes(c);
     c.total.setZero();
-    c.moment_point.setZero();
-    c.moment_a.setZero();
-    c.moment_b.setZero();
-    c.impulse_a.setZero();
-    c.impulse_b.setZero();
-    c.moment_weight = c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
+    c.given = {};
+    c.hits.clear();
+    c.closing_speed = c.arrival_time = c.effective_mass = 0.0;
   });
   has_scripted_ = scripted.is_any;
 }
@@ -322,12 +322,12 @@ void IslandSolver::keep_impulse(SolverContact& c) {
   if (c.impulse.squaredNorm() == 0.0) return;
   const Quat from_a = rotation_now(body(c.a)).conjugate(), from_b = rotation_now(body(c.b)).conjugate();
   const Vec3 p = c.impulse[0] * c.normal + c.impulse[1] * c.tangent_u + c.impulse[2] * c.tangent_v;
-  c.impulse_a += from_a * p;
-  c.impulse_b -= from_b * p;
-  c.moment_a += c.impulse[0] * (from_a * c.arm_a);
-  c.moment_b += c.impulse[0] * (from_b * c.arm_b);
-  c.moment_point += c.impulse[0] * c.point;
-  c.moment_weight += c.impulse[0];
+  c.given.impulse_a += from_a * p;
+  c.given.impulse_b -= from_b * p;
+  c.given.moment_a += c.impulse[0] * (from_a * c.arm_a);
+  c.given.moment_b += c.impulse[0] * (from_b * c.arm_b);
+  c.given.moment_point += c.impulse[0] * c.point;
+  c.given.moment_weight += c.impulse[0];
 }
 
 bool strikes_one_by_one(const Island& island, const MotionWork& work) {

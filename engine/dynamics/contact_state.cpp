@@ -28,6 +28,7 @@ std::uint64_t hash_of(const PairState& pair) {
   for (const RememberedContact& c : pair.contacts) {
     hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.creep).add(c.arrival_speed);
     hash.add(static_cast<std::uint64_t>(c.was_loaded));
+    if (c.hit_left > 0.0) hash.add(c.hit_left);
   }
   return hash.value();
 }

@@ -26,6 +26,7 @@ struct RememberedContact {
   Vec3 creep = Vec3::Zero();             // m, world: how far a has crept on b since friction holds it
   double arrival_speed = 0.0;            // m/s: closing speed of an impact that has not bounced yet
   bool was_loaded = false;               // carried an impulse in the last step
+  double hit_left = 0.0;                 // s: how long what it gives is still the hit's
 };
 
 inline constexpr int kNoTrouble = 1000;

@@ -1,6 +1,7 @@
 // One island's contacts through one step. Its motion is in contact_solver.cpp, its sweeps over contacts at
 // rest in contact_sweeps.cpp, what arrives and bounces in contact_impacts.cpp, the order in which they visit
-// contacts in contact_order.cpp; here is what they share.
+// contacts in contact_order.cpp, what of their impulses came by hits in contact_hits.cpp; here is what they
+// share.
 #pragma once
 
 #include <algorithm>
@@ -118,6 +119,12 @@ class IslandSolver {
   void hardest_first();
   void bounce_together();
   void bounce();
+
+  // contact_hits.cpp
+  void begin_hits(bool is_first);
+  void find_hit_pairs();
+  void book_hits();
+  void end_hits();
 
   bool has_hits_one_by_one() const {
     return order_.contacts.size() <= kFewContacts && !has_scripted_ && joints_.is_empty();
@@ -277,7 +284,17 @@ class IslandSolver {
   JointSolver joints_;
   std::vector<double>
       seen_;  // m/s, per contact of the island: how stirred its bodies were after its last visit
-  std::vector<double> pair_work_;                      // J, by row: of a pair's impulses in this substep
+  std::vector<double> pair_work_;  // J, by row: of a pair's impulses in this substep
+  // Per contact of an island in which something may break: what it gave in former substeps, less its hits,
+  // and whether it bore in the last one.
+  struct Borne {
+    Vec3 total = Vec3::Zero();  // N s
+    GivenImpulse given;
+    double closing_speed = 0.0;  // m/s, greatest
+    bool is_resting = false;     // it bore before its pair arrived
+  };
+  std::vector<Borne> borne_;
+  std::vector<double> hit_left_;                       // s, by row: how long the pair's hit goes on
   std::vector<Found> found_;                           // per range that was visited
   std::vector<std::size_t> struck_;                    // contacts of the island that bounce together
   std::vector<Vec3> search_direction_, before_sweep_;  // N s, per contact of the island

@@ -89,6 +89,26 @@ inline bool turns_far(const WorkBody& body) {
 /// to the other.
 inline constexpr double kNoDistance = 1e-9;
 
+/// What a contact gave over some time, as both bodies felt it.
+struct GivenImpulse {
+  Vec3 impulse_a = Vec3::Zero(), impulse_b = Vec3::Zero();  // N s, on a and b in their body spaces
+  Vec3 moment_point = Vec3::Zero();                         // sum of |normal impulse| point
+  Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();    // the same in the body spaces of a and b
+  double moment_weight = 0.0;
+
+  bool is_any() const { return impulse_a.squaredNorm() > 0.0 && impulse_b.squaredNorm() > 0.0; }
+  void add(const GivenImpulse& more);
+};
+
+/// What of it came by a hit.
+struct ContactHit {
+  Vec3 total = Vec3::Zero();  // N s, world, on a
+  GivenImpulse given;
+  double closing_speed = 0.0;   // m/s; 0: others of the pair arrived, or it did in the last step
+  double arrival_time = 0.0;    // s since the step's start
+  double effective_mass = 0.0;  // kg
+};
+
 // As above: what a visit of a sweep touches comes first, at the present pose.
 struct alignas(64) SolverContact {
   int a = 0, b = 0;  // numbers of the bodies
@@ -133,14 +153,15 @@ struct alignas(64) SolverContact {
   double arrival_speed = 0.0;                                   // m/s, of an impact that has not bounced
   double arrival_before = 0.0;                                  // m/s, the same at the start of the step
 
-  // Of the whole step.
-  Vec3 moment_point = Vec3::Zero();                         // sum of |normal impulse| point
-  Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();    // the same in the body spaces of a and b
-  Vec3 impulse_a = Vec3::Zero(), impulse_b = Vec3::Zero();  // N s, on a and b in their body spaces
-  double moment_weight = 0.0;
-  double closing_speed = 0.0;   // m/s, greatest of an arrival
-  double arrival_time = 0.0;    // s since the step's start, of the first arrival
-  double effective_mass = 0.0;  // kg, at that arrival
+  // Of the whole step, less its hits.
+  GivenImpulse given;
+  bool tells_hits = false;       // something may break: what arrived is in `hits`
+  std::vector<ContactHit> hits;  // by time
+  double hit_left = 0.0;         // s: how long the last one goes on yet,
+  double hit_left_before = 0.0;  // and that of the last step at this one's start
+  double closing_speed = 0.0;    // m/s, greatest of an arrival
+  double arrival_time = 0.0;     // s since the step's start, of the first arrival
+  double effective_mass = 0.0;   // kg, at that arrival
 };
 
 struct WorkPair {

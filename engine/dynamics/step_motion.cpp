@@ -41,59 +41,71 @@ constexpr double kSwingTurn = 0.5;
 constexpr double kTorn = 1e-3;      // of the lesser reach: what is off by more has been torn
 constexpr double kMostFiner = 8.0;  // times as many substeps at most: the pull of a blow does not last
 
-// Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
-bool has_impulse(const SolverContact& c) {
-  return c.impulse_a.squaredNorm() > 0.0 && c.impulse_b.squaredNorm() > 0.0;
-}
-
-body::LoggedImpulse describe(const std::vector<Body>& bodies, const SolverContact& c, ImpulseKind kind) {
+body::LoggedImpulse describe(const std::vector<Body>& bodies, const SolverContact& c,
+                             const GivenImpulse& given, const Vec3& total) {
   body::LoggedImpulse entry;
-  entry.kind = kind;
+  const bool has_place = given.moment_weight > 0.0;
   entry.body_a = bodies[at(c.a)].id;
   entry.body_b = bodies[at(c.b)].id;
-  entry.point_world = c.moment_weight > 0.0 ? Vec3(c.moment_point / c.moment_weight) : c.point;
-  if (c.moment_weight > 0.0) {
-    entry.point_a = c.moment_a / c.moment_weight;
-    entry.point_b = c.moment_b / c.moment_weight;
+  entry.point_world = has_place ? Vec3(given.moment_point / given.moment_weight) : c.point;
+  if (has_place) {
+    entry.point_a = given.moment_a / given.moment_weight;
+    entry.point_b = given.moment_b / given.moment_weight;
   } else {
     entry.point_a = bodies[at(c.a)].pose.apply_inverse(c.point);
     entry.point_b = bodies[at(c.b)].pose.apply_inverse(c.point);
   }
-  entry.impulse_a = c.impulse_a;
-  entry.impulse_b = c.impulse_b;
+  entry.impulse_a = given.impulse_a;
+  entry.impulse_b = given.impulse_b;
   entry.normal_world = c.normal;
-  entry.impulse_world = c.total;
-  if (kind == ImpulseKind::collision) {
-    entry.closing_speed = c.closing_speed;
-    entry.time = c.arrival_time;
-  }
+  entry.impulse_world = total;
   entry.effective_mass = c.effective_mass > 0.0 ? c.effective_mass : c.weights[0];
   return entry;
 }
 
+void mark_hit(double closing_speed, double time, body::LoggedImpulse& entry) {
+  entry.kind = ImpulseKind::collision;
+  entry.closing_speed = closing_speed;
+  entry.time = time;
+}
+
+// Where nothing may break, what arrived in a step is logged as it was at its end.
 void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body::ImpulseLog& log) {
   std::vector<char> pair_collides(work.pairs.size(), 0);
-  std::vector<const SolverContact*> logged;
+  std::vector<std::pair<const SolverContact*, std::size_t>> logged;  // and where its first entry goes
+  std::size_t end = log.size();
   for (const SolverContact& c : work.contacts) {
-    if (c.closing_speed > c.threshold && !c.was_loaded) pair_collides[at(c.pair)] = 1;
-    if (has_impulse(c)) logged.push_back(&c);
+    if (c.closing_speed > c.threshold && !c.was_loaded && !c.tells_hits) pair_collides[at(c.pair)] = 1;
+    // Of what sweeps gave and took back `total` keeps the rounding; the bodies felt nothing.
+    const std::size_t entries = c.hits.size() + (c.given.is_any() ? 1 : 0);
+    if (entries > 0) logged.emplace_back(&c, end);
+    end += entries;
   }
-  const std::size_t first = log.size();
-  log.resize(first + logged.size());
+  log.resize(end);
   core::parallel_for(logged.size(), 64, [&](std::size_t k) {
-    const SolverContact& c = *logged[k];
-    const bool collides = pair_collides[at(c.pair)] && !c.was_loaded;
-    log[first + k] = describe(bodies, c, collides ? ImpulseKind::collision : ImpulseKind::contact);
+    const SolverContact& c = *logged[k].first;
+    std::size_t next = logged[k].second;
+    Vec3 rest = c.total;
+    for (const ContactHit& hit : c.hits) {
+      log[next] = describe(bodies, c, hit.given, hit.total);
+      if (hit.effective_mass > 0.0) log[next].effective_mass = hit.effective_mass;
+      mark_hit(hit.closing_speed, hit.arrival_time, log[next++]);
+      rest -= hit.total;
+    }
+    if (!c.given.is_any()) return;
+    log[next] = describe(bodies, c, c.given, rest);
+    if (pair_collides[at(c.pair)] && !c.was_loaded && !c.tells_hits)
+      mark_hit(c.closing_speed, c.arrival_time, log[next]);
   });
   log.insert(log.end(), work.continuous_log.begin(), work.continuous_log.end());
 }
 
 void remember_contact(const SolverContact& c, PairState& memory) {
-  const bool is_loaded = has_impulse(c);
+  const bool is_loaded = c.given.is_any() || !c.hits.empty();
   memory.is_touching = memory.is_touching || is_loaded || c.slack <= c.kept_gap;
   const Vec3 crept = is_loaded ? Vec3(c.change - c.held_from) : Vec3::Zero();
   memory.contacts.push_back({c.found.key, c.warm[0], c.warm[1] * c.tangent_u + c.warm[2] * c.tangent_v,
-                             crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded});
+                             crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded, c.hit_left});
 }
 
 void remember_contacts(const MotionWork& work, ContactState& state) {

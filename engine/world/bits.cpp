@@ -15,6 +15,7 @@ void add_to_hash(const ImpactMemory& memory, core::Hash& hash) {
   for (const Load& load : memory.event) hash.add(load.impulse_body).add(load.point_body).add(load.time);
   for (const Load& load : memory.contact) hash.add(load.impulse_body).add(load.time);
   for (const ComingDent& coming : memory.dents) hash.add(coming.figures().work);
+  if (memory.charged_event != 0) hash.add(memory.charged_until).add(memory.charged_left);
 }
 
 void add_to_hash(const JointMemories& memories, core::Hash& hash) {

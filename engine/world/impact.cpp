@@ -44,12 +44,18 @@ void merge(Load& into, const Load& load) {
 
 }  // namespace
 
-bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemory* other_memory,
-                double time) {
-  if (time > piece.charged_until) return false;
-  if (other == piece.charged_other) return true;
-  return other_memory && other_memory->charged_event == piece.charged_event &&
-         time <= other_memory->charged_until;
+bool take_charged(ImpactMemory& piece, const ImpactMemory* other_memory, Load& load) {
+  if (load.time > piece.charged_until) return false;
+  if (load.other != piece.charged_other)
+    return other_memory && other_memory->charged_event == piece.charged_event &&
+           load.time <= other_memory->charged_until;
+  const double impulse = load.impulse_body.norm();
+  const double taken = std::min(impulse, piece.charged_left);
+  piece.charged_left -= taken;
+  if (!(taken < impulse)) return true;
+  load.impulse_body *= 1.0 - taken / impulse;
+  load.other_impulse *= 1.0 - taken / impulse;
+  return false;
 }
 
 bool is_seated(const body::Body& struck, const body::Body& other, const Load& load) {

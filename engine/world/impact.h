@@ -72,9 +72,10 @@ struct ImpactMemory {
   double born = -1e9;
 
   // The impact that made this piece was charged with its whole impulse when it was judged. Until it is over,
-  // what comes from the same body, or from another piece of the same break, is part of it and not charged
-  // again.
+  // what comes from another piece of the same break is part of it, and so is, up to that impulse, what comes
+  // from the same body: what is beyond it is charged.
   double charged_until = -1e9;     // s
+  double charged_left = 0.0;       // N s
   body::BodyId charged_other = 0;  // whom the broken body had met
   body::BodyId charged_event = 0;  // the body that broke
 };
@@ -83,9 +84,9 @@ struct ImpactMemory {
 inline constexpr double kContactAverage = 1.0 / 60.0;
 double contact_average(double step);
 
-/// True if an impulse at `time` (s) by `other` (whose memory may be null) belongs to the impact that made the
-/// piece.
-bool is_charged(const ImpactMemory& piece, body::BodyId other, const ImpactMemory* other_memory, double time);
+/// Takes from the load what was charged with the impact that made the piece, from whose `charged_left` it
+/// goes; `other_memory`, of the load's other body, may be null. True if nothing is left of the load.
+bool take_charged(ImpactMemory& piece, const ImpactMemory* other_memory, Load& load);
 
 /// True if the load comes from a piece of the same body that still sits beside this one: the place where they
 /// press is the same one in their common material space, but for the shape's seat (of shells a thickness).
@@ -97,8 +98,8 @@ bool is_seated(const body::Body& struck, const body::Body& other, const Load& lo
 /// (N s, sum, body space): what is left is the piece's own share.
 void keep_own_share(std::vector<Load>& loads, const Vec3& passed_on);
 
-/// Whether an impulse is to be passed over.
-using PassOver = std::function<bool(const Load& load)>;
+/// Whether an impulse is to be passed over; it may be lessened.
+using PassOver = std::function<bool(Load& load)>;
 
 /// What a log says of one body, in the log's order.
 using OwnImpulses = std::vector<const body::LoggedImpulse*>;

@@ -95,7 +95,7 @@ BreakRow describe(const body::Body& parent, const EvaluatedImpact& impact, doubl
 
 void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMemory& memory,
                    const std::vector<Piece>& pieces, std::vector<body::Body> born, double time,
-                   double charged_until, body::BodyId charged_other,
+                   double charged_until, const EvaluatedImpact& impact,
                    std::map<body::BodyId, Ancestry>& ancestry, BreakRow& row) {
   const Ancestry before = ancestry.at(parent.id);
   for (std::size_t i = 0; i < born.size(); ++i) {
@@ -105,7 +105,8 @@ void insert_pieces(MovingState& moving, const body::Body& parent, const ImpactMe
     own.keeps_dents = false;
     own.born = time;
     own.charged_until = charged_until;
-    own.charged_other = charged_other;
+    own.charged_left = impact.charged;
+    own.charged_other = impact.hardest.other;
     own.charged_event = parent.id;
     moving.memories[born[i].id] = own;
     moving.fragiles[born[i].id] = pieces[i].fragile;
@@ -199,8 +200,7 @@ BreakRow replace_body(MovingState& moving, const EvaluatedImpact& impact, double
   double charged_until = impact.first_time + 2.0 * impact.figures().verdict.duration;
   if (const fracture::Perforation* hole = find_hole(impact))
     charged_until = std::min(charged_until, time_behind(*hole));
-  insert_pieces(moving, parent, memory, pieces, std::move(born), time, charged_until, impact.hardest.other,
-                ancestry, row);
+  insert_pieces(moving, parent, memory, pieces, std::move(born), time, charged_until, impact, ancestry, row);
   return row;
 }
 

@@ -133,7 +133,7 @@ void gather_paper_step(const OwnImpulses& log, const body::Body& body, double ra
 
 /// Collisions of this step, less what is charged already and what passes through to seated neighbours.
 std::vector<Load> gather_collisions(const Judge& judge, const OwnImpulses& log, const body::Body& body,
-                                    double radius, double time, const ImpactMemory& memory) {
+                                    double radius, double time, ImpactMemory& memory) {
   Vec3 passed_on = Vec3::Zero();
   const auto passes_on = [&](const Load& load) {
     const body::Body* other = body::find_body(judge.bodies, load.other);
@@ -143,11 +143,10 @@ std::vector<Load> gather_collisions(const Judge& judge, const OwnImpulses& log, 
   };
   gather_loads(log, body::ImpulseKind::contact, body, radius, time, passes_on);
   std::vector<Load> hits =
-      gather_loads(log, body::ImpulseKind::collision, body, radius, time, [&](const Load& load) {
+      gather_loads(log, body::ImpulseKind::collision, body, radius, time, [&](Load& load) {
         if (passes_on(load)) return true;
-        const auto other_memory = judge.memories.find(load.other);
-        return is_charged(memory, load.other,
-                          other_memory == judge.memories.end() ? nullptr : &other_memory->second, load.time);
+        const auto other = judge.memories.find(load.other);
+        return take_charged(memory, other == judge.memories.end() ? nullptr : &other->second, load);
       });
   keep_own_share(hits, passed_on);
   return hits;
@@ -223,7 +222,7 @@ void fill_candidate(const Judge& judge, const body::Body& body, double radius, d
   candidate.loads = event;
   candidate.loads.insert(candidate.loads.end(), memory.contact.begin(), memory.contact.end());
   candidate.is_piece = memory.charged_event != 0;
-  candidate.first_time = time;
+  candidate.first_time = event.empty() ? time : event.front().first_time;
   for (const Load& load : event) candidate.first_time = std::min(candidate.first_time, load.first_time);
   // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
   const int generation = candidate.first_time > memory.charged_until ? 0 : memory.generation;
@@ -390,6 +389,8 @@ EvaluatedImpact judge_impact(const WorldSettings& settings, const Candidate& can
   impact.is_struck = candidate.is_struck;
   impact.first_time = candidate.first_time;
   impact.has_used_all = candidate.has_used_all;
+  for (const Load& load : candidate.loads)
+    if (load.other == candidate.hardest.other) impact.charged += load.impulse_body.norm();
   if (const auto* shell = std::get_if<fracture::ShellSubject>(&candidate.fragile->subject))
     impact.decision = fracture::decide_shell(*shell, candidate.impact, how);
   else if (const auto* solid = std::get_if<fracture::SolidSubject>(&candidate.fragile->subject))

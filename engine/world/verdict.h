@@ -19,6 +19,7 @@ struct EvaluatedImpact {
   body::BodyId id = 0;
   double first_time = 0.0;    // s, of the first impulse of the event
   Load hardest;               // body space
+  double charged = 0.0;       // N s, of all loads by whose is the hardest
   bool is_struck = false;     // by a collision; otherwise contact alone pressed
   bool has_used_all = false;  // generations that one event has: it holds, whatever the stress
   std::variant<fracture::Decision, fracture::SolidDecision> decision;

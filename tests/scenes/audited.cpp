@@ -61,7 +61,7 @@ TEST_CASE("scenes at 60 and 240 and 960 steps a second: nothing crosses and nobo
                                  {"dominoes", "1.5", false},
                                  {"arch", "1.4", false},
                                  {"tablet", "0.45", true},
-                                 {"vase", "0.5", true},
+                                 {"vase", "0.65", true},
                                  {"lintel", "0.55", true},
                                  {"crater", "0.4", true},
                                  {"wall", "0.45", true},

@@ -55,8 +55,25 @@ TEST_CASE("tablet: breaks from the corner that it falls on into few pieces") {
 }
 
 TEST_CASE("vase: breaks on the floor into some twenty pieces") {
-  const auto report = play_audited("vase --seconds 0.45", {8, 60});
+  const auto report = play_audited("vase --seconds 0.62", {8, 60});
   CHECK(height_of_first_break(report) < 0.02);
+}
+
+TEST_CASE("pots: as many pieces of stoneware at 60 and 240 and 960 steps a second") {
+  const Folder folder;
+  double least = 1e9, most = 0.0;
+  for (const char* rate : {"60", "240", "960"}) {
+    double pieces = 0.0;
+    for (const char* seed : {"1", "2", "3", "4"})
+      pieces += play(folder, std::string("pots --seconds 1 --set scene.steps_per_second=") + rate +
+                                 " --seed " + seed)["pieces"]
+                    .get<double>();
+    least = std::min(least, pieces);
+    most = std::max(most, pieces);
+  }
+  CAPTURE(least, most);
+  CHECK(least > 40.0);
+  CHECK(most < 1.4 * least);
 }
 
 TEST_CASE("lintel: snaps across the edge of steel and mostly round its grains") {

@@ -90,7 +90,8 @@ TEST_CASE("dominoes and blast: nobody hangs where he is, boxes that fall or spli
   const auto report = play(folder,
                            "blast --seed 2 --seconds 0.6 --audit --set brick.repeat.count=[8,6,1] --set "
                            "half_left.repeat.count=[1,3,1] "
-                           "--set half_right.repeat.count=[1,3,1] --set blast.centre=[0.12,0.2,-0.3]");
+                           "--set half_right.repeat.count=[1,3,1] --set blast.centre=[0.12,0.2,-0.3] "
+                           "--set blast.energy=22000000");
   check_nobody_hangs(report);
   CHECK(report["pieces"].get<int>() > 100);
 }

@@ -89,6 +89,37 @@ TEST_CASE("one impulse in parts is the same event as the whole") {
   CHECK(event[0].time == Approx(0.007));
 }
 
+TEST_CASE("what made a piece is charged once: of whom it met up to that impulse and of its siblings wholly") {
+  world::ImpactMemory piece, sibling;
+  piece.charged_until = sibling.charged_until = 0.01;
+  piece.charged_event = sibling.charged_event = 5;
+  piece.charged_other = 2;
+  piece.charged_left = 3.0;
+  Load load;
+  load.other = 2;
+  load.impulse_body = Vec3(0, 2, 0);
+  load.other_impulse = Vec3(0, -2, 0);
+  load.time = 0.005;
+  CHECK(world::take_charged(piece, nullptr, load));
+  CHECK(piece.charged_left == Approx(1.0));
+  CHECK_FALSE(world::take_charged(piece, nullptr, load));
+  CHECK(load.impulse_body.y() == Approx(1.0));
+  CHECK(load.other_impulse.y() == Approx(-1.0));
+  CHECK(piece.charged_left == 0.0);
+  CHECK_FALSE(world::take_charged(piece, nullptr, load));
+  CHECK(load.impulse_body.y() == Approx(1.0));
+  load.other = 7;
+  CHECK(world::take_charged(piece, &sibling, load));
+  CHECK_FALSE(world::take_charged(piece, nullptr, load));
+  sibling.charged_event = 6;
+  CHECK_FALSE(world::take_charged(piece, &sibling, load));
+  piece.charged_left = 3.0;
+  load.other = 2;
+  load.time = 0.011;
+  CHECK_FALSE(world::take_charged(piece, nullptr, load));
+  CHECK(piece.charged_left == 3.0);
+}
+
 TEST_CASE("effective mass: head-on, off-centre and against a fixed body") {
   body::Body a = make_sphere(1, 0.5, 2.0);
   body::Body b = make_sphere(2, 0.5, 6.0);

@@ -95,6 +95,17 @@ TEST_CASE("an impact that was borne is not solved again, however near it came, b
   }
 }
 
+TEST_CASE("an impact begins when what hits arrives, not with the step in which it does") {
+  Hit hit(8.0);
+  std::map<body::BodyId, world::ImpactMemory> memories;
+  body::ImpulseLog log = {hit.impulse(body::ImpulseKind::collision, 0.4, Vec3(0.04, 0.0, 0.0))};
+  log[0].time = 0.003;
+  const auto impacts = hit.judge(log, 0.5, memories);
+  REQUIRE(impacts.size() == 1);
+  CHECK(impacts[0].first_time == Approx(0.503));
+  CHECK(impacts[0].charged == Approx(log[0].impulse_a.norm()));
+}
+
 TEST_CASE("an event lasts for two durations after its last collision, whatever touches the body meanwhile") {
   const Vec3 side(0.04, 0.0, 0.0);
   using Kind = body::ImpulseKind;
