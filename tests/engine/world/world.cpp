@@ -179,7 +179,7 @@ TEST_CASE("a hard impact breaks a shell, and mass and momentum are those of the 
 TEST_CASE("pieces that have used all generations of their impact hold and are solved once for the verdict") {
   world::WorldSettings settings;
   settings.most_generations = 1;
-  world::World w = make_drop(test::kIsSanitized ? 4.0 : 8.0, 0.5e-3, settings);
+  world::World w = make_drop(test::kIsSanitized ? 5.0 : 9.0, 0.5e-3, settings);
   for (int i = 0; i < 24; ++i) w.step();
   long told = 0, solves = 0;
   for (const world::BreakRow& row : w.report().breaks) {
