@@ -94,8 +94,7 @@ void log_contacts(const std::vector<Body>& bodies, const MotionWork& work, body:
     }
     if (!c.given.is_any()) return;
     log[next] = describe(bodies, c, c.given, rest);
-    if (pair_collides[at(c.pair)] && !c.was_loaded && !c.tells_hits)
-      mark_hit(c.closing_speed, c.arrival_time, log[next]);
+    if (pair_collides[at(c.pair)] && !c.was_loaded) mark_hit(c.closing_speed, c.arrival_time, log[next]);
   });
   log.insert(log.end(), work.continuous_log.begin(), work.continuous_log.end());
 }
