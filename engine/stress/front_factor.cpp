@@ -234,6 +234,7 @@ std::optional<FrontFactor> FrontFactor::make(const FrontTree& tree, const std::v
   for (Size begin = 0, end = 0; begin < tree.fronts.size(); begin = end) {
     Size size = size_of(end++);
     while (end < tree.fronts.size() && size + size_of(end) <= kBlockEntries) size += size_of(end++);
+    factor.size_ += size;
     double* next = factor.blocks_.emplace_back(new double[size]).get();  // each front zeroes its own
     for (Size f = begin; f < end; ++f) {
       factor.panels_[f] = next;

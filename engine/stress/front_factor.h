@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/bytes.h"
 #include "engine/core/vec.h"
 #include "engine/stress/front_tree.h"
 
@@ -32,7 +33,10 @@ class FrontFactor {
   /// inverted.
   const double* panel(std::size_t front) const { return panels_[front]; }
 
+  double bytes() const { return static_cast<double>(sizeof(double) * size_) + core::bytes_in(panels_); }
+
  private:
+  std::size_t size_ = 0;                           // doubles in all panels
   std::vector<double*> panels_;                    // begin of each front's, in blocks_
   std::vector<std::unique_ptr<double[]>> blocks_;  // some panels each
 };

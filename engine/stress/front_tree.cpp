@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/buckets.h"
+#include "engine/core/bytes.h"
 #include "engine/core/index.h"
 #include "engine/stress/supernodes.h"
 
@@ -152,6 +153,10 @@ FrontTree build_front_tree(const NodeGraph& graph, const std::vector<int>& order
     if (const int number = elimination.number[node]; number >= 0)
       tree.node_place[node] = builder.place()[at(number)];
   return tree;
+}
+
+double FrontTree::bytes() const {
+  return core::bytes_in(fronts, children, row_place, row_in_parent, node_place, elements, element_local);
 }
 
 std::vector<int> small_subtrees(const FrontTree& tree, int share) {

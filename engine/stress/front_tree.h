@@ -43,6 +43,8 @@ struct FrontTree {
   std::vector<std::array<int, NodeGraph::kElementNodes>>
       element_local;     // |elements|: place of each node in that front
   double entries = 0.0;  // of the factor
+
+  double bytes() const;  // of memory
 };
 
 /// Fronts for a given order of the nodes (all that occur in elements; others may be left out).

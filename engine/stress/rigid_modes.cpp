@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "engine/core/bytes.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 
@@ -148,6 +149,10 @@ void RigidModes::subtract(VecX& b, const Amounts& amounts) const {
   for (Eigen::Index i = 0; i < b.size(); ++i)
     if (const int part = part_[static_cast<Size>(i)]; part >= 0 && is_moved[at(part)] != 0)
       b(i) -= mass_(i) * modes_.row(i).dot(amounts[at(part)]);
+}
+
+double RigidModes::bytes() const {
+  return core::bytes_in(mass_, part_, part_mass_, part_size_, modes_);
 }
 
 void RigidModes::balance(VecX& b) const {

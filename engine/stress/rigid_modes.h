@@ -30,6 +30,8 @@ class RigidModes {
   /// b -= M R amounts.
   void subtract(VecX& b, const Amounts& amounts) const;
 
+  double bytes() const;  // of memory
+
   int part_count() const { return static_cast<int>(part_mass_.size()); }
   int mode_count() const { return mode_count_; }
   const std::vector<int>& part_of_dof() const { return part_; }

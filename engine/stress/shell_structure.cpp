@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/bytes.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
@@ -175,6 +176,10 @@ std::vector<VecX> ShellStructure::multiply_stiffness(const std::vector<const Vec
 void ShellStructure::restrict_to_active(VecX& x) const {
   for (Size dof = 0; dof < place.size(); ++dof)
     if (place[dof] < 0) x(static_cast<Eigen::Index>(dof)) = 0.0;
+}
+
+double ShellStructure::bytes() const {
+  return core::bytes_in(cells, mass, place) + rigid.bytes() + tree.bytes();
 }
 
 }  // namespace shatterbox::stress

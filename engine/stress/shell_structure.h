@@ -44,6 +44,8 @@ struct ShellStructure {
   /// K times each vector (|dof|). Lanes never mix and sum in one order, so company changes no bits.
   std::vector<VecX> multiply_stiffness(const std::vector<const VecX*>& all) const;
   void restrict_to_active(VecX& x) const;
+  /// Of memory, but for the stiffness, which is that of the whole body.
+  double bytes() const;
 
  private:
   void build_cells(const geometry::ShellMesh& mesh);

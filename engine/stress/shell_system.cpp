@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/bytes.h"
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
@@ -252,6 +253,9 @@ const ShellStiffness& ShellSystem::stiffness() const {
 }
 double ShellSystem::factor_entries() const {
   return state_->structure->tree.entries;
+}
+double ShellSystem::bytes() const {
+  return state_->factor->bytes() + core::bytes_in(state_->diagonal, state_->shift);
 }
 
 }  // namespace shatterbox::stress

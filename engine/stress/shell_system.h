@@ -77,6 +77,8 @@ class ShellSystem {
 
   /// Entries of the factor.
   double factor_entries() const;
+  /// Of memory, but for what the structure holds.
+  double bytes() const;
 
  private:
   struct State;

@@ -30,11 +30,11 @@ ShellSystemCache::ShellSystemCache(std::shared_ptr<const ShellStiffness> stiffne
 const ShellSystemCache::System& ShellSystemCache::get(int key, double screening) {
   {
     const std::lock_guard lock(mutex_);
-    if (const auto kept = systems_.find(key); kept != systems_.end()) return kept->second;
+    if (const auto kept = made_->systems.find(key); kept != made_->systems.end()) return kept->second;
   }
   System made = ShellSystem::make(structure(), screening);
   const std::lock_guard lock(mutex_);
-  return systems_.emplace(key, std::move(made)).first->second;
+  return made_->systems.emplace(key, std::move(made)).first->second;
 }
 
 const ShellSystemCache::System& ShellSystemCache::unscreened() {
@@ -46,8 +46,9 @@ const ShellSystemCache::System& ShellSystemCache::screened(int exponent) {
 }
 
 const std::shared_ptr<const ShellStructure>& ShellSystemCache::structure() {
-  std::call_once(has_structure_, [this] { structure_ = ShellStructure::make(stiffness_, *mesh_, support_); });
-  return structure_;
+  std::call_once(made_->has_structure,
+                 [this] { made_->structure = ShellStructure::make(stiffness_, *mesh_, support_); });
+  return made_->structure;
 }
 
 const ShellFigures& ShellSystemCache::figures() {
@@ -57,15 +58,19 @@ const ShellFigures& ShellSystemCache::figures() {
 
 int ShellSystemCache::count() const {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(systems_.size());
+  return static_cast<int>(made_->systems.size());
 }
 
-double ShellSystemCache::factor_entries() const {
+double ShellSystemCache::bytes() const {
   const std::lock_guard lock(mutex_);
-  double sum = 0.0;
-  for (const auto& [key, system] : systems_)
-    if (system) sum += system.value()->factor_entries();
+  double sum = made_->structure ? made_->structure->bytes() : 0.0;
+  for (const auto& [key, system] : made_->systems)
+    if (system) sum += system.value()->bytes();
   return sum;
+}
+
+void ShellSystemCache::give_up() {
+  made_ = std::make_unique<Made>();
 }
 
 }  // namespace shatterbox::stress

@@ -39,25 +39,33 @@ class ShellSystemCache {
   const ShellStiffness& stiffness() const { return *stiffness_; }
   const std::shared_ptr<const ShellStiffness>& shared_stiffness() const { return stiffness_; }
   const ShellSupport& support() const { return support_; }
-  /// Number of systems made so far, and of the entries of their factors.
+  /// Number of systems made so far, and bytes of memory that they hold with what they share.
   int count() const;
-  double factor_entries() const;
+  double bytes() const;
+  /// Gives up the systems and what they share; they are made again when asked for. Not while anyone asks, or
+  /// keeps a reference.
+  void give_up();
 
  private:
+  /// What give_up() gives up.
+  struct Made {
+    std::once_flag has_structure;
+    std::shared_ptr<const ShellStructure> structure;
+    std::map<int, System> systems;  // by exponent
+  };
+
   const System& get(int key, double screening);
 
   std::shared_ptr<const ShellStiffness> stiffness_;
   std::shared_ptr<const geometry::ShellMesh> mesh_;
   ShellSupport support_;
-  std::once_flag has_structure_;
-  std::shared_ptr<const ShellStructure> structure_;
   std::once_flag has_figures_;
   ShellFigures figures_;
-  // Guards systems_, and is never held while one is made: a thread that waits inside a parallel loop may pick
-  // up work that asks for the same system. Two threads that ask at once both make it, to the same bits, and
-  // the first is kept.
+  // Guards the systems, and is never held while one is made: a thread that waits inside a parallel loop may
+  // pick up work that asks for the same system. Two threads that ask at once both make it, to the same bits,
+  // and the first is kept.
   mutable std::mutex mutex_;
-  std::map<int, System> systems_;  // by exponent
+  std::unique_ptr<Made> made_ = std::make_unique<Made>();
 };
 
 }  // namespace shatterbox::stress

@@ -14,15 +14,18 @@ class FactorShelf {
   /// `most_bytes` of the factors of all pieces of shells together.
   explicit FactorShelf(double most_bytes = 2e9) : most_bytes_(most_bytes) {}
 
-  void note_use(body::BodyId id, long step) { used_[id] = step; }
+  /// It was asked since the last clear_out().
+  void note_use(body::BodyId id) { used_[id] = turn_; }
 
-  /// Where there are more, pieces give theirs up, those first that were not used for longest, until half is
-  /// left. Whole bodies keep what they got at load.
-  void clear_out(Fragiles& fragiles, const std::map<body::BodyId, Ancestry>& ancestry);
+  /// Where there are more, pieces give theirs up, those first that were not used for longest, until four
+  /// fifths are left; wherever else a piece's Fragile is kept, it gives them up there. Whole bodies keep what
+  /// they got at load. Not while anyone is judged.
+  void clear_out(const Fragiles& fragiles, const std::map<body::BodyId, Ancestry>& ancestry);
 
  private:
   double most_bytes_;
-  std::map<body::BodyId, long> used_;  // the last step in which they were
+  long turn_ = 0;
+  std::map<body::BodyId, long> used_;  // the last turn in which they were
 };
 
 }  // namespace shatterbox::world

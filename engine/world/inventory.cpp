@@ -2,10 +2,13 @@
 
 #include <set>
 
+#include "engine/core/bytes.h"
 #include "engine/world/state.h"
 
 namespace shatterbox::world {
 namespace {
+
+using core::bytes_in;
 
 /// Of things that several bodies may share, each once.
 template <class Thing, class Bytes>
@@ -17,11 +20,6 @@ PartCount count_shared(const char* part, const std::set<const Thing*>& things, c
     sum.bytes += bytes_of(*thing);
   }
   return sum;
-}
-
-template <class Item>
-double bytes_in(const std::vector<Item>& items) {
-  return static_cast<double>(items.size() * sizeof(Item));
 }
 
 /// What of the element matrices is for curvature: rows of strain, and stiffness of all but the corners'
@@ -97,21 +95,20 @@ std::vector<PartCount> World::inventory() const {
   for (const stress::ShellSystemCache* cache : systems) {
     if (cache == nullptr) continue;
     factors.count += cache->count();
-    factors.bytes += sizeof(double) * cache->factor_entries();
+    factors.bytes += cache->bytes();
   }
-  PartCount all_flaws = count_shared("flaws", flaws, [](const fracture::FlawField& f) {
-    return bytes_in(f.flaws) + bytes_in(f.first_of_element);
-  });
+  PartCount all_flaws = count_shared(
+      "flaws", flaws, [](const fracture::FlawField& f) { return bytes_in(f.flaws, f.first_of_element); });
   const PartCount flaws_in_volume = count_shared("flaws", solid_flaws, [](const fracture::SolidFlawField& f) {
-    return bytes_in(f.flaws) + bytes_in(f.first_of_element);
+    return bytes_in(f.flaws, f.first_of_element);
   });
   all_flaws.count += flaws_in_volume.count;
   all_flaws.bytes += flaws_in_volume.bytes;
   PartCount all_grains = count_shared("grains", grains, [](const fracture::GrainField& g) {
-    return bytes_in(g.seeds) + bytes_in(g.energies) + bytes_in(g.first_of_element);
+    return bytes_in(g.seeds, g.energies, g.first_of_element);
   });
   const PartCount grains_in_volume = count_shared("grains", solid_grains, [](const fracture::SpaceGrains& g) {
-    return bytes_in(g.seeds) + bytes_in(g.near) + bytes_in(g.first_of_node) + bytes_in(g.reach);
+    return bytes_in(g.seeds, g.near, g.first_of_node, g.reach);
   });
   all_grains.count += grains_in_volume.count;
   all_grains.bytes += grains_in_volume.bytes;
@@ -128,18 +125,16 @@ std::vector<PartCount> World::inventory() const {
   return {
       count_shared("surfaces", surfaces,
                    [](const body::Shape& shape) {
-                     return bytes_in(shape.surface.positions) + bytes_in(shape.surface.triangles) +
-                            bytes_in(shape.topology.edges) + bytes_in(shape.topology.triangle_edges);
+                     return bytes_in(shape.surface.positions, shape.surface.triangles, shape.topology.edges,
+                                     shape.topology.triangle_edges);
                    }),
-      count_shared(
-          "shell_stiffness", stiffnesses,
-          [](const stress::ShellStiffness& k) { return bytes_in(k.matrices) + bytes_in(k.vertex_rank); }),
+      count_shared("shell_stiffness", stiffnesses,
+                   [](const stress::ShellStiffness& k) { return bytes_in(k.matrices, k.vertex_rank); }),
       count_shared("bending", bending, bending_bytes),
       factors,
       count_shared("tetrahedra", complexes,
                    [](const geometry::SolidComplex& c) {
-                     return bytes_in(c.vertices) + bytes_in(c.edges) + bytes_in(c.sides) +
-                            bytes_in(c.facets) + bytes_in(c.cell_facets) + bytes_in(c.cells);
+                     return bytes_in(c.vertices, c.edges, c.sides, c.facets, c.cell_facets, c.cells);
                    }),
       all_flaws,
       all_grains,

@@ -182,7 +182,6 @@ bool World::step() {
   s.ways.insert(s.ways.end(), s.ended_ways.begin(), s.ended_ways.end());
   book_contact(contact, s.moving.bodies, s.report.contact);
   book_scripted(s.moving.bodies, s.report.scripted);
-  s.factors.clear_out(s.moving.fragiles, s.ancestry);
   ++s.steps;
   s.report.steps = s.steps;
   s.hash = s.report.stages.time("hash", [&] { return hash_state(s.moving, s.steps, s.hash); });
@@ -237,7 +236,7 @@ World::PartEnd World::judge_part(MovedPart& done, MovingState& snapshot, dynamic
     s.borne.clear();  // their verdicts were not told
     return PartEnd::subdivided;
   }
-  for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id, s.steps);
+  for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id);
   const std::size_t known_breaks = s.report.breaks.size();
   if (s.contact_settings.has_ways && s.settings.after_break == AfterBreak::inherit) {
     done.unbroken = s.moving.bodies;
@@ -289,6 +288,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
                   std::min((part.number + 1.0) / part.count, kDentTime), contact.ways, s.ended_ways);
     if (s.wants_to_stop && !s.begin.moving)
       s.begin.moving = std::move(snapshot);  // the next part has its own
+    if (may_break) s.factors.clear_out(s.moving.fragiles, s.ancestry);
     ++part.number;
     pass = 0;
   }

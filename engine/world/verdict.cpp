@@ -381,6 +381,14 @@ fracture::FractureSettings how_to_decide(const WorldSettings& settings, const Ca
   return how;
 }
 
+/// Of a piece that breaks: nobody will ask for them again.
+void give_up_factors(const EvaluatedImpact& impact, const Candidate& candidate) {
+  if (!candidate.is_piece || impact.has_used_all) return;
+  if (impact.figures().verdict.outcome != fracture::Outcome::broke) return;
+  if (const auto* shell = std::get_if<fracture::ShellSubject>(&candidate.fragile->subject))
+    shell->systems->give_up();
+}
+
 EvaluatedImpact judge_impact(const WorldSettings& settings, const Candidate& candidate) {
   const fracture::FractureSettings how = how_to_decide(settings, candidate);
   EvaluatedImpact impact;
@@ -395,6 +403,7 @@ EvaluatedImpact judge_impact(const WorldSettings& settings, const Candidate& can
     impact.decision = fracture::decide_shell(*shell, candidate.impact, how);
   else if (const auto* solid = std::get_if<fracture::SolidSubject>(&candidate.fragile->subject))
     impact.decision = fracture::decide_solid(*solid, candidate.impact, how);
+  give_up_factors(impact, candidate);
   return impact;
 }
 

@@ -278,7 +278,7 @@ TEST_CASE("same bits for one and two threads, alone or in company") {
   }
 }
 
-TEST_CASE("the cache makes each system once and shares it") {
+TEST_CASE("the cache makes each system once and shares it, tells its memory and gives it up") {
   const Elements elements = grid(6, 6, 1.0, 1.0);
   const auto stiffness = make_shell_stiffness(elements, properties_of(0.01));
   const auto mesh = std::make_shared<const geometry::ShellMesh>(geometry::make_shell_mesh(elements));
@@ -288,6 +288,15 @@ TEST_CASE("the cache makes each system once and shares it") {
   REQUIRE(cache.screened(8).value() == cache.screened(8).value());
   REQUIRE(cache.screened(8).value()->screening() == 256.0);
   REQUIRE(cache.count() == 2);
+  // A factor is more than its entries: triangles of pivots are kept as squares, rows by four.
+  const double entries = sizeof(double) * cache.unscreened().value()->factor_entries();
+  REQUIRE(cache.bytes() > 2.0 * entries);
+  REQUIRE(cache.bytes() < 6.0 * entries);
+  cache.give_up();
+  REQUIRE(cache.count() == 0);
+  REQUIRE(cache.bytes() == 0.0);
+  REQUIRE(cache.screened(8).value()->screening() == 256.0);
+  REQUIRE(cache.count() == 1);
   REQUIRE(quantise_screening(256.0) == 8);
   REQUIRE(quantise_screening(300.0) == 8);
   REQUIRE(quantise_screening(400.0) == 9);

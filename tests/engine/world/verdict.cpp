@@ -192,7 +192,7 @@ TEST_CASE("a piece that gives up its factors is judged as before, and a whole bo
     REQUIRE(before.size() == 1);
     REQUIRE(count() > 0);
     world::FactorShelf ample, none(0.0);
-    for (world::FactorShelf* shelf : {&ample, &none}) shelf->note_use(kStruck, 3);
+    for (world::FactorShelf* shelf : {&ample, &none}) shelf->note_use(kStruck);
     const std::map<body::BodyId, world::Ancestry> ancestry = {{kStruck, {parent, kStruck, 0.0}}};
     ample.clear_out(hit.fragiles, ancestry);
     CHECK(count() > 0);
@@ -204,4 +204,22 @@ TEST_CASE("a piece that gives up its factors is judged as before, and a whole bo
     CHECK(after[0].figures().verdict.stress == before[0].figures().verdict.stress);
     CHECK(after[0].figures().verdict.duration == before[0].figures().verdict.duration);
   }
+}
+
+TEST_CASE(
+    "a piece that breaks gives up its factors, one that holds keeps them, and so does what is no piece") {
+  for (const bool is_piece : {true, false})
+    for (const double speed : {0.4, 6.0}) {
+      CAPTURE(is_piece, speed);
+      Hit hit(8.0);
+      std::map<body::BodyId, world::ImpactMemory> memories;
+      if (is_piece) memories[kStruck].charged_event = 7;
+      const auto impacts =
+          hit.judge({hit.impulse(body::ImpulseKind::collision, speed, Vec3(0.04, 0.0, 0.0))}, 0.0, memories);
+      REQUIRE(impacts.size() == 1);
+      const bool breaks = impacts[0].figures().verdict.outcome == fracture::Outcome::broke;
+      REQUIRE(breaks == (speed > 1.0));
+      const auto& systems = *std::get<fracture::ShellSubject>(hit.fragiles.at(kStruck)->subject).systems;
+      CHECK((systems.count() == 0) == (is_piece && breaks));
+    }
 }
