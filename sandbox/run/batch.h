@@ -9,7 +9,7 @@ namespace shatterbox::sandbox::run {
 
 struct BatchOptions {
   std::vector<std::string> scenes;     // files, names, or folders
-  std::vector<std::string> with;       // scenes of folders that would be left out, since they take hours
+  std::vector<std::string> with;       // scenes of folders that would be left out, since they take long
   std::vector<std::string> sweeps;     // NAME.key=value,value,..
   std::vector<std::string> run_words;  // options of every run
   std::string folder = "batch";

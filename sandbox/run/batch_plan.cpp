@@ -24,7 +24,7 @@ std::string takes_of(const std::string& file) {
   return scene ? scene->takes : std::string();
 }
 
-/// Its scene files, or itself. Of a folder, in the order of their names, without those that take hours and
+/// Its scene files, or itself. Of a folder, in the order of their names, without those that take long and
 /// that `with` does not name.
 std::vector<std::string> scenes_of(const std::string& what, const std::vector<std::string>& with,
                                    std::vector<LeftOut>& left_out, scene::Problems& problems) {

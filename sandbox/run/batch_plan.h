@@ -24,7 +24,7 @@ struct BatchRun {
   std::vector<std::pair<std::string, std::string>> values;  // of the sweeps
 };
 
-/// A scene of a folder that says itself that it takes hours.
+/// A scene of a folder that says itself that it takes long.
 struct LeftOut {
   std::string name, takes;
 };
@@ -35,7 +35,7 @@ struct BatchPlan {
 };
 
 /// All scenes (files, names, or folders of them) with all combinations of the values, the last sweep fastest.
-/// What takes hours is left out of folders, unless `with` names it.
+/// What takes long is left out of folders, unless `with` names it.
 BatchPlan plan_batch(const std::vector<std::string>& scenes, const std::vector<Sweep>& sweeps,
                      const std::vector<std::string>& with, scene::Problems& problems);
 

@@ -136,7 +136,7 @@ void add_batch_options(CLI::App& command, BatchOptions& options) {
       ->type_name("NAME.key=a,b,..")
       ->allow_extra_args(false);
   command
-      .add_option("--with", options.with, "scenes of a folder that take hours and are left out without this")
+      .add_option("--with", options.with, "scenes of a folder that take long and are left out without this")
       ->type_name("NAME")
       ->delimiter(',');
   command.add_flag("--resume", options.resumes, "what is done is not done again, what was cut short goes on");

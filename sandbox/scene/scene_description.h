@@ -73,7 +73,8 @@ struct CapsuleForm {
 };
 struct MeshForm {
   MeshShape shape;
-  // m, of generated meshes, nothing: kUsualTriangles, a boat 300; of a shell's file at most, nothing: as it is
+  // m, of generated meshes, nothing: kUsualTriangles, a boat 300; of a shell's file at most, nothing: as it
+  // is
   std::optional<double> edge_length;
   Vec3 scale = Vec3::Ones();
   std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
@@ -221,7 +222,7 @@ struct RenderEntry {
 struct SceneDescription {
   std::string file, name;
   std::string goal;   // the first line of the file without its #: what must be seen
-  std::string takes;  // how long a run of it takes, where that is hours; else empty
+  std::string takes;  // how long a run of it takes, where that is long; else empty
   double seconds = 4.0;
   world::WorldSettings world;
   std::vector<MaterialEntry> materials;

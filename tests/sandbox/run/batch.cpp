@@ -93,7 +93,7 @@ TEST_CASE("a batch runs all scenes with all combinations, each in a folder of it
   CHECK(runs[8].name == runs[0].name + "_2");  // the same scene once more
 }
 
-TEST_CASE("what says that it takes hours is left out of a folder, unless it is named") {
+TEST_CASE("what says that it takes long is left out of a folder, unless it is named") {
   const Folder folder;
   fs::create_directories(folder / "scenes");
   folder.write("scenes/quick.toml", kSmallScene);
