@@ -73,8 +73,7 @@ struct CapsuleForm {
 };
 struct MeshForm {
   MeshShape shape;
-  // m, of generated meshes, nothing: kUsualTriangles, a boat 300; of a shell's file at most, nothing: as it
-  // is
+  // m, of generated meshes, nothing: kUsualTriangles, a boat 300; of a shell's file at most, nothing: as is
   std::optional<double> edge_length;
   Vec3 scale = Vec3::Ones();
   std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
