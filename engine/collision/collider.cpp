@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/collision/exposed_edges.h"
 #include "engine/core/index.h"
 #include "engine/geometry/edge_topology.h"
 
@@ -33,7 +34,7 @@ void add_box_surface(const Vec3& half_extent, Collider& collider) {
                         {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
 }
 
-void add_owners(Collider& collider, const geometry::EdgeTopology& topology) {
+void add_owners(Collider& collider, const geometry::EdgeTopology& topology, SurfaceMotion motion) {
   const std::size_t triangle_count = collider.triangles.size();
   std::vector<int> owner(collider.vertices.size(), -1);
   std::vector<std::pair<int, int>> vertex_entries, edge_entries;
@@ -44,7 +45,10 @@ void add_owners(Collider& collider, const geometry::EdgeTopology& topology) {
       vertex_entries.emplace_back(static_cast<int>(t), v);
     }
   }
+  std::vector<char> is_owned(collider.edges.size(), 1);
+  if (motion == SurfaceMotion::rigid) is_owned = find_exposed_edges(collider, topology);
   for (std::size_t e = 0; e < collider.edges.size(); ++e) {
+    if (is_owned[e] == 0) continue;
     edge_entries.emplace_back(topology.edge_triangles[at(topology.first_triangle[e])], static_cast<int>(e));
   }
   fill_rows(triangle_count, vertex_entries, collider.owned_vertex_begin, collider.owned_vertices);
@@ -83,7 +87,7 @@ void add_leaf_vertices(Collider& collider) {
 
 }  // namespace
 
-std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
+std::shared_ptr<const Collider> make_collider(const body::Shape& shape, SurfaceMotion motion) {
   auto collider = std::make_shared<Collider>();
   collider->kind = shape.kind;
   geometry::EdgeTopology topology;
@@ -122,7 +126,6 @@ std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
   collider->triangle_edges = topology.triangle_edges;
   collider->tree = geometry::build_triangle_tree(collider->vertices, collider->triangles);
   add_leaf_vertices(*collider);
-  add_owners(*collider, topology);
   add_neighbours(*collider, topology);
   double reach_squared = 0.0;
   for (const Vec3& v : collider->vertices) reach_squared = std::max(reach_squared, v.squaredNorm());
@@ -130,6 +133,7 @@ std::shared_ptr<const Collider> make_collider(const body::Shape& shape) {
   collider->box.low.array() -= collider->radius;
   collider->box.high.array() += collider->radius;
   collider->bounding_radius = std::sqrt(reach_squared) + collider->radius;
+  add_owners(*collider, topology, motion);
   return collider;
 }
 

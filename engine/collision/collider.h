@@ -25,7 +25,8 @@ struct Collider {
   std::vector<int> neighbours;                     // vertices that share an edge with a vertex
   std::vector<int> opposite_begin;                 // |E| + 1
   std::vector<int> opposites;                      // the third vertices of an edge's triangles
-  // Every vertex and edge is owned by one of its triangles, so that each feature pair is met once.
+  // Every vertex, and every edge that can touch alone, is owned by one of its triangles, so that each feature
+  // pair is met once.
   std::vector<int> owned_vertex_begin, owned_vertices;  // |T| + 1
   std::vector<int> owned_edge_begin, owned_edges;       // |T| + 1
   geometry::TriangleTree tree;
@@ -35,7 +36,13 @@ struct Collider {
   double bounding_radius = 0.0;  // about the origin, m, radius included
 };
 
-/// Builds the collider of a shape; a plane has no features.
-std::shared_ptr<const Collider> make_collider(const body::Shape& shape);
+/// How the vertices of a surface move: as one body does, on straight ways between two of its poses at most;
+/// or each as it likes.
+enum class SurfaceMotion { rigid, free };
+
+/// Builds the collider of a shape; a plane has no features. Of a surface that moves rigidly triangles own
+/// exposed edges only (exposed_edges.h).
+std::shared_ptr<const Collider> make_collider(const body::Shape& shape,
+                                              SurfaceMotion motion = SurfaceMotion::rigid);
 
 }  // namespace shatterbox::collision

@@ -299,7 +299,10 @@ void adapt_gap(const ContactSettings& settings, const MotionWork& work, double l
 
 bool is_crossing(const MotionWork& work, const PairState& memory, const WorkPair& pair) {
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
-  if (pair.has_sides) return pair.least_gap < -kTouching * pair.size;
+  if (pair.is_plane || pair.is_analytic) return pair.least_gap < -kTouching * pair.size;
+  // A capsule's axis that goes through the middle of a great triangle is near none of its edges.
+  if (pair.has_sides)
+    return pair.least_gap < -kTouching * pair.size || collision::is_run_through(a.placed, b.placed);
   return collision::crosses(a.placed, b.placed) ||
          (memory.is_exempt && pair.least_gap <= kNoDistance * pair.size);
 }

@@ -55,7 +55,7 @@ void match_bodies(const std::vector<Body>& bodies, PaperContactState& state) {
     for (const auto* surfaces : {&state.surfaces, &old})
       for (const DriftingSurface& surface : *surfaces)
         if (surface.shape == shape) return surface.collider;
-    return collision::make_collider(*shape);
+    return collision::make_collider(*shape, collision::SurfaceMotion::free);
   };
   auto known = old.begin();
   for (const Body& body : bodies) {

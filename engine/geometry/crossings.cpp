@@ -1,5 +1,6 @@
 #include "engine/geometry/crossings.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -69,12 +70,17 @@ long count_between(const TriangleMesh& a, const Tree& tree_a, const TriangleMesh
 
 }  // namespace
 
-bool segment_pierces_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+Piercing pierce(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const int side_p = volume_sign(a, b, c, p);
   const int side_q = volume_sign(a, b, c, q);
-  if (side_p * side_q != -1) return false;
-  const int ab = volume_sign(p, q, a, b);
-  return ab != 0 && volume_sign(p, q, b, c) == ab && volume_sign(p, q, c, a) == ab;
+  if (side_p * side_q == 1) return Piercing::no;
+  const int ab = volume_sign(p, q, a, b), bc = volume_sign(p, q, b, c), ca = volume_sign(p, q, c, a);
+  if (std::min({ab, bc, ca}) == -1 && std::max({ab, bc, ca}) == 1) return Piercing::no;
+  return side_p * side_q * ab * bc * ca == 0 ? Piercing::perhaps : Piercing::yes;
+}
+
+bool segment_pierces_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return pierce(p, q, a, b, c) == Piercing::yes;
 }
 
 long count_crossing_pairs(const std::vector<TriangleMesh>& meshes) {

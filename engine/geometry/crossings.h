@@ -8,7 +8,12 @@
 
 namespace shatterbox::geometry {
 
-/// True if the open segment p-q surely passes through the inside of triangle (a, b, c).
+/// Does the open segment p-q pass through the inside of triangle (a, b, c)? Perhaps: rounding could have
+/// decided it.
+enum class Piercing { no, perhaps, yes };
+Piercing pierce(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// True if it surely does.
 bool segment_pierces_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Number of pairs (a triangle of one mesh, a triangle of another) that cross, over all pairs of `meshes`,

@@ -31,7 +31,7 @@ std::shared_ptr<const collision::Collider> collider_of(const MovingSurface& surf
   shape.kind = body::ShapeKind::shell;
   shape.surface.positions = surface.start;
   shape.surface.triangles = surface.triangles;
-  return collision::make_collider(shape);
+  return collision::make_collider(shape, collision::SurfaceMotion::free);
 }
 
 /// A surface against one of a collider, whose vertices go straight too.

@@ -92,12 +92,17 @@ TEST_CASE("what begins half in the floor is brought out of it before it sleeps")
 }
 
 TEST_CASE("a capsule whose axis goes through a sheet falls with it") {
-  test::Scene scene;
-  body::Body sheet = test::make_shell(test::square_mesh(0.1, 3));
-  sheet.pose.translation.y() = 1.0;
-  scene.add(sheet);
-  scene.add(test::make_capsule(0.01, 0.05, Vec3(0.0137, 1.02, 0.0071)));
-  check_free_fall(scene);
+  // Near an edge of the sheet's triangles, and far from all.
+  for (const int count : {3, 1}) {
+    INFO("squares along a side: " << count);
+    test::Scene scene;
+    body::Body sheet = test::make_shell(test::square_mesh(0.1, count));
+    sheet.pose.translation.y() = 1.0;
+    scene.add(sheet);
+    scene.add(
+        test::make_capsule(0.01, 0.05, count == 3 ? Vec3(0.0137, 1.02, 0.0071) : Vec3(0.045, 1.02, -0.02)));
+    check_free_fall(scene);
+  }
 }
 
 TEST_CASE("a capsule that lies in a bowl narrower than itself does not hang there") {
