@@ -300,7 +300,7 @@ class Lister {
   void list_below(const Descent::NodePair& root, FeatureList& out, std::vector<FeatureBlock>* blocks) {
     const std::size_t first = out.size();
     descent_.run_below(root, [&](int ta, const TightBox& box_a, int tb, const TightBox& box_b, int place) {
-      if (planes_.are_apart(ta, tb, place)) return;
+      if (!own_features(ta, tb) || planes_.are_apart(ta, tb, place)) return;
       if (blocks) begin_block(descent_.leaf_a(), descent_.leaf_b(), static_cast<int>(out.size()), *blocks);
       list_owned(ta, box_a, tb, box_b, out);
     });
@@ -309,6 +309,13 @@ class Lister {
   }
 
  private:
+  // Whether any feature of theirs could be listed: many triangles own no vertex, or no edge.
+  bool own_features(int ta, int tb) const {
+    const auto owns = [](const std::vector<int>& begin, int t) { return begin[at(t)] < begin[at(t) + 1]; };
+    return owns(a_.owned_vertex_begin, ta) || owns(b_.owned_vertex_begin, tb) ||
+           (owns(a_.owned_edge_begin, ta) && owns(b_.owned_edge_begin, tb));
+  }
+
   void list_owned(int ta, const TightBox& box_a, int tb, const TightBox& box_b, FeatureList& out) {
     const auto add = [&](FeatureKind kind, int i, const TightBox& box_i, int j, const TightBox& box_j) {
       if (!descent_.is_about_near(box_i, box_j)) return;
