@@ -35,7 +35,8 @@ double time_of_hit(const std::vector<const EvaluatedImpact*>& broken, const std:
   return time;
 }
 
-/// Passes of one part of a step: the first, and one more for each generation of breaking that went back.
+/// Passes of one part of a step: the first, and one more for each generation of breaking that went back; or
+/// for each round of joints that opened. These are many, and what breaks behind them must not wait.
 constexpr int kMostPasses = 12;
 
 /// Scripted ones that strike are driven.
@@ -191,7 +192,7 @@ bool World::step() {
 /// A part of a step, moved.
 struct World::MovedPart {
   dynamics::StepPart part;
-  int pass = 0;
+  Passes passes;
   std::vector<body::Body> before;  // at its begin
   body::ImpulseLog given, log;     // all impulses; those of motion alone
   dynamics::ContactReport moved;
@@ -201,15 +202,15 @@ struct World::MovedPart {
   std::size_t known_breaks = 0;
 };
 
-World::MovedPart World::move_part(const dynamics::StepPart& part, int pass) {
-  MovedPart done{part, pass, {}, act(part), {}, {}, {}, 0};
-  tell_watcher("acts", part, pass);
+World::MovedPart World::move_part(const dynamics::StepPart& part, const Passes& passes) {
+  MovedPart done{part, passes, {}, act(part), {}, {}, {}, 0};
+  tell_watcher("acts", part, passes.count());
   done.before = state_->moving.bodies;
   done.moved = move_bodies(part, done.log);
   for (const body::Body& body : state_->moving.bodies)
     if (body.script.strikes) dynamics::begin_strike(*body::find_body(done.before, body.id));
   done.given.insert(done.given.end(), done.log.begin(), done.log.end());
-  tell_watcher("motion", part, pass);
+  tell_watcher("motion", part, passes.count());
   return done;
 }
 
@@ -225,10 +226,11 @@ World::PartEnd World::judge_part(MovedPart& done, MovingState& snapshot, dynamic
   };
   if (divide(divide_where_cut(part, done.moved))) return PartEnd::subdivided;
   if (!s.moving.contact.joints.empty()) {
-    const bool may_go_back = s.settings.after_break == AfterBreak::go_back && done.pass + 1 < kMostPasses;
+    const bool may_go_back =
+        s.settings.after_break == AfterBreak::go_back && done.passes.openings + 1 < kMostPasses;
     const bool goes_back = open_joints(judge_joints(part, done.given), snapshot, may_go_back);
-    tell_watcher("joints", part, done.pass);
-    if (goes_back) return PartEnd::retaken_with_pieces;
+    tell_watcher("joints", part, done.passes.count());
+    if (goes_back) return PartEnd::retaken_without_joints;
   }
   const auto impacts =
       judge_impacts(done.given, {done.before, time() + step * part.number / part.count, time()});
@@ -244,10 +246,10 @@ World::PartEnd World::judge_part(MovedPart& done, MovingState& snapshot, dynamic
   }
   std::vector<const EvaluatedImpact*> broken;
   const bool goes_back = s.report.stages.time("fracture", [&] {
-    broken = book_verdicts(impacts, snapshot, done.pass);
+    broken = book_verdicts(impacts, snapshot, done.passes.breaks);
     return break_bodies(broken, snapshot);
   });
-  tell_watcher("fracture", part, done.pass);
+  tell_watcher("fracture", part, done.passes.count());
   if (goes_back) {
     if (s.contact_settings.has_ways)
       divide_ways(done.before, std::span(s.report.breaks).subspan(known_breaks), s.moving.bodies,
@@ -268,16 +270,17 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
   const bool may_break = !s.moving.fragiles.empty() || !s.moving.contact.joints.empty();
   dynamics::StepPart part{0, count_parts()};
   PartEnd end = PartEnd::accepted;  // of the pass before
-  for (int pass = 0; part.number < part.count;) {
+  for (Passes passes; part.number < part.count;) {
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     part.may_return = may_break;
-    part.is_again = pass > 0;
+    part.is_again = passes.count() > 0;
     // Pieces that were just born in it often break as well.
-    part.is_trial = pass > 0 && end != PartEnd::retaken_in_full && pass + 1 < kMostPasses &&
-                    dynamics::may_be_tried(s.contact_settings, part);
-    MovedPart done = move_part(part, pass);
+    part.is_trial = part.is_again && end != PartEnd::retaken_in_full && passes.breaks + 1 < kMostPasses &&
+                    passes.openings + 1 < kMostPasses && dynamics::may_be_tried(s.contact_settings, part);
+    MovedPart done = move_part(part, passes);
     end = may_break ? judge_part(done, snapshot, part, contact) : PartEnd::accepted;
-    if (end == PartEnd::retaken_with_pieces) ++pass;
+    if (end == PartEnd::retaken_with_pieces) ++passes.breaks;
+    if (end == PartEnd::retaken_without_joints) ++passes.openings;
     if (end != PartEnd::accepted) continue;
     dynamics::end_strikes(s.moving.bodies);
     book_conservation(done.before, done.log, s.contact_settings.time_step / part.count);
@@ -290,7 +293,7 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
       s.begin.moving = std::move(snapshot);  // the next part has its own
     if (may_break) s.factors.clear_out(s.moving.fragiles, s.ancestry);
     ++part.number;
-    pass = 0;
+    passes = {};
   }
   finish_parts(part.count, snapshot, contact);
 }

@@ -148,15 +148,21 @@ class World {
 
   /// All parts of the step, up to sleep. `snapshot`: at the begin of the part that is taken.
   void take_parts(dynamics::ContactReport& contact, MovingState& snapshot);
+  /// How often a part of the step was taken again so far.
+  struct Passes {
+    int breaks = 0, openings = 0;  // with pieces in place of the whole; without joints that opened
+    int count() const { return breaks + openings; }
+  };
   struct MovedPart;
-  MovedPart move_part(const dynamics::StepPart& part, int pass);
+  MovedPart move_part(const dynamics::StepPart& part, const Passes& passes);
   /// What becomes of a part of a step that was moved. Unless it is accepted, it is taken again from its
   /// begin:
   enum class PartEnd : std::uint8_t {
     accepted,
-    subdivided,           // in shorter parts
-    retaken_with_pieces,  // what broke in it is replaced by its pieces
-    retaken_in_full,      // it was a trial, which ends early, and nothing broke in it
+    subdivided,              // in shorter parts
+    retaken_without_joints,  // those that opened in it
+    retaken_with_pieces,     // what broke in it is replaced by its pieces
+    retaken_in_full,         // it was a trial, which ends early, and nothing broke in it
   };
   PartEnd judge_part(MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
                      dynamics::ContactReport& contact);

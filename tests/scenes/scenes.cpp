@@ -280,6 +280,18 @@ TEST_CASE("what breaks after the first break is as much at 60 steps a second as 
   CHECK(fine < 1.5 * coarse);
 }
 
+TEST_CASE(
+    "mortar_wall: bricks break at 60 steps a second too, after more rounds of joints than a step is taken "
+    "again") {
+  const Folder folder;
+  const auto report = play(folder, "mortar_wall --audit --seconds 0.34 --set scene.steps_per_second=60");
+  CHECK(report["audit"]["crossings"] == 0);
+  CHECK(report["audit"]["passages"] == 0);
+  CHECK(report["breaks"].size() >= 5);
+  for (const auto& impact : report["impacts"])
+    CHECK(impact["verdict"].get<std::string>().find("so much has broken") == std::string::npos);
+}
+
 TEST_CASE("nothing passes through anything while things break") {
   const Folder folder;
   for (const char* scene : {"ornament --seconds 0.5", "window --seconds 0.55", "bowl --seconds 0.5",
