@@ -41,16 +41,20 @@ Vec3 normal_of(const Corners& c) {
   return (c[1] - c[0]).cross(c[2] - c[0]);
 }
 
+// 1 if the edge has two triangles that face one way, -1 if they face opposite ways, 0 if it has not two.
+int facing(const Collider& collider, const geometry::EdgeTopology& topology, std::size_t edge) {
+  const int first = topology.first_triangle[edge];
+  if (topology.first_triangle[edge + 1] != first + 2) return 0;
+  const auto along = [&](int k) {
+    return geometry::direction_along(collider.triangles[at(topology.edge_triangles[at(k)])],
+                                     topology.edges[edge]);
+  };
+  return -along(first) * along(first + 1);
+}
+
 bool is_closed_surface(const Collider& collider, const geometry::EdgeTopology& topology) {
-  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
-    const int first = topology.first_triangle[e];
-    if (topology.first_triangle[e + 1] != first + 2) return false;
-    const auto direction = [&](int k) {
-      return geometry::direction_along(collider.triangles[at(topology.edge_triangles[at(k)])],
-                                       topology.edges[e]);
-    };
-    if (direction(first) == direction(first + 1)) return false;
-  }
+  for (std::size_t e = 0; e < topology.edges.size(); ++e)
+    if (facing(collider, topology, e) != 1) return false;
   return true;
 }
 
@@ -72,14 +76,13 @@ class ExposedEdges {
   }
 
   bool is_exposed(std::size_t edge) const {
+    const int same_way = facing(collider_, topology_, edge);
+    if (same_way == 0) return true;
     const int first = topology_.first_triangle[edge];
-    if (topology_.first_triangle[edge + 1] != first + 2) return true;
     const auto& ends = topology_.edges[edge];
     const int t = topology_.edge_triangles[at(first)], u = topology_.edge_triangles[at(first + 1)];
-    const Triangle &corners_t = collider_.triangles[at(t)], &corners_u = collider_.triangles[at(u)];
-    const bool agree =
-        geometry::direction_along(corners_t, ends) != geometry::direction_along(corners_u, ends);
-    const Vec3 normal_t = normal_of(corners(t)), normal_u = (agree ? 1.0 : -1.0) * normal_of(corners(u));
+    const Triangle& corners_u = collider_.triangles[at(u)];
+    const Vec3 normal_t = normal_of(corners(t)), normal_u = same_way * normal_of(corners(u));
     const double area_t = normal_t.norm(), area_u = normal_u.norm();
     if (!(area_t > 0.0) || !(area_u > 0.0) || !(normal_t.dot(normal_u) > 0.0)) return true;
     const int opposite = corners_u[0] + corners_u[1] + corners_u[2] - ends[0] - ends[1];
@@ -101,13 +104,14 @@ class ExposedEdges {
   // Calls visit(triangle) for all that the segment may meet, until it returns false. False if it did.
   template <class Visit>
   bool each_near(const Vec3& p, const Vec3& q, const Visit& visit) const {
-    const Vec3 rounding = Vec3::Constant(kFlat * collider_.bounding_radius), way = q - p;
+    const double rounding = kFlat * collider_.bounding_radius;
+    const Vec3 way = q - p;
     const auto may_meet = [&](const geometry::Box& box) {
       double from = 0.0, to = 1.0;
       for (int k = 0; k < 3; ++k) {
-        const double low = box.low[k] - rounding[k] - p[k], high = box.high[k] + rounding[k] - p[k];
-        if (std::abs(way[k]) < rounding[k]) {
-          if (low > rounding[k] || high < -rounding[k]) return false;
+        const double low = box.low[k] - rounding - p[k], high = box.high[k] + rounding - p[k];
+        if (std::abs(way[k]) < rounding) {
+          if (low > rounding || high < -rounding) return false;
           continue;
         }
         const double x = low / way[k], y = high / way[k];
