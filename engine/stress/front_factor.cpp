@@ -65,7 +65,12 @@ class Factorisation {
  public:
   Factorisation(const FrontTree& tree, const std::vector<double>& diagonal,
                 const std::function<ElementEntries(int)>& element, const std::vector<double*>& panels)
-      : tree_(tree), diagonal_(diagonal), element_(element), panels_(panels), rests_(tree.fronts.size()) {
+      : tree_(tree),
+        diagonal_(diagonal),
+        element_(element),
+        panels_(panels),
+        rests_(tree.fronts.size()),
+        own_(tree.fronts.size()) {
     find_least_pivots();
   }
 
@@ -74,13 +79,10 @@ class Factorisation {
     // runs when depends on the tree alone, and nothing is summed across fronts but in the order of the
     // children.
     const std::vector<int> roots = small_subtrees(tree_, 16);
-    core::parallel_for(roots.size(), 1, [&](Size i) {
-      const int root = roots[i];
-      for (int f = tree_.fronts[at(root)].subtree_first; f <= root && !has_failed_; ++f) factor(f, false);
-    });
+    core::parallel_for(roots.size(), 1, [&](Size i) { factor_subtree(roots[i]); });
     for (const std::vector<int>& level : levels_above(roots)) {
       if (has_failed_) break;
-      core::parallel_for(level.size(), 1, [&](Size i) { factor(level[i], true); });
+      core::parallel_for(level.size(), 1, [&](Size i) { factor_alone(level[i], true); });
     }
     return !has_failed_;
   }
@@ -122,13 +124,51 @@ class Factorisation {
     return levels;
   }
 
+  Size rest_size(int f) const { return tiles::rest_size(tree_.fronts[at(f)].rows); }
+
+  /// A front whose rest has memory of its own, until the parent has taken it.
+  void factor_alone(int f, bool is_top) {
+    own_[at(f)] = std::unique_ptr<double[]>(new double[rest_size(f)]);
+    rests_[at(f)] = own_[at(f)].get();
+    factor(f, is_top);
+    const Front& front = tree_.fronts[at(f)];
+    for (int c = front.first_child; c < front.first_child + front.child_count; ++c)
+      own_[at(tree_.children[at(c)])].reset();
+  }
+
+  /// One front after the other, the rests in between on two stacks, those of fronts at an even depth on one:
+  /// the children of the front at work are then on top of the other.
+  void factor_subtree(int root) {
+    const int first = tree_.fronts[at(root)].subtree_first;
+    std::vector<Size> stack(at(root - first + 1), 0);
+    for (int f = root; f > first; --f)
+      stack[at(f - 1 - first)] = 1 - stack[at(tree_.fronts[at(f - 1)].parent - first)];
+    std::vector<Size> begin(stack.size());
+    std::array<Size, 2> used{}, most{};
+    for (int f = first; f < root; ++f) {
+      const Size own = stack[at(f - first)];
+      begin[at(f - first)] = used[own];
+      used[own] += rest_size(f);
+      most[own] = std::max(most[own], used[own]);
+      const Front& front = tree_.fronts[at(f)];
+      for (int c = front.first_child; c < front.first_child + front.child_count; ++c)
+        used[1 - own] -= rest_size(tree_.children[at(c)]);
+    }
+    const std::array<std::unique_ptr<double[]>, 2> memory{std::unique_ptr<double[]>(new double[most[0]]),
+                                                          std::unique_ptr<double[]>(new double[most[1]])};
+    for (int f = first; f < root && !has_failed_; ++f) {
+      rests_[at(f)] = memory[stack[at(f - first)]].get() + begin[at(f - first)];
+      factor(f, false);
+    }
+    if (!has_failed_) factor_alone(root, false);
+  }
+
   void factor(int f, bool is_top) {
     const Front& front = tree_.fronts[at(f)];
     double* const panel = panels_[at(f)];
     std::fill_n(panel, tiles::panel_size(front.pivots, front.rows), 0.0);
-    const Size rest_size = tiles::rest_size(front.rows);
-    rests_[at(f)] = std::unique_ptr<double[]>(new double[std::max<Size>(rest_size, 1)]());
-    double* const rest = rests_[at(f)].get();
+    double* const rest = rests_[at(f)];
+    std::fill_n(rest, rest_size(f), 0.0);
     const FrontView view(front, panel, rest);
     for (int j = 0; j < front.pivots; ++j)
       view.panel_row(j)[tiles::kRows * j] += diagonal_[at(front.first_pivot + j)];
@@ -188,7 +228,7 @@ class Factorisation {
     const Front& child = tree_.fronts[at(c)];
     const int* const place = tree_.row_in_parent.data() + child.first_row;
     const int in_panel = static_cast<int>(std::lower_bound(place, place + child.rows, parent.pivots) - place);
-    const double* const rest = rests_[at(c)].get();
+    const double* const rest = rests_[at(c)];
     // Strip by strip: its four rows mostly go to four successive ones.
     for (int first = 0; first < child.rows; first += tiles::kRows) {
       const int count = std::min(tiles::kRows, child.rows - first);
@@ -212,14 +252,14 @@ class Factorisation {
           else
             rest_rows[at(r)][tiles::kRows * (place[j] - parent.pivots)] += strip[tiles::kRows * j + r];
     }
-    rests_[at(c)].reset();
   }
 
   const FrontTree& tree_;
   const std::vector<double>& diagonal_;
   const std::function<ElementEntries(int)>& element_;
   const std::vector<double*>& panels_;
-  std::vector<std::unique_ptr<double[]>> rests_;
+  std::vector<double*> rests_;                  // of the fronts that wait for their parents
+  std::vector<std::unique_ptr<double[]>> own_;  // memory of those that no stack has
   std::vector<double> least_pivots_;
   std::atomic<bool> has_failed_ = false;
 };

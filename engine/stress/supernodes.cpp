@@ -85,11 +85,14 @@ std::vector<Supernode> find_supernodes(const std::vector<ElementNodes>& placed,
   const core::Buckets children(count, count, [&](Size i) { return parent[i]; });
 
   std::vector<Supernode> supernodes;
+  std::vector<int> below;  // of the last one, its own nodes among them
   const auto finish = [&] {
     if (supernodes.empty()) return;
     Supernode& s = supernodes.back();
-    std::erase_if(s.below, [&](int node) { return node <= s.last; });
-    for (const int node : s.below) s.rows += size[at(node)];
+    std::erase_if(below, [&](int node) { return node <= s.last; });
+    for (const int node : below) s.rows += size[at(node)];
+    s.below.assign(below.begin(), below.end());
+    below.clear();
   };
   for (int j = 0; j < static_cast<int>(count); ++j) {
     const int stamp = static_cast<int>(supernodes.size()) - 1;
@@ -107,7 +110,7 @@ std::vector<Supernode> find_supernodes(const std::vector<ElementNodes>& placed,
       const auto add = [&](int node) {
         if (node <= j || mark[at(node)] == fresh) return;
         mark[at(node)] = fresh;
-        s.below.push_back(node);
+        below.push_back(node);
       };
       for (int k = starting.first[at(j)]; k < starting.first[at(j) + 1]; ++k)
         for (const int node : placed[at(starting.items[at(k)])]) add(node);
