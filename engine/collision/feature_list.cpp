@@ -422,6 +422,12 @@ PlacedCollider place_collider(const Collider& collider, const Pose& pose) {
   return placed;
 }
 
+void PlacedCollider::clear() {
+  for (FeatureBoxes* b : {&boxes, &swept})
+    for (std::vector<TightBox>* part : {&b->vertices, &b->triangles, &b->nodes}) part->clear();
+  for (std::vector<Vec3>* vertices : {&start, &swept_from, &swept_to}) vertices->clear();
+}
+
 void refit_boxes(PlacedCollider& placed) {
   const double radius = placed.collider->radius;
   placed.boxes.vertices.resize(placed.start.size());

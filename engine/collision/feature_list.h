@@ -63,6 +63,9 @@ struct PlacedCollider {
   FeatureBoxes boxes;                      // over `start`, radius included
   FeatureBoxes swept;                      // over straight paths less the centre's own way, radius included
   std::vector<Vec3> swept_from, swept_to;  // |V| x 3, world, m: the ends of those paths
+
+  /// Empty vectors, whose memory stays.
+  void clear();
 };
 
 /// Vertices (|V| x 3, world, m) at a pose.

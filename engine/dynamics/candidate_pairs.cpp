@@ -122,6 +122,24 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
   return w;
 }
 
+// Bodies write where they wrote in the part before.
+void lend_scratch(std::vector<BodyScratch>& scratch, MotionWork& work) {
+  std::size_t i = 0;
+  for (BodyScratch& own : scratch) {
+    while (i < work.ids.size() && work.ids[i] < own.id) ++i;
+    if (i == work.ids.size()) break;
+    WorkBody& w = work.bodies[i];
+    if (work.ids[i] != own.id || own.placed.collider != w.collider) continue;
+    own.placed.clear();
+    own.predicted_vertices.clear();
+    own.end_vertices.clear();
+    w.placed = std::move(own.placed);
+    w.predicted_vertices = std::move(own.predicted_vertices);
+    w.end_vertices = std::move(own.end_vertices);
+  }
+  scratch.clear();
+}
+
 // A step that is taken again looks at pairs that stand where they stood.
 void take_from_shelf(ContactState& state, MotionWork& work) {
   const auto& rows = state.shelf->pairs;
@@ -312,6 +330,7 @@ void add_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
 
 void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
                           ContactState& state, MotionWork& work) {
+  keep_scratch(work, state);
   work = MotionWork();
   work.substep = settings.time_step / settings.substeps;
   work.warm_scale = state.substep > 0.0 ? work.substep / state.substep : 1.0;
@@ -327,6 +346,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     work.has_scripted = work.has_scripted || !work.bodies[i].rides.empty();
   }
   if (!anything_moves) return;
+  lend_scratch(state.shelf->scratch, work);
   list_joints(state, work);
   std::vector<char> is_active(bodies.size());
   core::parallel_for(bodies.size(), 32, [&](std::size_t i) {
@@ -376,6 +396,18 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   forget_joined_contacts(work);
   find_sleepers_to_wake(bodies, settings, work);
   build_contact_graph(state, work);
+}
+
+void keep_scratch(MotionWork& work, ContactState& state) {
+  if (work.bodies.empty()) return;
+  std::vector<BodyScratch>& scratch = state.shelf->scratch;
+  scratch.clear();
+  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+    WorkBody& w = work.bodies[i];
+    if (!w.is_placed) continue;
+    scratch.push_back(
+        {work.ids[i], std::move(w.placed), std::move(w.predicted_vertices), std::move(w.end_vertices)});
+  }
 }
 
 void put_on_shelf(const MotionWork& work, ContactState& state) {

@@ -11,6 +11,7 @@
 #include "engine/collision/collider.h"
 #include "engine/core/hash.h"
 #include "engine/core/vec.h"
+#include "engine/dynamics/body_scratch.h"
 #include "engine/dynamics/feature_search.h"
 #include "engine/dynamics/free_motion.h"
 #include "engine/dynamics/joint.h"
@@ -78,6 +79,7 @@ struct SearchShelf {
   std::vector<Row> pairs;   // ascending (body_a, body_b)
   PartMemory part, former;  // of a part that may be taken again; of its taking before, while it is
   bool keeps_part = false;
+  std::vector<BodyScratch> scratch;  // ascending id
 };
 
 struct ContactState {

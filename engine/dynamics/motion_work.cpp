@@ -163,7 +163,7 @@ void shorten(WorkBody& body, double share) {
 void sweep(WorkBody& body, const Pose& end) {
   if (body.is_swept && is_same_pose(body.swept_end, end)) return;
   place(body);
-  std::vector<Vec3> turned;
+  std::vector<Vec3> turned = std::move(body.placed.swept_to);
   place_at(body, {end.rotation, body.start.translation}, turned);
   collision::refit_swept_boxes(body.placed, body.placed.start, std::move(turned));
   body.is_swept = true;

@@ -77,6 +77,7 @@ struct alignas(64) WorkBody {
   Vec3 predicted_spin = Vec3::Zero();    // rad/s, then
   Pose predicted;                        // end pose if nothing touches
   std::vector<Vec3> predicted_vertices;  // |V| x 3, there; of bodies in a fast pair
+  std::vector<Vec3> end_vertices;        // |V| x 3, at `end`, where that is being tested
 };
 
 /// A turn of more than this in a step, rad, is followed in parts: straight paths would cut its corner.

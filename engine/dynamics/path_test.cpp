@@ -83,7 +83,7 @@ PathTest::Look PathTest::look_at(std::size_t pair_number) {
   const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
   if (pair.clear > pair.kept_gap) clear = pair.clear - motion_bound(a, a.end, b, b.end);
   if (clear > pair.kept_gap) return Look::apart;
-  clear = clearance(paths_[at(pair.a)].box, paths_[at(pair.b)].box, kAmple * pair.kept_gap);
+  clear = clearance(boxes_[at(pair.a)], boxes_[at(pair.b)], kAmple * pair.kept_gap);
   if (clear > pair.kept_gap) return Look::apart;
   if (!pair.search) return Look::searched;
   double& strays = strays_[pair_number];
@@ -98,12 +98,12 @@ void PathTest::box_ways(const std::vector<std::size_t>& due) {
   core::parallel_for(work_.bodies.size(), 32, [&](std::size_t i) {
     const WorkBody& w = work_.bodies[i];
     if (must_box[i] && w.shape->kind != ShapeKind::plane)
-      paths_[i].box = turn_box(w.collider->box, w.start, w.end);
+      boxes_[i] = turn_box(w.collider->box, w.start, w.end);
   });
 }
 
 void PathTest::prepare(const std::vector<std::size_t>& due) {
-  paths_.resize(work_.bodies.size());
+  boxes_.resize(work_.bodies.size());
   looks_.resize(work_.pairs.size());
   clearances_.resize(work_.pairs.size());
   strays_.resize(work_.pairs.size());
@@ -126,7 +126,7 @@ void PathTest::prepare(const std::vector<std::size_t>& due) {
     WorkBody& w = work_.bodies[i];
     if (!must_place[i] || w.shape->kind == ShapeKind::plane) return;
     place(w);
-    place_at(w, w.end, paths_[i].end);
+    place_at(w, w.end, w.end_vertices);
     if (must_sweep[i]) sweep(w, w.end);
   });
   turning_.divide(turning);
@@ -180,7 +180,7 @@ std::vector<PathHit> PathTest::test_plane(const WorkPair& pair, double& spare) c
     const double begin = static_cast<double>(part) / parts, share = 1.0 / parts;
     const std::vector<Vec3> from = std::exchange(knot, {});
     if (part + 1 < parts) place_at(other, pose_on_way(other, begin + share), knot);
-    const std::vector<Vec3>& to = part + 1 < parts ? knot : paths_[at(other_number)].end;
+    const std::vector<Vec3>& to = part + 1 < parts ? knot : other.end_vertices;
     const double level_from = level_at(begin), level_to = level_at(begin + share);
     for (std::size_t v = 0; v < to.size(); ++v) {
       const double end = normal.dot(to[v]) - level_to;
@@ -235,9 +235,8 @@ std::vector<PathHit> PathTest::test_straight(WorkPair& pair, double strays, doub
   const double reach = safe + approach_bound(a, a.end, b, b.end, motion + ample);
   const double listed =
       search.is_swept ? spare + safe + strays_from(search, a, a.end, b, b.end, ample) : 1e300;
-  return follow_features(a, b,
-                         {paths_[at(pair.a)].end, paths_[at(pair.b)].end, reach, spare, listed, ample - safe},
-                         pair, spare);
+  return follow_features(a, b, {a.end_vertices, b.end_vertices, reach, spare, listed, ample - safe}, pair,
+                         spare);
 }
 
 }  // namespace shatterbox::dynamics

@@ -28,11 +28,6 @@ class PathTest {
   std::vector<PathHit> find_hits(std::size_t pair_number, double& spare);
 
  private:
-  struct Path {
-    TurnedBox box;          // about the whole way, if that is straight
-    std::vector<Vec3> end;  // |V| x 3
-  };
-
   // What is to be done for a pair.
   enum class Look : char {
     apart,     // nothing: boxes tell that its bodies do not meet
@@ -49,7 +44,7 @@ class PathTest {
   const ContactSettings& settings_;
   MotionWork& work_;
   TurningPaths turning_;
-  std::vector<Path> paths_;         // per body
+  std::vector<TurnedBox> boxes_;    // per body, about the whole way, if that is straight
   std::vector<Look> looks_;         // per pair
   std::vector<double> clearances_;  // per pair, m: how far its bodies surely stay apart
   std::vector<double> strays_;      // per pair, m: how far its ways lead from what was searched, if looked at

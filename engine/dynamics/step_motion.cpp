@@ -462,6 +462,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   if (own.has_ways) report.ways = find_ways(work, part);
   if (state.shelf->keeps_part) end_part(work, state.shelf->part);
   free_pairs(work);
+  keep_scratch(work, state);
   return report;
 }
 

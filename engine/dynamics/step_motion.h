@@ -106,6 +106,8 @@ void find_candidate_pairs(const std::vector<body::Body>& bodies, const ContactSe
 
 /// Keeps what was searched for a step that is taken again from here.
 void put_on_shelf(const MotionWork& work, ContactState& state);
+/// Keeps for the next part the memory that bodies wrote their places into; of no use to them any more.
+void keep_scratch(MotionWork& work, ContactState& state);
 
 /// Stage: collisions, velocities, contacts and positions by substeps (see the head of this file). Ends with
 /// end poses in `work`; `bodies` are not changed yet.
