@@ -14,6 +14,13 @@ struct BodyScratch {
   body::BodyId id = 0;
   collision::PlacedCollider placed;
   std::vector<Vec3> predicted_vertices, end_vertices;  // |V| x 3
+
+  /// As PlacedCollider::clear().
+  void clear() {
+    placed.clear();
+    predicted_vertices.clear();
+    end_vertices.clear();
+  }
 };
 
 }  // namespace shatterbox::dynamics

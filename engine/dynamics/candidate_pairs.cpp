@@ -130,9 +130,7 @@ void lend_scratch(std::vector<BodyScratch>& scratch, MotionWork& work) {
     if (i == work.ids.size()) break;
     WorkBody& w = work.bodies[i];
     if (work.ids[i] != own.id || own.placed.collider != w.collider) continue;
-    own.placed.clear();
-    own.predicted_vertices.clear();
-    own.end_vertices.clear();
+    own.clear();
     w.placed = std::move(own.placed);
     w.predicted_vertices = std::move(own.predicted_vertices);
     w.end_vertices = std::move(own.end_vertices);

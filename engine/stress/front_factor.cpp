@@ -141,8 +141,8 @@ class Factorisation {
   void factor_subtree(int root) {
     const int first = tree_.fronts[at(root)].subtree_first;
     std::vector<Size> stack(at(root - first + 1), 0);
-    for (int f = root; f > first; --f)
-      stack[at(f - 1 - first)] = 1 - stack[at(tree_.fronts[at(f - 1)].parent - first)];
+    for (int f = root - 1; f >= first; --f)
+      stack[at(f - first)] = 1 - stack[at(tree_.fronts[at(f)].parent - first)];
     std::vector<Size> begin(stack.size());
     std::array<Size, 2> used{}, most{};
     for (int f = first; f < root; ++f) {
