@@ -117,7 +117,7 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
     Vec3 spin = w.spin;
     advance_turning(w, dt, w.predicted.rotation, spin);
     w.predicted_spin = spin;
-    w.turn_angle = w.shape->kind == ShapeKind::sphere ? 0.0 : dt * std::max(w.spin.norm(), spin.norm());
+    w.turn_angle = free_turn_angle(w, dt);
   }
   return w;
 }

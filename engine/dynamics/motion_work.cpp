@@ -102,6 +102,11 @@ double find_bow(const WorkBody& body) {
   return bow;
 }
 
+double free_turn_angle(const WorkBody& body, double time_step) {
+  if (body.shape->kind == body::ShapeKind::sphere) return 0.0;
+  return time_step * std::max(body.spin_start.norm(), body.predicted_spin.norm());
+}
+
 int count_straight_parts(double turn_angle) {
   constexpr int kMost = 64;
   int parts = 1;

@@ -295,6 +295,9 @@ Pose pose_on_way(const WorkBody& body, double time);
 /// How far the centre strays at most, on its way over the knots, from the straight line to its end, m.
 double find_bow(const WorkBody& body);
 
+/// A bound of how far it turns in the step if nothing touches it, rad.
+double free_turn_angle(const WorkBody& body, double time_step);
+
 /// Straight parts in which a turn of so much (rad) must be followed: a power of two, so that the parts of two
 /// bodies fit into each other.
 int count_straight_parts(double turn_angle);

@@ -178,7 +178,16 @@ void end_in_contact(WorkBody& w) {
   keep_knots(w.substep_poses, w);
 }
 
+// Nothing was solved or opened yet.
+void begin_freely(const ContactSettings& settings, WorkBody& w) {
+  w.velocity = w.velocity_start;
+  w.spin = w.spin_start;
+  w.turn_angle = free_turn_angle(w, settings.time_step);
+  w.is_free = true;
+}
+
 void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
+  if (is_dynamic) begin_freely(settings, w);
   w.end = w.predicted;
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (turns_far(w)) {
@@ -241,8 +250,12 @@ void solve_islands(const std::vector<Body>& bodies, const ContactSettings& setti
     due.erase(riders, due.end());
   }
   core::parallel_for(due.size(), 1, [&](std::size_t k) { solve(due[k]); });
+  // Who has no contact goes freely again, though he was opened from another before.
+  std::vector<char> is_in_island(work.bodies.size(), 0);
+  for (const Island& island : work.islands)
+    for (const int b : island.bodies) is_in_island[at(b)] = 1;
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
-    if (is_dirty[i] && work.bodies[i].is_active && work.bodies[i].is_free)
+    if (is_dirty[i] && work.bodies[i].is_active && !is_in_island[i])
       end_freely(bodies[i].is_dynamic(), settings, work.bodies[i]);
   }
 }
