@@ -102,7 +102,6 @@ class IslandSolver {
   double target_before_drift(const SolverContact& c) const;
   int most_sweeps(int of_small) const;
   int conjugate_patience() const;
-  bool lies_quietly();
   int most_calm_sweeps();
   void sweep_before_drift();
   void sweep_after_drift();
@@ -250,6 +249,7 @@ class IslandSolver {
   static constexpr double kCalmGap = 0.3;         // the same, where nothing arrives
   static constexpr int kCalmSweeps = 4;           // at most, where nothing arrives and contacts are few:
   static constexpr std::size_t kFewAtRest = 300;  // at most so many in the island
+  static constexpr int kShardSweeps = 16;         // the same, where something may break
   // An island of so many contacts has one conjugate step, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kConjugateSize = Island::kLarge;

@@ -19,6 +19,7 @@ using body::BodyId;
 constexpr double kNoticed =
     10.0;  // times the least momentum: what gives a sleeper the speed of one who moves
 constexpr double kFallTimes = 1.57;  // of sqrt(size / g): half a second for a metre
+constexpr double kSmallFalls = 4.0;  // such times: half a second for 6 cm
 constexpr double kItAlone = std::numeric_limits<double>::min();  // kg m/s: wakes, and goes no further
 
 int find_number(const std::vector<Body>& bodies, BodyId id) {
@@ -38,11 +39,12 @@ double quiet_speed(const ContactSettings& settings, double reach) {
 }
 
 // Quiet for that long it is at rest, s: what tips, or swings, needs the longer to be seen at it the larger it
-// is.
+// is. What is small shows soon that it does not.
 double time_to_rest(const ContactSettings& settings, const Body& b) {
   const double g = settings.gravity.norm();
-  const double fall = g > 0.0 ? kFallTimes * std::sqrt(2.0 * b.shape->bounding_radius / g) : 0.0;
-  return std::max(settings.sleep_time, fall);
+  if (g == 0.0) return settings.sleep_time;
+  const double fall = kFallTimes * std::sqrt(2.0 * b.shape->bounding_radius / g);
+  return std::max(fall, std::min(settings.sleep_time, kSmallFalls * fall));
 }
 
 // No point of the body is further from where it was at `rest` than six of its usual gaps.

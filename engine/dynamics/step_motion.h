@@ -134,8 +134,8 @@ void guard_motion(const std::vector<body::Body>& bodies, const ContactSettings& 
 void finish_motion(std::vector<body::Body>& bodies, ContactState& state, MotionWork& work,
                    body::ImpulseLog& log, ContactReport& report);
 
-/// Stage: what has been quiet for `sleep_time` (longer if it is large), as has all that it touches, falls
-/// asleep.
+/// Stage: what has been quiet for `sleep_time` (longer if it is large, shorter if it is small), as has all
+/// that it touches, falls asleep.
 void put_to_sleep(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state);
 
 }  // namespace shatterbox::dynamics

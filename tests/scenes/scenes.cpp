@@ -266,7 +266,7 @@ TEST_CASE("what breaks after the first break is as much at 60 steps a second as 
   const Folder folder;
   const auto crack_area = [&](const std::string& rate) {
     double area = 0.0;
-    for (const char* seed : {"1", "2", "14"}) {
+    for (const char* seed : {"1", "2", "3", "4", "5", "6", "14", "15"}) {
       const auto report = play(folder, "ornament --seconds 0.5 --seed " + std::string(seed) +
                                            " --set scene.steps_per_second=" + rate);
       for (const auto& row : report["breaks"]) area += row["new_area_m2"].get<double>();
@@ -275,7 +275,7 @@ TEST_CASE("what breaks after the first break is as much at 60 steps a second as 
   };
   const double coarse = crack_area("60"), fine = crack_area("240");
   INFO(coarse << " and " << fine << " m2");
-  // One run differs from the next by a quarter, three together by a seventh. It was thrice as much.
+  // One run differs from the next by a third, eight together by an eighth. It was thrice as much.
   CHECK(coarse < 1.5 * fine);
   CHECK(fine < 1.5 * coarse);
 }

@@ -135,6 +135,28 @@ TEST_CASE("who sleeps on something falls when it has slipped away") {
   CHECK(scene.bodies[2].pose.translation.y() < kHalfSide + 2e-3);
 }
 
+TEST_CASE("what lies still sleeps after the time that a thing of its size takes to fall, or half a second") {
+  // Seconds until a cube of this size (m, across its corners) sleeps.
+  const auto time_to_sleep = [](double size) {
+    test::Scene scene;
+    scene.add(test::make_plane());
+    const double half = 0.5 * size / std::sqrt(3.0);
+    scene.add(test::make_box(Vec3::Constant(half), Vec3(0, half * (1.0 + 1e-3), 0)));
+    double time = 0.0;
+    for (; scene.bodies[1].is_awake && time < 5.0; time += scene.settings.time_step) scene.step();
+    return time;
+  };
+  const auto fall = [](double size) { return 1.57 * std::sqrt(size / 9.81); };
+  const double late = 0.05;  // until it lies, and to the next step
+  for (const auto& [size, expected] :
+       {std::pair(0.01, 4.0 * fall(0.01)), {0.03, 4.0 * fall(0.03)}, {0.3, 0.5}, {4.0, fall(4.0)}}) {
+    const double time = time_to_sleep(size);
+    INFO(size << " m: " << time << " s, expected " << expected);
+    CHECK(time >= expected - 1e-9);
+    CHECK(time < expected + late);
+  }
+}
+
 TEST_CASE("a tower that begins to tip is not at rest, whatever its size") {
   for (const double height : {0.2, 2.0, 20.0, 100.0}) {
     test::Scene scene;
