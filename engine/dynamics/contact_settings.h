@@ -25,7 +25,7 @@ struct ContactSettings {
   double kept_gap = 5e-4;                // gap kept at rest, share of the pair's size
   double speculative_margin = 2e-3;      // contacts are felt this far ahead, share of the pair's size
   double search_slack = 0.012;  // feature lists are kept until this share of the pair's size is used up
-  double warm_start = 0.98;     // share of the last impulses to begin with
+  double warm_start = 0.95;     // share of the last impulses to begin with, where few contacts are swept well
   int continuous_rounds = 6;    // rounds of the continuous pass before the failsafe; 0: that at once
   bool has_sleep = true;        // what rests falls asleep
   double sleep_time = 0.5;      // s of quiet before sleep, of what is neither small nor large

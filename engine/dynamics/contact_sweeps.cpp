@@ -8,13 +8,16 @@ namespace shatterbox::dynamics {
 
 using core::at;
 
+// What is left out of the last impulses stills what sways, but must be found again: few sweeps of many
+// contacts do not find it in time.
 void IslandSolver::start_warm(double share) {
   if (is_wary_) return;
+  const double warm = is_calmed_well() ? settings_.warm_start : std::max(settings_.warm_start, kWarmest);
   in_turn([&](std::size_t, SolverContact& c, Found&) {
     // What has come apart, or bounced, must not be pushed by what it weighed before.
     if (may_strike_on_ && c.is_arriving && !is_before_drift_) return;
     if (c.warm[0] > 0.0 && c.slack <= kTouching * c.kept_gap)
-      apply(c, share * settings_.warm_start * c.warm, relative_velocity(c));
+      apply(c, share * warm * c.warm, relative_velocity(c));
   });
 }
 
@@ -131,13 +134,18 @@ int IslandSolver::most_sweeps(int of_small) const {
   return std::clamp(affordable, kFewSweeps, of_small);
 }
 
+// Nothing bursts, and few sweeps end what moves.
+bool IslandSolver::is_calmed_well() const {
+  return !island_.may_break && order_.contacts.size() <= kFewAtRest;
+}
+
 // One sweep is mostly enough at rest, but what one leaves rocks a box on a slope by so much that its feet
 // creep: small islands get some more. Shards have small gaps, and what one sweep leaves uses them up in a
 // step: on the floor they would be hits, and kicked, in every one.
 int IslandSolver::most_calm_sweeps() {
   if (!joints_.is_empty()) return most_sweeps(kJointSweeps);
   if (island_.may_break) return most_sweeps(kShardSweeps);
-  return order_.contacts.size() <= kFewAtRest ? kCalmSweeps : 1;
+  return is_calmed_well() ? kCalmSweeps : 1;
 }
 
 // Shards under one that holds them fast rub to and fro, a thousandth of what closed, for hundreds of rounds.
