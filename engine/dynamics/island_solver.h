@@ -250,8 +250,8 @@ class IslandSolver {
   static constexpr double kCalmGap = 0.3;         // the same, where nothing arrives
   static constexpr int kCalmSweeps = 4;           // at most, where nothing arrives and contacts are few:
   static constexpr std::size_t kFewAtRest = 300;  // at most so many in the island
-  static constexpr double kWarmest = 0.98;        // of the last impulses, in other islands, to begin with
-  static constexpr int kShardSweeps = 16;         // the same, where something may break
+  static constexpr int kShardSweeps = 16;         // of islands of any size in which something may break
+  static constexpr double kWarmest = 0.98;  // of the last impulses, where islands are large or may break
   // An island of so many contacts has one conjugate step, one of a tenth a hundred: small ones are
   // solved to the end, and in large ones no body stands on the few that could not bear it.
   static constexpr std::size_t kConjugateSize = Island::kLarge;
