@@ -10,6 +10,7 @@
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/dynamics/contact_graph.h"
+#include "engine/dynamics/earlier_round.h"
 #include "engine/dynamics/joint_work.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/pair_contacts.h"
@@ -329,6 +330,7 @@ void add_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
 void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings& settings,
                           ContactState& state, MotionWork& work) {
   keep_scratch(work, state);
+  MotionWork earlier = std::move(work);
   work = MotionWork();
   work.substep = settings.time_step / settings.substeps;
   work.warm_scale = state.substep > 0.0 ? work.substep / state.substep : 1.0;
@@ -361,10 +363,12 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
     classify(bodies, settings, state.pairs[at(work.pairs[p].state)], work, work.pairs[p]);
   });
+  match_earlier(earlier, state.pairs, work);
+  const auto is_taken_over = [&](const WorkPair& pair) { return pair.earlier >= 0 && settings.has_caches; };
   SearchShelf& shelf = *state.shelf;
   if (shelf.keeps_part) begin_part(settings.time_step, state.pairs, shelf.former, work, shelf.part);
   for (const WorkPair& pair : work.pairs) {
-    if (pair.is_apart || pair.former >= 0) continue;
+    if (pair.is_apart || is_taken_over(pair) || pair.former >= 0) continue;
     for (const int i : {pair.a, pair.b}) {
       Needs& n = needs[at(i)];
       n.place = true;
@@ -385,12 +389,15 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {
     WorkPair& pair = work.pairs[p];
     PairState& memory = state.pairs[at(pair.state)];
-    if (pair.former >= 0)
+    if (is_taken_over(pair))
+      take_over(earlier.pairs[at(pair.earlier)], pair);
+    else if (pair.former >= 0)
       meet_again(settings, shelf.former.pairs[at(pair.former)], work, memory, pair);
     else
       find_pair_contacts(settings, work, memory, pair);
   });
   if (shelf.keeps_part) keep_meetings(state.pairs, work, shelf.part);
+  free_pairs(earlier);
   forget_joined_contacts(work);
   find_sleepers_to_wake(bodies, settings, work);
   build_contact_graph(state, work);

@@ -195,7 +195,8 @@ struct WorkPair {
   PathMemory known;          // of its features
   double least_gap = 1e300;  // m, at the start; at least what was looked at if nothing is near
   std::vector<collision::Contact> contacts;
-  int former = -1;  // row of the part's former taking, which began alike for it; -1: none
+  int former = -1;   // row of the part's former taking, which began alike for it; -1: none
+  int earlier = -1;  // number in an earlier round of this taking, which began alike for it; -1: none
 };
 
 struct WorkJoint {

@@ -291,7 +291,8 @@ void adapt_gap(const ContactSettings& settings, const MotionWork& work, double l
   const bool is_new = memory.kept_gap <= 0.0;
   least = std::max(least, 0.02 * usual);
   // What lies on something solid from the start is raised to the usual gap, slowly enough to be no push.
-  const bool is_raised = !is_new && (pair.is_plane || pair.is_analytic) && memory.is_touching;
+  const bool is_raised =
+      !is_new && (pair.is_plane || pair.is_analytic) && memory.is_touching && pair.earlier < 0;
   if (is_raised) least = std::max(least, memory.kept_gap + usual * settings.time_step / kRaiseTime);
   memory.kept_gap = is_new ? least : std::min(usual, std::max(memory.kept_gap, least));
   take_gap(settings, work, memory.kept_gap, pair);

@@ -27,23 +27,16 @@ std::vector<char> find_unchanged(const PartMemory& former, const PartMemory& mem
   return is_unchanged;
 }
 
-PartMemory::Pair row_of(const PairState& state, const WorkPair& pair) {
+PartMemory::Pair row_of(const PairState& state, const WorkPair& pair, const PartMemory& earlier) {
   PartMemory::Pair row;
   row.body_a = state.body_a;
   row.body_b = state.body_b;
-  row.gap_before = state.kept_gap;
-  row.was_seen = !pair.is_first_seen;
-  row.was_touching = state.is_touching;
-  row.was_exempt = state.is_exempt;
-  row.trouble_age = state.trouble_age;
-  row.contacts_before = state.contacts.size();
+  if (pair.earlier >= 0)
+    row.before = earlier.pairs[at(pair.earlier)].before;
+  else
+    row.before = {state.kept_gap,  !pair.is_first_seen, state.is_touching,
+                  state.is_exempt, state.trouble_age,   state.contacts.size()};
   return row;
-}
-
-bool is_same_before(const PartMemory::Pair& x, const PartMemory::Pair& y) {
-  return x.gap_before == y.gap_before && x.was_seen == y.was_seen && x.was_touching == y.was_touching &&
-         x.was_exempt == y.was_exempt && x.trouble_age == y.trouble_age &&
-         x.contacts_before == y.contacts_before;
 }
 
 }  // namespace
@@ -66,13 +59,14 @@ bool PartMemory::Begin::operator==(const Begin& other) const {
 
 void begin_part(double time_step, const std::vector<PairState>& states, const PartMemory& former,
                 MotionWork& work, PartMemory& memory) {
-  memory = PartMemory();
+  const PartMemory earlier = std::exchange(memory, PartMemory());
   memory.time_step = time_step;
   memory.bodies.reserve(work.bodies.size());
   for (std::size_t i = 0; i < work.bodies.size(); ++i)
     memory.bodies.push_back(begin_of(work.ids[i], work.bodies[i]));
   memory.pairs.reserve(work.pairs.size());
-  for (const WorkPair& pair : work.pairs) memory.pairs.push_back(row_of(states[at(pair.state)], pair));
+  for (const WorkPair& pair : work.pairs)
+    memory.pairs.push_back(row_of(states[at(pair.state)], pair, earlier));
   if (former.time_step != time_step) return;
   const std::vector<char> is_unchanged = find_unchanged(former, memory);
   std::size_t row = 0;
@@ -85,7 +79,7 @@ void begin_part(double time_step, const std::vector<PairState>& states, const Pa
       ++row;
     if (row == former.pairs.size()) return;
     const PartMemory::Pair& known = former.pairs[row];
-    if (std::pair(known.body_a, known.body_b) == key && is_same_before(known, own))
+    if (std::pair(known.body_a, known.body_b) == key && known.before == own.before)
       pair.former = static_cast<int>(row);
   }
 }

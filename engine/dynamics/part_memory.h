@@ -51,10 +51,15 @@ struct PartMemory {
   struct Pair {
     body::BodyId body_a = 0, body_b = 0;
     // What was known of it before.
-    double gap_before = 0.0;  // m, the kept one
-    bool was_seen = false, was_touching = false, was_exempt = false;
-    int trouble_age = 0;
-    std::size_t contacts_before = 0;
+    struct Before {
+      double kept_gap = 0.0;  // m
+      bool is_seen = false, is_touching = false, is_exempt = false;
+      int trouble_age = 0;
+      std::size_t contacts = 0;
+
+      bool operator==(const Before&) const = default;
+    };
+    Before before;
     // What came of it.
     bool is_free_certified = false, is_exempt = false, passes = false;
     double kept_gap = 0.0, least_gap = 0.0;  // m
@@ -69,7 +74,8 @@ struct PartMemory {
 };
 
 /// Begins the memory of a part whose pairs were found and classified but have not met, and tells the pairs
-/// whose bodies both begin as they did in `former` which row of it is theirs.
+/// whose bodies both begin as they did in `former` which row of it is theirs. Pairs that met in an earlier
+/// round, of which `memory` is, had before what they had then.
 void begin_part(double time_step, const std::vector<PairState>& states, const PartMemory& former,
                 MotionWork& work, PartMemory& memory);
 
