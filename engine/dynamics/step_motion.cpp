@@ -29,11 +29,8 @@ constexpr double kPartTime = 1.0 / 960.0;  // s
 constexpr double kMostParts = 512.0;
 constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
-constexpr int kManyCut = 200;   // a part in which, of so many of them, more than one was cut short
-constexpr int kFiner = 4;       // goes on in so many times as many, as does the step after it
-constexpr int kCrowdParts = 2;  // of one after which, of so many of them, more than one pair was hit,
-constexpr int kCrowdHits = 5;   // and at least so many in all
-constexpr int kLeastHits = 50;
+constexpr int kManyCut = 200;  // a part in which, of so many of them, more than one was cut short
+constexpr int kFiner = 4;      // goes on in so many times as many, as does the step after it
 
 // Links of a chain that is pulled taut swing by no more than this in a substep, rad: beyond it they win
 // energy.
@@ -363,10 +360,9 @@ int find_next_parts(const ContactSettings& settings, const ContactReport& report
   const int spin_parts = kManyHits * hits > near ? count_turn_parts(settings, report.crowd_turn) : 1;
   // What is opened in position tears chains.
   const int swing_parts = report.torn > kTorn ? count_turn_parts(settings, swing * settings.time_step) : 1;
-  const int crowd_parts = hits >= kLeastHits && kCrowdHits * hits > near ? kCrowdParts : 1;
   const int most = lively_parts(settings);
   const int finer_parts = were_many_cut(settings, report) ? std::min(most, kFiner * parts) : 1;
-  return std::max({spin_parts, swing_parts, crowd_parts, finer_parts});
+  return std::max({spin_parts, swing_parts, finer_parts});
 }
 
 }  // namespace
