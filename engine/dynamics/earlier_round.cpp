@@ -44,7 +44,6 @@ void take_over(WorkPair& earlier, WorkPair& pair) {
   pair.least_gap = earlier.least_gap;
   pair.contacts = std::move(earlier.contacts);
   pair.is_free_certified = earlier.is_free_certified;
-  pair.passes = earlier.passes;
   pair.kept_gap = earlier.kept_gap;
   pair.threshold = earlier.threshold;
   pair.is_close = earlier.is_close;
