@@ -5,7 +5,7 @@ ENGINE_PACKAGES=(g++ cmake ninja-build libeigen3-dev libtbb-dev libmetis-dev cat
 
 BUILD_PACKAGES=("${ENGINE_PACKAGES[@]}" pkg-config libosmesa6-dev libglm-dev libstb-dev python3-glad
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev)
+  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev libgoogle-perftools-dev)
 
 # EGL is the second way to draw (--gl egl): tests hold both to the same bits.
 TEST_PACKAGES=("${BUILD_PACKAGES[@]}" libegl-dev libgl1-mesa-dri ffmpeg gnuplot-nox libgmp-dev mold)
