@@ -79,7 +79,25 @@ void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWo
   state.shelf->bodies = state.bodies;
 }
 
-WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSettings& settings) {
+// Per body.
+std::vector<char> find_borne(const std::vector<Body>& bodies, const ContactState& state) {
+  std::vector<char> is_borne(bodies.size(), 0);
+  const auto note = [&](body::BodyId id) {
+    const Body* body = body::find_body(bodies, id);
+    if (body != nullptr) is_borne[static_cast<std::size_t>(body - bodies.data())] = 1;
+  };
+  for (const PairState& pair : state.pairs) {
+    if (std::none_of(pair.contacts.begin(), pair.contacts.end(),
+                     [](const RememberedContact& c) { return c.was_loaded; }))
+      continue;
+    note(pair.body_a);
+    note(pair.body_b);
+  }
+  return is_borne;
+}
+
+WorkBody make_work_body(const Body& b, const BodyState& memory, bool is_borne,
+                        const ContactSettings& settings) {
   WorkBody w;
   w.shape = b.shape.get();
   w.collider = memory.collider.get();
@@ -114,7 +132,8 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, const ContactSet
     if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0 && b.locked.count_turns() > 0)
       w.inverse_moments = w.inertia.moments.cwiseInverse();
     w.inverse_inertia = inverse_inertia_at(w, w.rotation);
-    w.predicted.translation += dt * w.velocity + (0.5 * dt * dt) * w.gravity;
+    w.is_borne = is_borne;
+    w.predicted.translation += is_borne ? Vec3(dt * w.velocity) : Vec3(dt * w.velocity + fall(w, dt));
     Vec3 spin = w.spin;
     advance_turning(w, dt, w.predicted.rotation, spin);
     w.predicted_spin = spin;
@@ -336,9 +355,10 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   work.warm_scale = state.substep > 0.0 ? work.substep / state.substep : 1.0;
   match_bodies(bodies, state, work);
   bool anything_moves = false;
+  const std::vector<char> is_borne = find_borne(bodies, state);
   work.bodies.resize(bodies.size());
   core::parallel_for(bodies.size(), 32, [&](std::size_t i) {
-    work.bodies[i] = make_work_body(bodies[i], state.bodies[i], settings);
+    work.bodies[i] = make_work_body(bodies[i], state.bodies[i], is_borne[i] != 0, settings);
   });
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     work.ids.push_back(bodies[i].id);
@@ -430,7 +450,7 @@ void find_missed_pairs(const std::vector<Body>& bodies, const ContactSettings& s
   bool anyone = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     WorkBody& w = work.bodies[i];
-    if (!w.is_active || w.is_free || w.shape->kind == ShapeKind::plane) continue;
+    if (!w.is_active || goes_as_predicted(w) || w.shape->kind == ShapeKind::plane) continue;
     if (is_within_looked(settings, w)) continue;
     has_strayed[i] = 1;
     anyone = true;

@@ -87,7 +87,8 @@ class Guard {
     add_missed_pairs();
     std::erase_if(due_, [&](std::size_t p) {
       const WorkPair& pair = work_.pairs[p];
-      return pair.is_free_certified && work_.bodies[at(pair.a)].is_free && work_.bodies[at(pair.b)].is_free;
+      return pair.is_free_certified && goes_as_predicted(work_.bodies[at(pair.a)]) &&
+             goes_as_predicted(work_.bodies[at(pair.b)]);
     });
     bool has_hits = test();
     // One who is hit may hit the next: that is followed where hits are taken one by one.

@@ -186,6 +186,7 @@ void begin_freely(const ContactSettings& settings, WorkBody& w) {
 void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
   if (is_dynamic) begin_freely(settings, w);
   w.end = w.predicted;
+  if (w.is_borne) w.end.translation += fall(w, settings.time_step);  // no more
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (turns_far(w)) {
     // The centre goes straight: that is what the pair's meeting was told.

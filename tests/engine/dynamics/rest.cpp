@@ -139,6 +139,43 @@ TEST_CASE("who is not woken in a step meets as he met before another was, to the
   CHECK(run(true) == expected);
 }
 
+TEST_CASE("what something bears is looked for where it lies, and falls once nothing does") {
+  for (const bool has_more_below : {false, true}) {
+    test::Scene scene;
+    scene.settings.has_sleep = false;
+    const double dt = scene.settings.time_step = 1.0 / 60.0;
+    const double fall = 0.5 * dt * dt * scene.settings.gravity.norm();
+    auto below = test::square_mesh(0.1, 4);
+    for (Vec3& p : below.positions) p.y() -= 0.7 * fall;
+    auto above = test::square_mesh(0.01, 2);
+    for (Vec3& p : above.positions) p.y() += 1e-4;
+    if (has_more_below) scene.add(test::make_shell(below, false));
+    const auto plate = static_cast<std::size_t>(&scene.add(test::make_shell(above)) - scene.bodies.data());
+    scene.add(test::make_shell(test::square_mesh(0.1, 4), false));
+    for (int i = 0; i < 12; ++i) scene.step();
+    auto state = scene.state;
+    dynamics::MotionWork work;
+    dynamics::find_candidate_pairs(scene.bodies, scene.settings, state, work);
+    const auto lies = std::find_if(work.pairs.begin(), work.pairs.end(),
+                                   [](const auto& pair) { return !pair.contacts.empty(); });
+    REQUIRE(lies != work.pairs.end());
+    REQUIRE(fall > scene.settings.search_slack * lies->size);
+    CHECK_FALSE(lies->is_fast);
+
+    scene.bodies.pop_back();
+    const Vec3 start = scene.bodies[plate].pose.translation, velocity = scene.bodies[plate].velocity;
+    scene.step();
+    CHECK(test::count_crossings(scene) == 0);
+    const body::Body& end = scene.bodies[plate];
+    if (has_more_below) {
+      CHECK(scene.report.hits > 0);
+      continue;
+    }
+    CHECK((end.pose.translation - start - dt * velocity - Vec3(0, -fall, 0)).norm() < 1e-15);
+    CHECK((end.velocity - velocity - dt * scene.settings.gravity).norm() < 1e-15);
+  }
+}
+
 TEST_CASE("who sleeps on something falls when it has slipped away") {
   // A light slab under a heavy box, pulled out too feebly to disturb the box, until it has gone.
   test::Scene scene;
