@@ -228,7 +228,12 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.motion = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
   const double pull = std::max({settings.gravity.norm(), a.gravity.norm(), b.gravity.norm()});
-  const double felt = pair.motion + pull * settings.time_step * settings.time_step;
+  // Who is borne may fall after all: the prediction left that out.
+  const auto left_out = [&](const WorkBody& w) {
+    return w.is_borne ? fall(w, settings.time_step) : Vec3(Vec3::Zero());
+  };
+  const double motion = pair.motion + (left_out(a) - left_out(b)).norm();
+  const double felt = motion + pull * settings.time_step * settings.time_step;
   pair.rounding = 1e-14 * (pair.size + a.start.translation.cwiseAbs().maxCoeff() +
                            b.start.translation.cwiseAbs().maxCoeff());
   const double usual_gap = settings.kept_gap * pair.size;
@@ -239,8 +244,7 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
       pair.is_plane || pair.is_analytic || body::is_round(a.shape->kind) || body::is_round(b.shape->kind);
   // Surfaces that do not break for it are found on the way soon enough.
   const bool foresees_falls = pair.is_analytic || a.may_break || b.may_break;
-  const double foreseen =
-      std::min(foresees_falls ? felt : pair.motion, settings.speculative_margin * pair.size);
+  const double foreseen = std::min(foresees_falls ? felt : motion, settings.speculative_margin * pair.size);
   pair.margin = 2.0 * usual_gap + (pair.is_plane ? felt : foreseen);
   if (settings.has_caches && !pair.is_plane && !pair.is_analytic && !turns_far(a) && !turns_far(b)) {
     pair.clear = memory.clear - (a.travelled + b.travelled - memory.clear_since);
