@@ -79,17 +79,17 @@ void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWo
   state.shelf->bodies = state.bodies;
 }
 
-// Per body.
+// Per body: whether something bore it, or was borne by it, in the part before. Of no use where all sleep.
 std::vector<char> find_borne(const std::vector<Body>& bodies, const ContactState& state) {
   std::vector<char> is_borne(bodies.size(), 0);
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.is_dynamic() && b.is_awake; }))
+    return is_borne;
   const auto note = [&](body::BodyId id) {
     const Body* body = body::find_body(bodies, id);
     if (body != nullptr) is_borne[static_cast<std::size_t>(body - bodies.data())] = 1;
   };
   for (const PairState& pair : state.pairs) {
-    if (std::none_of(pair.contacts.begin(), pair.contacts.end(),
-                     [](const RememberedContact& c) { return c.was_loaded; }))
-      continue;
+    if (!pair.was_loaded()) continue;
     note(pair.body_a);
     note(pair.body_b);
   }
@@ -132,8 +132,9 @@ WorkBody make_work_body(const Body& b, const BodyState& memory, bool is_borne,
     if (b.inverse_inertia.cwiseAbs().maxCoeff() > 0.0 && b.locked.count_turns() > 0)
       w.inverse_moments = w.inertia.moments.cwiseInverse();
     w.inverse_inertia = inverse_inertia_at(w, w.rotation);
-    w.is_borne = is_borne;
-    w.predicted.translation += is_borne ? Vec3(dt * w.velocity) : Vec3(dt * w.velocity + fall(w, dt));
+    const Vec3 fall = (0.5 * dt * dt) * w.gravity;
+    if (is_borne) w.fall_left_out = fall;
+    w.predicted.translation += dt * w.velocity + (fall - w.fall_left_out);
     Vec3 spin = w.spin;
     advance_turning(w, dt, w.predicted.rotation, spin);
     w.predicted_spin = spin;
@@ -228,11 +229,8 @@ void classify(const std::vector<Body>& bodies, const ContactSettings& settings, 
   pair.motion = motion_bound(a, a.predicted, b, b.predicted);
   // One may be held while the other falls.
   const double pull = std::max({settings.gravity.norm(), a.gravity.norm(), b.gravity.norm()});
-  // Who is borne may fall after all: the prediction left that out.
-  const auto left_out = [&](const WorkBody& w) {
-    return w.is_borne ? fall(w, settings.time_step) : Vec3(Vec3::Zero());
-  };
-  const double motion = pair.motion + (left_out(a) - left_out(b)).norm();
+  // Who is borne may fall after all.
+  const double motion = pair.motion + (a.fall_left_out - b.fall_left_out).norm();
   const double felt = motion + pull * settings.time_step * settings.time_step;
   pair.rounding = 1e-14 * (pair.size + a.start.translation.cwiseAbs().maxCoeff() +
                            b.start.translation.cwiseAbs().maxCoeff());

@@ -3,6 +3,7 @@
 // not.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -51,6 +52,11 @@ struct PairState {
 
   static constexpr double kUnknownClear = -1e300;
 
+  /// One of its contacts carried an impulse in the last step.
+  bool was_loaded() const {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [](const RememberedContact& c) { return c.was_loaded; });
+  }
   void forget_caches() {
     gaps.reset();
     clear = kUnknownClear;

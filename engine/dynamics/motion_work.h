@@ -75,8 +75,8 @@ struct alignas(64) WorkBody {
   };
   std::vector<Ride> rides;
   Vec3 predicted_spin = Vec3::Zero();    // rad/s, then
-  bool is_borne = false;                 // something bore it, or was borne by it, in the part before
   Pose predicted;                        // end pose if nothing new touches: who is borne does not fall
+  Vec3 fall_left_out = Vec3::Zero();     // m: what was left out there, for it bore or was borne before
   std::vector<Vec3> predicted_vertices;  // |V| x 3, there; of bodies in a fast pair
   std::vector<Vec3> end_vertices;        // |V| x 3, at `end`, where that is being tested
 };
@@ -297,14 +297,9 @@ Pose pose_on_way(const WorkBody& body, double time);
 /// How far the centre strays at most, on its way over the knots, from the straight line to its end, m.
 double find_bow(const WorkBody& body);
 
-/// How far gravity takes it in the step if nothing bears it, m.
-inline Vec3 fall(const WorkBody& body, double time_step) {
-  return (0.5 * time_step * time_step) * body.gravity;
-}
-
 /// Whether it ends just where it is predicted to.
 inline bool goes_as_predicted(const WorkBody& body) {
-  return body.is_free && !body.is_borne;
+  return body.is_free && body.fall_left_out.isZero(0.0);
 }
 
 /// A bound of how far it turns in the step if nothing touches it, rad.

@@ -111,8 +111,7 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
     const WorkPair& pair = work.pairs[p];
     PairState& memory = state.pairs[at(pair.state)];
-    memory.has_parted = std::any_of(memory.contacts.begin(), memory.contacts.end(),
-                                    [](const RememberedContact& c) { return c.was_loaded; });
+    memory.has_parted = memory.was_loaded();
     memory.contacts.clear();
     memory.is_touching = false;
     memory.trouble_age = std::min(memory.trouble_age + 1, kNoTrouble);
@@ -186,7 +185,7 @@ void begin_freely(const ContactSettings& settings, WorkBody& w) {
 void end_freely(bool is_dynamic, const ContactSettings& settings, WorkBody& w) {
   if (is_dynamic) begin_freely(settings, w);
   w.end = w.predicted;
-  if (w.is_borne) w.end.translation += fall(w, settings.time_step);  // no more
+  w.end.translation += w.fall_left_out;  // nothing bears it any more
   w.straight_parts = count_straight_parts(w.turn_angle);
   if (turns_far(w)) {
     // The centre goes straight: that is what the pair's meeting was told.
