@@ -100,9 +100,9 @@ Status can_write_video(const std::filesystem::path& path) {
   return {};
 }
 
-long count_kept_frames(const std::filesystem::path& path) {
+long count_kept_frames(const std::filesystem::path& path, long most) {
   const std::filesystem::path part = path.string() + ".part";
-  return count_whole_groups(std::filesystem::exists(part) ? part : path);
+  return count_whole_groups(std::filesystem::exists(part) ? part : path, most);
 }
 
 VideoFile::VideoFile(std::filesystem::path path, const VideoSettings& settings)

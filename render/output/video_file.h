@@ -42,8 +42,8 @@ class VideoFile {
 };
 
 // Frames of a video, or of its NAME.part, that a run which was cut short has left and another one can go on
-// from.
-long count_kept_frames(const std::filesystem::path& path);
+// from, if of so many it is known that they are right.
+long count_kept_frames(const std::filesystem::path& path, long most);
 
 // Whether this build can write such a file; the error names the endings it knows.
 Status can_write_video(const std::filesystem::path& path);

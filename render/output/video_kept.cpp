@@ -52,13 +52,13 @@ struct Source {
 
 }  // namespace
 
-long count_whole_groups(const std::filesystem::path& path) {
+long count_whole_groups(const std::filesystem::path& path, long most) {
   av_log_set_level(AV_LOG_QUIET);  // a file that was cut short is what we are here for
   long count = 0, whole = 0;
   Source source;
   const Owned<AVPacket> packet(av_packet_alloc());
   if (source.open(path) >= 0 && source.file->streams[0]->codecpar->codec_id != AV_CODEC_ID_GIF) {
-    for (; source.next(*packet) >= 0; ++count) {
+    for (; count <= most && source.next(*packet) >= 0; ++count) {
       if ((packet->flags & AV_PKT_FLAG_KEY) != 0) whole = count;
       av_packet_unref(packet.get());
     }

@@ -8,9 +8,11 @@
 
 namespace shatterbox::render {
 
-// Frames of whole groups, each from one key frame to the next; the last group may lack its end and does not
-// count. 0 for what cannot be read, and for .gif, whose frames are made of the ones before them.
-long count_whole_groups(const std::filesystem::path& file);
+// Frames of whole groups, each from one key frame to the next, but no more than `most`: packets are not in
+// the order in which frames are shown, and some of the last ones in a group that is cut would be made of
+// others that are gone. The last group may lack its end and does not count. 0 for what cannot be read, and
+// for .gif, whose frames are made of the ones before them.
+long count_whole_groups(const std::filesystem::path& file, long most);
 
 // Hands over the first `count` packets, in the order of the file, as an encoder would give them: their pts in
 // frames, H.264 with start codes. The sink returns a code of libav.

@@ -110,14 +110,16 @@ void Checkpoint::load(scene::Problems& problems) {
 }
 
 void Checkpoint::keep_pictures(const nlohmann::json& pictures) {
-  const long encoded = video_.empty() ? 0 : render::count_kept_frames(video_);
   for (const auto& entry : pictures) {
     const Picture picture{entry.at(0), std::stoull(entry.at(1).get<std::string>(), nullptr, 16)};
-    if (!video_.empty() && picture.number >= encoded) return;
-    if (!frames_folder_.empty() && !fs::exists(picture_file(frames_folder_, picture.number))) return;
-    if (!truth_folder_.empty() && !fs::exists(truth_file(truth_folder_, picture.number))) return;
+    if (!frames_folder_.empty() && !fs::exists(picture_file(frames_folder_, picture.number))) break;
+    if (!truth_folder_.empty() && !fs::exists(truth_file(truth_folder_, picture.number))) break;
     kept_.push_back(picture);
   }
+  if (video_.empty() || kept_.empty()) return;
+  // The film may be ahead of what is known.
+  const long encoded = render::count_kept_frames(video_, kept_.back().number + 1);
+  while (!kept_.empty() && kept_.back().number >= encoded) kept_.pop_back();
 }
 
 void Checkpoint::discard() const {
