@@ -28,7 +28,7 @@ class Parting {
           const MotionWork& work)
       : bodies_(bodies), settings_(settings), state_(state), work_(work) {}
 
-  bool run(std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
+  bool run(std::vector<std::pair<body::BodyId, body::BodyId>>& parted, std::vector<body::BodyId>& moved) {
     bool is_changed = false;
     for (const WorkPair& pair : work_.pairs) {
       bool& is_exempt = state_.pairs[at(pair.state)].is_exempt;
@@ -58,6 +58,7 @@ class Parting {
       is_changed = true;
       parted.emplace_back(bodies_[at(other)].id, bodies_[at(mover)].id);
     }
+    for (const int i : moved_) moved.push_back(bodies_[at(i)].id);
     return is_changed;
   }
 
@@ -287,8 +288,9 @@ class Parting {
 }  // namespace
 
 bool part_coincident(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state,
-                     const MotionWork& work, std::vector<std::pair<body::BodyId, body::BodyId>>& parted) {
-  return Parting(bodies, settings, state, work).run(parted);
+                     const MotionWork& work, std::vector<std::pair<body::BodyId, body::BodyId>>& parted,
+                     std::vector<body::BodyId>& moved) {
+  return Parting(bodies, settings, state, work).run(parted, moved);
 }
 
 }  // namespace shatterbox::dynamics

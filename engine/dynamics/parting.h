@@ -16,8 +16,10 @@ class MotionWork;
 /// Of each such pair that is seen for the first time, sets one body aside, at rest as it is, by a hundred
 /// thousandth of its size: out of a solid, else against gravity, else wherever it meets nobody; a pair that
 /// nowhere does (a ball in its like) may pass, as those that cross. Appends the pairs that were parted, the
-/// one that was moved last. True if anything was done: then candidate pairs must be found anew.
+/// one that was set aside last, and `moved`: all that were, for some go along. True if anything was done:
+/// then candidate pairs must be found anew.
 bool part_coincident(std::vector<body::Body>& bodies, const ContactSettings& settings, ContactState& state,
-                     const MotionWork& work, std::vector<std::pair<body::BodyId, body::BodyId>>& parted);
+                     const MotionWork& work, std::vector<std::pair<body::BodyId, body::BodyId>>& parted,
+                     std::vector<body::BodyId>& moved);
 
 }  // namespace shatterbox::dynamics

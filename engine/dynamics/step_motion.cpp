@@ -29,8 +29,9 @@ constexpr double kPartTime = 1.0 / 960.0;  // s
 constexpr double kMostParts = 512.0;
 constexpr int kManySpin = 20;
 constexpr int kManyHits = 30;
-constexpr int kManyCut = 200;  // a part in which, of so many of them, more than one was cut short
-constexpr int kFiner = 4;      // goes on in so many times as many, as does the step after it
+constexpr int kManyCut = 200;        // a part in which, of so many of them, more than one was cut short
+constexpr int kFiner = 4;            // goes on in so many times as many, as does the step after it
+constexpr double kAsideTime = 1e-9;  // of a part: what is set aside is so at once
 
 // Links of a chain that is pulled taut swing by no more than this in a substep, rad: beyond it they win
 // energy.
@@ -287,8 +288,10 @@ void begin_taking(const ContactSettings& settings, const StepPart& part, SearchS
   shelf.part = PartMemory();
 }
 
-// Where bodies were within the step: at the ends of the parts, and of the straight pieces of a turn.
-std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
+// Where bodies were within the step: at the ends of the parts, and of the straight pieces of a turn; and
+// where those were that were set aside at the part's begin.
+std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part,
+                                 const std::vector<body::BodyId>& moved) {
   std::vector<body::Way> ways;
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const WorkBody& w = work.bodies[i];
@@ -298,6 +301,8 @@ std::vector<body::Way> find_ways(const MotionWork& work, const StepPart& part) {
     const int pieces = w.straight_parts, last = part.number + 1 < part.count ? pieces : pieces - 1;
     // Who was woken, or born of what is held, in the midst of the step stood still until then.
     if (part.number > 0) way.points.push_back({static_cast<double>(part.number) / part.count, w.start});
+    if (std::find(moved.begin(), moved.end(), way.id) != moved.end())
+      way.points.push_back({(part.number + kAsideTime) / part.count, w.start});
     for (int k = 1; k <= last; ++k) {
       const double time = (part.number + static_cast<double>(k) / pieces) / part.count;
       way.points.push_back({time, pose_on_way(w, static_cast<double>(k) / pieces)});
@@ -432,11 +437,12 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   const std::vector<char> slept = find_sleepers(bodies);
   wake_bodies(bodies, own, state);
   ContactReport report;
+  std::vector<body::BodyId> moved;
   MotionWork work;
   find_awake_pairs(bodies, own, state, work);
   // As many rounds as bodies lie in one place, at most.
   for (std::size_t round = 0; round < bodies.size(); ++round) {
-    if (!part_coincident(bodies, own, state, work, report.parted)) break;
+    if (!part_coincident(bodies, own, state, work, report.parted, moved)) break;
     find_candidate_pairs(bodies, own, state, work);
   }
   // What joints bore in the step before says nothing of a blow.
@@ -468,7 +474,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   finish_motion(bodies, state, work, log, report);
   count_near(settings, work, report);
   for (std::size_t i = first; i < log.size(); ++i) log[i].time += part.number * own.time_step;
-  if (own.has_ways) report.ways = find_ways(work, part);
+  if (own.has_ways) report.ways = find_ways(work, part, moved);
   if (state.shelf->keeps_part) end_part(work, state.shelf->part);
   free_pairs(work);
   keep_scratch(work, state);

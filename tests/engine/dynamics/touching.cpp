@@ -323,19 +323,57 @@ TEST_CASE("solid blocks placed edge to edge, in a row or in a slab, fall as any 
       }
 }
 
+namespace {
+
+/// A fan in the plane of that x, its middle vertex at `middle`.
+body::Body make_fan(double x, double middle) {
+  constexpr double kRadius = 0.05;
+  geometry::TriangleMesh mesh;
+  mesh.positions.push_back(Vec3(middle, 0.5, 0.0));
+  for (int k = 0; k < 8; ++k) {
+    const double angle = 0.25 * core::kPi * (k + 0.3);
+    mesh.positions.push_back(Vec3(x, 0.5 + kRadius * std::sin(angle), kRadius * std::cos(angle)));
+    mesh.triangles.push_back({0, k + 1, (k + 1) % 8 + 1});
+  }
+  return test::make_shell(mesh);
+}
+
+}  // namespace
+
+TEST_CASE("the way of what is set aside goes there at once and then on") {
+  // The second one is seen first in the third of four parts of the step.
+  for (const int first : {0, 2}) {
+    test::Scene scene;
+    scene.settings.gravity.setZero();
+    scene.settings.has_ways = true;
+    scene.add(make_fan(0.0, 0.0));
+    dynamics::ContactReport step;
+    Vec3 before = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) {
+      if (k == first) {
+        scene.add(make_fan(1e-4, 0.0)).velocity = Vec3(0.0, 1.0, 0.0);
+        before = scene.bodies[1].pose.translation;
+      }
+      dynamics::add_part(
+          {k, 4}, dynamics::move_part(scene.bodies, scene.settings, {k, 4}, scene.state, scene.log), step);
+    }
+    REQUIRE(step.parted.size() == 1);
+    REQUIRE(step.ways.size() == 2);
+    const auto& points = step.ways[1].points;
+    const std::size_t aside = first == 0 ? 0 : 1;  // behind where the part begins
+    REQUIRE(points.size() == 4 + aside - static_cast<std::size_t>(first));
+    CHECK(points[aside].time == Approx(0.25 * first).margin(1e-9));
+    CHECK(points[aside].time > 0.25 * first);
+    const Vec3 shift = points[aside].pose.translation - before;
+    CHECK(shift.x() > 0.9 * shift.norm());
+    CHECK(points[aside + 1].pose.translation.y() - points[aside].pose.translation.y() ==
+          Approx(0.25 * scene.settings.time_step).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("sheets beside each other that touch in a point part to the sides on which they are") {
   // A fan in the plane x = 0, and one beside it whose middle vertex is in the middle of the first.
-  constexpr double kRadius = 0.05, kApart = 1e-4;
-  const auto make_fan = [](double x, double middle) {
-    geometry::TriangleMesh mesh;
-    mesh.positions.push_back(Vec3(middle, 0.5, 0.0));
-    for (int k = 0; k < 8; ++k) {
-      const double angle = 0.25 * core::kPi * (k + 0.3);
-      mesh.positions.push_back(Vec3(x, 0.5 + kRadius * std::sin(angle), kRadius * std::cos(angle)));
-      mesh.triangles.push_back({0, k + 1, (k + 1) % 8 + 1});
-    }
-    return test::make_shell(mesh);
-  };
+  constexpr double kApart = 1e-4;
   for (const double side : {1.0, -1.0}) {
     test::Scene scene;
     scene.settings.gravity.setZero();
