@@ -252,10 +252,10 @@ void solve_islands(const std::vector<Body>& bodies, const ContactSettings& setti
   std::vector<char> is_in_island(work.bodies.size(), 0);
   for (const Island& island : work.islands)
     for (const int b : island.bodies) is_in_island[at(b)] = 1;
-  for (std::size_t i = 0; i < work.bodies.size(); ++i) {
+  core::parallel_for(work.bodies.size(), 16, [&](std::size_t i) {
     if (is_dirty[i] && work.bodies[i].is_active && !is_in_island[i])
       end_freely(bodies[i].is_dynamic(), settings, work.bodies[i]);
-  }
+  });
 }
 
 void finish_motion(std::vector<Body>& bodies, ContactState& state, MotionWork& work, body::ImpulseLog& log,

@@ -9,35 +9,39 @@ namespace {
 /// Share of the bytes that is left: who clears out seldom gives up more than is needed.
 constexpr double kKept = 0.8;
 
-struct Kept {
-  long used = 0;
-  body::BodyId id = 0;
-  double bytes = 0.0;
-  stress::ShellSystemCache* systems = nullptr;
-};
+/// Of a piece of a shell; null of others.
+stress::ShellSystemCache* find_systems(const Fragile& fragile, const Ancestry& from) {
+  const auto* subject = std::get_if<fracture::ShellSubject>(&fragile.subject);
+  return subject && from.parent != 0 ? subject->systems.get() : nullptr;
+}
 
 }  // namespace
 
 void FactorShelf::clear_out(const Fragiles& fragiles, const std::map<body::BodyId, Ancestry>& ancestry) {
-  ++turn_;
   std::erase_if(used_, [&](const auto& use) { return !fragiles.contains(use.first); });
-  std::vector<Kept> kept;
   double sum = 0.0;
-  for (const auto& [id, turn] : used_) {
-    const auto* subject = std::get_if<fracture::ShellSubject>(&fragiles.at(id)->subject);
-    if (!subject || ancestry.at(id).parent == 0) continue;
-    stress::ShellSystemCache* systems = subject->systems.get();
-    kept.push_back({turn, id, systems->bytes(), systems});
-    sum += kept.back().bytes;
+  for (auto& [id, use] : used_) {
+    if (use.turn == turn_) {
+      const auto* systems = find_systems(*fragiles.at(id), ancestry.at(id));
+      use.bytes = systems ? systems->bytes() : 0.0;
+    }
+    sum += use.bytes;
   }
-  if (sum <= most_bytes_) return;
-  std::sort(kept.begin(), kept.end(),
-            [](const Kept& x, const Kept& y) { return x.used != y.used ? x.used < y.used : x.id < y.id; });
-  for (const Kept& k : kept) {
+  ++turn_;
+  if (sum > most_bytes_) give_up_oldest(sum, fragiles, ancestry);
+}
+
+void FactorShelf::give_up_oldest(double sum, const Fragiles& fragiles,
+                                 const std::map<body::BodyId, Ancestry>& ancestry) {
+  std::vector<std::pair<long, body::BodyId>> kept;  // of those that have any; the last turn comes first
+  for (const auto& [id, use] : used_)
+    if (use.bytes > 0.0) kept.emplace_back(use.turn, id);
+  std::sort(kept.begin(), kept.end());
+  for (const auto& [turn, id] : kept) {
     if (sum <= kKept * most_bytes_) break;
-    k.systems->give_up();
-    used_.erase(k.id);
-    sum -= k.bytes;
+    find_systems(*fragiles.at(id), ancestry.at(id))->give_up();
+    sum -= used_.at(id).bytes;
+    used_.erase(id);
   }
 }
 

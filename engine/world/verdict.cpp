@@ -236,9 +236,17 @@ void fill_candidate(const Judge& judge, const body::Body& body, double radius, d
   if (is_paper) candidate.impact.given_duration = judge.settings.paper_duration;
 }
 
-/// The impact of this step on one body, if there is anything to evaluate.
-bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body& body, double time,
-                   ImpactMemory& memory, Candidate& candidate, EvaluationFigures& figures) {
+/// What becomes of the impulses of a step on a body.
+enum class Claim {
+  nothing,  // to evaluate
+  bounded,  // too weak by what bounds it
+  borne,    // like what was borne
+  due       // to be judged
+};
+
+/// The impact of this step on one body.
+Claim gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body& body, double time,
+                    ImpactMemory& memory, Candidate& candidate) {
   const double radius = kGatherRadius * body.shape->bounding_radius;
   const double step = 1.0 / judge.settings.steps_per_second;
   const bool is_paper = judge.settings.criterion == Criterion::paper;
@@ -255,15 +263,15 @@ bool gather_impact(const Judge& judge, const OwnImpulses& log, const body::Body&
   if (!is_paper && time < memory.born + contact_average(step)) is_pressed = false;
   if (is_pressed &&
       bending_bound(body, contact_force) < material::borne_tension(candidate.fragile->material())) {
+    if (hits.empty()) return Claim::bounded;
     is_pressed = false;
-    if (hits.empty()) ++figures.skipped;
   }
-  if (hits.empty() && !is_pressed) return false;
+  if (hits.empty() && !is_pressed) return Claim::nothing;
   fill_candidate(judge, body, radius, time, !hits.empty(), memory, candidate);
   candidate.contact_force = contact_force;
   candidate.impact.resting_ratio = known_ratio(memory, contact_force);
   memory.tested_contact = std::max(memory.tested_contact, contact_force);
-  return true;
+  return Claim::due;
 }
 
 /// By how much the loads exceed those of the impact that was borne, place by place; 1e9 where one has no
@@ -347,20 +355,27 @@ std::vector<Candidate> gather_candidates(const Judge& judge, const Fragiles& fra
                                          const BorneImpacts& borne, EvaluationFigures& figures) {
   const std::vector<body::BodyId> touched = find_touched(judge.log, fragiles);
   const std::vector<OwnImpulses> impulses = sort_by_body(judge.log, touched);
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> all(touched.size());
+  std::vector<ImpactMemory*> own(touched.size(), nullptr);  // null: the body is gone
   for (std::size_t i = 0; i < touched.size(); ++i) {
-    const body::BodyId id = touched[i];
-    Candidate candidate;
-    candidate.body = body::find_body(judge.bodies, id);
-    if (!candidate.body) continue;
-    candidate.fragile = fragiles.at(id).get();
-    if (!gather_impact(judge, impulses[i], *candidate.body, time, memories[id], candidate, figures)) continue;
-    if (const BorneImpact* like = find_like_borne(candidate, borne)) {
-      ++figures.skipped;
-      keep_verdict(like->duration, like->tested_growth, memories[id]);
-    } else {
-      candidates.push_back(std::move(candidate));
+    all[i].body = body::find_body(judge.bodies, touched[i]);
+    if (all[i].body) own[i] = &memories[touched[i]];
+  }
+  std::vector<Claim> claims(touched.size(), Claim::nothing);
+  core::parallel_for(touched.size(), 16, [&](std::size_t i) {
+    if (!own[i]) return;
+    all[i].fragile = fragiles.at(touched[i]).get();
+    claims[i] = gather_impact(judge, impulses[i], *all[i].body, time, *own[i], all[i]);
+    if (claims[i] != Claim::due) return;
+    if (const BorneImpact* like = find_like_borne(all[i], borne)) {
+      claims[i] = Claim::borne;
+      keep_verdict(like->duration, like->tested_growth, *own[i]);
     }
+  });
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    figures.skipped += claims[i] == Claim::bounded || claims[i] == Claim::borne ? 1 : 0;
+    if (claims[i] == Claim::due) candidates.push_back(std::move(all[i]));
   }
   return candidates;
 }
