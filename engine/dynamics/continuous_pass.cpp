@@ -419,20 +419,29 @@ class Guard {
     return find_in_islands([&](const Island& island) { return strikes_one_by_one(island, work_); });
   }
 
-  // Pairs with a body in an island that is too large to be solved anew for every hit in it, of which there
-  // are some in each step: they are opened as they are, and bounce. But of what may break all that a hit does
-  // counts, and solids roll and slip on.
+  // Pairs that are hit with a body in an island that is too large to be solved anew for every hit in it, of
+  // which there are some in each step: they are opened as they are, and bounce. But of what may break all
+  // that a hit does counts, if it is one, and solids roll and slip on.
   std::vector<char> find_heaped() const {
-    const auto in_heap = find_in_islands([](const Island& i) { return i.is_large() && !i.may_break; });
+    const auto in_heap = find_in_islands([](const Island& i) { return i.is_large(); });
     const auto may_break = find_in_islands([](const Island& i) { return i.may_break; });
     std::vector<char> is_heaped(work_.pairs.size(), 0);
-    for (std::size_t p = 0; p < is_heaped.size(); ++p) {
+    for (const std::size_t p : hit_) {
       const WorkPair& pair = work_.pairs[p];
       const auto breaks = [&](int i) { return work_.bodies[at(i)].may_break || may_break[at(i)]; };
-      is_heaped[p] = (in_heap[at(pair.a)] || in_heap[at(pair.b)]) && !pair.is_analytic && !breaks(pair.a) &&
-                     !breaks(pair.b);
+      is_heaped[p] = (in_heap[at(pair.a)] || in_heap[at(pair.b)]) && !pair.is_analytic &&
+                     ((!breaks(pair.a) && !breaks(pair.b)) || comes_slowly(p));
     }
     return is_heaped;
+  }
+
+  // So that it neither bounces nor is told as a hit.
+  bool comes_slowly(std::size_t p) const {
+    const WorkPair& pair = work_.pairs[p];
+    return std::all_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
+      const double come = hit.start_gap - gap_on_way(pair, work_, hit.contact, hit.knot);
+      return come <= pair.threshold * hit.knot * settings_.time_step;
+    });
   }
 
   bool may_strike_on(const WorkPair& pair, const std::vector<char>& strikes_on) const {
