@@ -47,13 +47,16 @@ struct CrackGuide::Factor {
   /// |nodes|: unknown, -1 for none.
   const std::vector<int>& number() const { return tree->node_place; }
 
-  /// Solves in place, by unknown.
-  std::vector<double> solve(std::vector<double> load) const {
-    stress::SolveLanes x(*tree, 1);
-    x.values = std::move(load);
+  /// In place of up to kMost loads, by unknown, their answers.
+  void solve(std::span<std::vector<double>> loads) const {
+    stress::SolveLanes x(*tree, loads.size());
+    const Size lanes = at(x.lanes);
+    for (Size l = 0; l < loads.size(); ++l)
+      for (Size i = 0; i < loads[l].size(); ++i) x.values[lanes * i + l] = loads[l][i];
     solve_forward(*tree, *factor, x);
     solve_backward(*tree, *factor, x);
-    return std::move(x.values);
+    for (Size l = 0; l < loads.size(); ++l)
+      for (Size i = 0; i < loads[l].size(); ++i) loads[l][i] = x.values[lanes * i + l];
   }
 };
 
@@ -126,30 +129,52 @@ CrackGuide::CrackGuide(const geometry::TetMesh& mesh, std::vector<GuideElement> 
 CrackGuide::~CrackGuide() = default;
 CrackGuide::CrackGuide(CrackGuide&&) noexcept = default;
 
-std::vector<double> CrackGuide::potential(int element, const Vec3& place, const Vec3& normal) const {
-  // A ball of sources and sinks, the elements about the start: the potential inside is nearly linear.
-  const geometry::Tetrahedron& start = mesh_.tetrahedra[at(element)];
-  if (!factor_->factor) return std::vector<double>(mesh_.positions.size(), 0.0);
+std::vector<std::vector<double>> CrackGuide::potentials(std::span<const GuideStart> starts) const {
+  std::vector<std::vector<double>> values(starts.size());
+  core::parallel_chunks(starts.size(), stress::SolveLanes::kMost, [&](Size begin, Size end) {
+    if (!factor_->factor) {
+      std::fill(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                values.begin() + static_cast<std::ptrdiff_t>(end),
+                std::vector<double>(mesh_.positions.size(), 0.0));
+      return;
+    }
+    for (Size i = begin; i < end; ++i) values[i] = source_at(starts[i]);
+    factor_->solve(std::span(values).subspan(begin, end - begin));
+    for (Size i = begin; i < end; ++i) values[i] = level(starts[i], values[i]);
+  });
+  return values;
+}
+
+/// A ball of sources and sinks, the elements about the start: the potential inside is nearly linear.
+std::vector<double> CrackGuide::source_at(const GuideStart& start) const {
+  const geometry::Tetrahedron& middle = mesh_.tetrahedra[at(start.element)];
   const std::vector<int>& number = factor_->number();
   std::vector<double> source(at(factor_->tree->unknowns), 0.0);
   const auto near = core::find_where(elements_.size(), kGrain, [&](Size k) {
     const geometry::Tetrahedron& t = mesh_.tetrahedra[at(elements_[k].element)];
     return std::any_of(t.begin(), t.end(),
-                       [&](int v) { return std::find(start.begin(), start.end(), v) != start.end(); });
+                       [&](int v) { return std::find(middle.begin(), middle.end(), v) != middle.end(); });
   });
   for (const int k : near) {
     const GuideElement& e = elements_[at(k)];
     const geometry::Tetrahedron& t = mesh_.tetrahedra[at(e.element)];
     const std::array<Vec3, 4> gradients = shape_gradients(mesh_, e.element);
     const double volume = geometry::tetrahedron_volume(mesh_, e.element);
-    for (Size i = 0; i < 4; ++i) source[at(number[at(t[i])])] += volume * gradients[i].dot(normal);
+    for (Size i = 0; i < 4; ++i) source[at(number[at(t[i])])] += volume * gradients[i].dot(start.normal);
   }
-  const std::vector<double> flow = factor_->solve(std::move(source));
+  return source;
+}
+
+/// By node, of a flow by unknown.
+std::vector<double> CrackGuide::level(const GuideStart& start, const std::vector<double>& flow) const {
+  const geometry::Tetrahedron& middle = mesh_.tetrahedra[at(start.element)];
+  const std::vector<int>& number = factor_->number();
   double here = 0.0;
-  const std::array<Vec3, 4> gradients = shape_gradients(mesh_, element);
+  const std::array<Vec3, 4> gradients = shape_gradients(mesh_, start.element);
   for (Size i = 0; i < 4; ++i) {
-    const double weight = (i == 0 ? 1.0 : 0.0) + gradients[i].dot(place - mesh_.positions[at(start[0])]);
-    here += weight * flow[at(number[at(start[i])])];
+    const double weight =
+        (i == 0 ? 1.0 : 0.0) + gradients[i].dot(start.place - mesh_.positions[at(middle[0])]);
+    here += weight * flow[at(number[at(middle[i])])];
   }
   // The change of the potential over the elements about each node is the measure of what is near zero.
   std::vector<double> values(mesh_.positions.size(), 0.0), change(values.size(), 0.0);

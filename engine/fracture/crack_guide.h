@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/core/vec.h"
@@ -24,6 +25,12 @@ struct GuideElement {
   int element = 0;                     // of the mesh
   double volume = 0.0;                 // m3, of the piece's material in it
   Mat3 conduction = Mat3::Identity();  // symmetric, positive definite
+};
+
+/// Where a crack starts: at `place` (m) in `element`, across `normal` (unit).
+struct GuideStart {
+  int element = 0;
+  Vec3 place = Vec3::Zero(), normal = Vec3::Zero();
 };
 
 /// Elimination trees of guides: of pieces of the same elements they are the same, one generation after the
@@ -49,14 +56,17 @@ class CrackGuide {
   ~CrackGuide();
   CrackGuide(CrackGuide&&) noexcept;
 
-  /// |nodes of the mesh|: zero at `place` (m) in `element`, which is one of the piece's, growing along
-  /// `normal` there. Nodes near the surface are on it, so that cracks have fewer and wider faces: they have a
-  /// positive value that is next to nothing. Exactly 0 where it is not known: at nodes of other elements,
-  /// and where so little is left of it that its sign is rounding. Any thread.
-  std::vector<double> potential(int element, const Vec3& place, const Vec3& normal) const;
+  /// For each start, which is in one of the piece's elements, by node of the mesh: zero at its place, growing
+  /// along its normal there. Nodes near the surface are on it, so that cracks have fewer and wider faces:
+  /// they have a positive value that is next to nothing. Exactly 0 where it is not known: at nodes of other
+  /// elements, and where so little is left of it that its sign is rounding. Several at once cost less than
+  /// one after the other, and are the same. Any thread.
+  std::vector<std::vector<double>> potentials(std::span<const GuideStart> starts) const;
 
  private:
   struct Factor;
+  std::vector<double> source_at(const GuideStart& start) const;
+  std::vector<double> level(const GuideStart& start, const std::vector<double>& flow) const;
 
   const geometry::TetMesh& mesh_;
   std::vector<GuideElement> elements_;

@@ -5,6 +5,7 @@
 
 #include "engine/core/elementary.h"
 #include "engine/core/index.h"
+#include "engine/core/parallel.h"
 #include "engine/core/stop.h"
 #include "engine/fracture/grain_surface.h"
 
@@ -15,6 +16,8 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kLeastArea = 0.25;  // of a crack, in squares of the least size
+
+constexpr Size kMostAhead = 8;  // fields that are found at once
 
 constexpr double kBesideCosine = 0.7;  // between two cracks that run beside each other
 constexpr double kBesideShare = 0.4;   // of the least size, at most, are they then apart
@@ -277,7 +280,32 @@ void SolidTracer::resume(std::vector<OpenCrack>& cracks) {
   }
 }
 
-bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>& cracks) {
+/// The fields of `most` candidates that are not shielded by now, of the piece of the first one: they are
+/// those of the generation's beginning, and most cracks come to nothing, so they seldom shield the next.
+void SolidTracer::look_ahead(const std::vector<SolidCandidate>& candidates, Size first, Size most,
+                             std::vector<CrackValues>& fields) {
+  const auto piece_of = [&](Size i) { return (*setup_.guides.pieces)[at(candidates[i].cell)]; };
+  const int piece = piece_of(first);
+  std::vector<Size> wanted;
+  std::vector<GuideStart> starts;
+  for (Size i = first; i < candidates.size() && wanted.size() < most; ++i) {
+    if (piece_of(i) != piece || is_shielded(candidates[i])) continue;
+    const stress::PrincipalAxes axes =
+        stress::principal_axes((*setup_.guides.stresses)[at(candidates[i].cell)]);
+    wanted.push_back(i);
+    starts.push_back(
+        {complex_.cells[at(candidates[i].cell)].element, candidates[i].place, axes.directions.col(0)});
+  }
+  std::vector<std::vector<double>> values = guides_.of(piece).potentials(starts);
+  core::parallel_for(wanted.size(), 1, [&](Size k) {
+    if (setup_.grains != nullptr)
+      values[k] = follow_grains(*setup_.grains, complex_.elements->mesh, values[k], starts[k].element,
+                                boundary_weakness());
+    fields[wanted[k]] = std::make_shared<const std::vector<double>>(std::move(values[k]));
+  });
+}
+
+bool SolidTracer::start(const SolidCandidate& candidate, CrackValues field, std::vector<OpenCrack>& cracks) {
   int cell = candidate.cell;
   const int element = complex_.cells[at(cell)].element;
   // Earlier cracks of this generation may have divided it.
@@ -291,13 +319,8 @@ bool SolidTracer::start(const SolidCandidate& candidate, std::vector<OpenCrack>&
     cell = *holder;
   }
   settle_cell(complex_, cell);
-  const stress::PrincipalAxes axes = stress::principal_axes((*setup_.guides.stresses)[at(origin_[at(cell)])]);
   begin(setup_.first_id + crack_count_, 0.0);
-  const int piece = (*setup_.guides.pieces)[at(origin_[at(cell)])];
-  std::vector<double> values = guides_.of(piece).potential(element, candidate.place, axes.directions.col(0));
-  if (setup_.grains != nullptr)
-    values = follow_grains(*setup_.grains, complex_.elements->mesh, values, element, boundary_weakness());
-  field_.take(std::make_shared<const std::vector<double>>(std::move(values)));
+  field_.take(std::move(field));
   const CrackCap cap = field_.cap(cell);
   if (!(cap.area > 0.0)) {
     stillborn_.push_back(candidate);
@@ -389,10 +412,18 @@ void SolidTracer::nucleate(std::vector<SolidCandidate> candidates, std::vector<O
   std::sort(candidates.begin(), candidates.end(), [](const SolidCandidate& a, const SolidCandidate& b) {
     return a.overload != b.overload ? a.overload > b.overload : a.number < b.number;
   });
-  for (const SolidCandidate& candidate : candidates) {
+  std::vector<CrackValues> fields(candidates.size());  // null: not found yet, or not needed any more
+  Size ahead = 1;
+  for (Size i = 0; i < candidates.size(); ++i) {
     core::stop_if_asked();
     if (is_out_of_energy_) return;
-    if (!is_shielded(candidate)) start(candidate, cracks);
+    CrackValues field = std::move(fields[i]);
+    if (is_shielded(candidates[i])) continue;
+    if (!field) {
+      look_ahead(candidates, i, ahead, fields);
+      field = std::move(fields[i]);
+    }
+    ahead = start(candidates[i], std::move(field), cracks) ? 1 : std::min(2 * ahead, kMostAhead);
   }
 }
 

@@ -88,7 +88,9 @@ class SolidTracer {
     }
   };
   bool is_shielded(const SolidCandidate& candidate) const;
-  bool start(const SolidCandidate& candidate, std::vector<OpenCrack>& cracks);
+  void look_ahead(const std::vector<SolidCandidate>& candidates, std::size_t first, std::size_t most,
+                  std::vector<CrackValues>& fields);
+  bool start(const SolidCandidate& candidate, CrackValues field, std::vector<OpenCrack>& cracks);
   void begin(int id, double area);
   void enter(int cell, const CrackCap& cap, double intensity);
   double opening_of(const geometry::SolidFacet& facet) const;

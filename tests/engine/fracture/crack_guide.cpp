@@ -76,7 +76,7 @@ TEST_CASE("a crack guide's potential is the one of sources and sinks about its s
   const stress::SolidVertexRank rank;
   GuideTrees trees(rank.of(*whole));
   const CrackGuide guide(mesh, elements, trees);
-  const std::vector<double> found = guide.potential(start, place, normal);
+  const std::vector<double> found = guide.potentials(std::vector<GuideStart>{{start, place, normal}}).front();
   REQUIRE(found.size() == mesh.positions.size());
   int near = 0, known = 0;
   for (size_t v = 0; v < found.size(); ++v) {
@@ -93,6 +93,15 @@ TEST_CASE("a crack guide's potential is the one of sources and sinks about its s
       CHECK((found[v] > 0.0) == (expected > 0.0));
     }
   }
+  // Others beside it change nothing, to the last bit.
+  std::vector<GuideStart> starts;
+  for (const GuideElement& e : elements) {
+    if (starts.size() == 7) break;
+    starts.push_back({e.element, place, Vec3::Unit(static_cast<int>(starts.size()) % 3)});
+  }
+  starts[5] = {start, place, normal};
+  CHECK(guide.potentials(starts)[5] == found);
+  CHECK(guide.potentials({}).empty());
   CHECK(known > 10 * near);
   CHECK(std::count_if(found.begin(), found.end(), [](double f) { return f < 0.0; }) > known / 5);
 }

@@ -323,7 +323,8 @@ Grown grow(const geometry::SolidComplex& complex, const Vec3& place,
   int first = 0;
   while (!cell_holds(complex, first, place)) ++first;
   CrackField field(complex);
-  field.take(std::make_shared<const std::vector<double>>(guide.potential(first, place, normal(place))));
+  field.take(std::make_shared<const std::vector<double>>(
+      guide.potentials(std::vector<GuideStart>{{first, place, normal(place)}}).front()));
   std::vector<char> is_in(complex.cells.size(), 0);
   std::vector<int> queue{first};
   is_in[at(first)] = 1;
