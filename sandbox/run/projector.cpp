@@ -114,7 +114,8 @@ long Projector::last_step() const {
 void Projector::finish() {
   while (built_.world.steps() < last_step() && !wants_to_stop_()) (void)step(1e300);
   if (wants_to_stop_()) return;
-  for (std::string& sentence : throws_.missed()) recorder_.record.warnings.push_back(std::move(sentence));
+  for (std::string& sentence : throws_.missed(built_.world.time()))
+    recorder_.record.warnings.push_back(std::move(sentence));
   for (const scene::Problem& doubt : find_coarse_solids(scene_, built_))
     recorder_.record.warnings.push_back(scene::describe(doubt));
 }

@@ -24,10 +24,18 @@ void Throws::look(const world::World& world) {
   });
 }
 
-std::vector<std::string> Throws::missed() const {
+std::vector<std::string> Throws::missed(double time) const {
   std::vector<std::string> sentences;
   for (const Flight& flight : flights_) {
     const scene::EventEntry& event = *flight.thrown.event;
+    if (time < flight.thrown.arrival && !flight.has_hit_floor) {
+      sentences.push_back(scene::describe(scene::Problem{
+          event.place, fmt::format("what event \"{}\" threw is still on its way at the end", event.name),
+          fmt::format(
+              "it is at its target after {:.3g} s: let the scene run on, or throw it earlier or faster",
+              flight.thrown.arrival)}));
+      continue;
+    }
     const bool is_at_body =
         std::holds_alternative<scene::BodyRef>(std::get<scene::Projectile>(event.action).target);
     sentences.push_back(scene::describe(scene::Problem{

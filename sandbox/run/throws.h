@@ -15,8 +15,8 @@ class Throws {
   void add(const std::vector<script::Throw>& thrown);
   /// After a step.
   void look(const world::World& world);
-  /// At the end: a sentence for each that met nothing but floors.
-  std::vector<std::string> missed() const;
+  /// At the end, at `time` (s): a sentence for each that met nothing but floors.
+  std::vector<std::string> missed(double time) const;
 
  private:
   struct Flight {

@@ -32,11 +32,32 @@ void move_to(TomlValue& value, const Place& place) {
   for (auto& [key, entry] : value.entries) move_to(entry, place);
 }
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// What is typed in a hurry: numbers that begin with their point get the digit that TOML asks for.
+std::string with_leading_digits(const std::string& text) {
+  std::string full;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote == 0 && (c == '"' || c == '\''))
+      quote = c;
+    else if (c == quote)
+      quote = 0;
+    const bool begins = i == 0 || std::string_view("[,=+- ").find(text[i - 1]) != std::string_view::npos;
+    if (quote == 0 && c == '.' && begins && i + 1 < text.size() && is_digit(text[i + 1])) full += '0';
+    full += c;
+  }
+  return full;
+}
+
 /// The value behind the equals sign, or nothing after adding a problem.
 const TomlValue* parse_value(const std::string& text, const Place& place, TomlValue& storage,
                              Problems& problems) {
   Problems faults;
-  storage = parse_toml("value = " + text, place.file, faults);
+  storage = parse_toml("value = " + with_leading_digits(text), place.file, faults);
   // The shell takes quotes for its own: a word that is no other value is a text.
   const std::string word = without_outer_blanks(text);
   const bool is_word = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {

@@ -67,11 +67,26 @@ TomlValue convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
+/// A line of a text.
+std::string_view line_of(std::string_view text, int number) {
+  for (int line = 1; line < number; ++line) text.remove_prefix(std::min(text.find('\n') + 1, text.size()));
+  return text.substr(0, text.find('\n'));
+}
+
+/// Whether what could not be read is a number that begins with its point: ".5", "-.5".
+bool lacks_digit(std::string_view text, const Place& place) {
+  const std::string_view line = line_of(text, place.line);
+  const auto point = static_cast<std::size_t>(std::max(place.column, 1)) - 1;
+  const auto is_digit = [&](std::size_t i) {
+    return i < line.size() && std::isdigit(static_cast<unsigned char>(line[i])) != 0;
+  };
+  return point < line.size() && line[point] == '.' && is_digit(point + 1) &&
+         !(point > 0 && is_digit(point - 1));
+}
+
 /// Whether what could not be read is a unit behind a number: "4mm", "0.5 cm".
 bool is_unit(std::string_view text, const Place& place) {
-  for (int line = 1; line < place.line; ++line)
-    text.remove_prefix(std::min(text.find('\n') + 1, text.size()));
-  text = text.substr(0, text.find('\n'));
+  text = line_of(text, place.line);
   constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ ";
   // The place is that of the letter, or behind it.
   const std::string_view before = text.substr(0, static_cast<std::size_t>(std::max(place.column, 0)));
@@ -124,7 +139,8 @@ TomlValue parse_toml(std::string_view text, const std::string& file, Problems& p
   } catch (const toml::parse_error& error) {
     const Place place = place_of(error.source(), file);
     book(problems, place, std::string(error.description()),
-         is_unit(text, place)
+         lacks_digit(text, place) ? "this is not TOML: a digit stands before the point of a number, as in 0.5"
+         : is_unit(text, place)
              ? "this is not TOML: numbers have no unit; lengths are metres (10 cm are 0.1), "
                "masses kg, times s, angles degrees"
              : "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}");

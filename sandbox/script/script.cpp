@@ -87,15 +87,20 @@ MovingTarget moving_target(const scene::BuiltScene& built, scene::BodyRef who, c
   return {centre, velocity, is_falling};
 }
 
-/// The motion of what an event brings in, or a sentence why it cannot be.
-core::Result<world::BodyDescription> describe(const scene::EventEntry& event, const scene::BuiltScene& built,
-                                              const std::function<Sight()>& look,
-                                              std::vector<std::string>& faults) {
+/// What an event brings in, and how long it flies to its target at least, s.
+struct Coming {
+  world::BodyDescription description;
+  double flight = 0.0;
+};
+
+/// With its motion; or a sentence why it cannot be.
+core::Result<Coming> describe(const scene::EventEntry& event, const scene::BuiltScene& built,
+                              const std::function<Sight()>& look, std::vector<std::string>& faults) {
   world::BodyDescription description =
       built.plan.bodies[static_cast<std::size_t>(event.who.body)].description;
   if (const auto* drop = std::get_if<scene::Drop>(&event.action)) {
     if (drop->position) description.pose.translation = *drop->position;
-    return description;
+    return Coming{std::move(description)};
   }
   const auto& projectile = std::get<scene::Projectile>(event.action);
   std::optional<Sight> sight;
@@ -129,7 +134,7 @@ core::Result<world::BodyDescription> describe(const scene::EventEntry& event, co
         event.name, time_of(event, built), projectile.speed, distance));
   }
   description.angular_velocity = projectile.spin;
-  return description;
+  return Coming{std::move(description), distance / projectile.speed};
 }
 
 /// The first step border at or after `seconds`. A hair's breadth of tolerance: 0.1 s is step 24 of 240,
@@ -181,16 +186,18 @@ std::string Script::bring_in(const scene::EventEntry& event, scene::BuiltScene& 
     drop_copies(event, built);
     return {};
   }
-  auto description = describe(event, built, sight, faults);
-  if (!description) return description.error();
-  if (const std::string obstacle = find_obstacle(built.world, description.value()); !obstacle.empty())
+  auto coming = describe(event, built, sight, faults);
+  if (!coming) return coming.error();
+  auto& [description, flight] = coming.value();
+  if (const std::string obstacle = find_obstacle(built.world, description); !obstacle.empty())
     return fmt::format("{} is where its body would come in", obstacle);
   const int count = ++throws_[static_cast<std::size_t>(event.who.body)];
-  if (count > 1) description.value().name += fmt::format("[{}]", count);
-  const auto id = built.world.add_body(description.value());
+  if (count > 1) description.name += fmt::format("[{}]", count);
+  const auto id = built.world.add_body(description);
   if (!id) return id.error();
   built.origins[id.value()] = {event.who.body, count - 1};
-  if (std::holds_alternative<scene::Projectile>(event.action)) thrown_.push_back({id.value(), &event});
+  if (std::holds_alternative<scene::Projectile>(event.action))
+    thrown_.push_back({id.value(), &event, built.world.time() + flight});
   return {};
 }
 

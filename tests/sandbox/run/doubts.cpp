@@ -189,6 +189,9 @@ TEST_CASE("a throw that can meet nothing is doubted before the run, and told aft
   CHECK(has(after(miss), "t.toml:11:1: what event \"shot\" threw hit nothing but the floor"));
   CHECK(doubts_of(hit).empty());
   CHECK(after(hit).empty());
+  const std::string late = shot("at_point = [0, 0.1, 0]\n").replace(0, 21, "[scene]\nseconds = 0.3");
+  CHECK(has(after(late), "what event \"shot\" threw is still on its way at the end"));
+  CHECK(has(after(late), "it is at its target after 0.4"));
   CHECK(doubts_of(shot("at_body = \"crate\"\n")).empty());
   // Who falls, or may be pushed away, is where nobody can tell.
   CHECK(

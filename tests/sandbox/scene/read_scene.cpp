@@ -127,6 +127,16 @@ TEST_CASE("the option --set puts a shape in place of a mesh and a mesh in place 
   CHECK(mesh.text.find("there is no mesh file") != std::string::npos);
 }
 
+TEST_CASE("numbers of the option --set may begin with their point") {
+  const Reading reading = read(kScene, {"ball.position=[0, .5,-.25]", "ball.radius=.125"});
+  INFO(reading.text);
+  REQUIRE(reading.scene.has_value());
+  const auto& ball = *std::find_if(reading.scene->bodies.begin(), reading.scene->bodies.end(),
+                                   [](const auto& body) { return body.name == "ball"; });
+  CHECK(ball.position == Vec3(0.0, 0.5, -0.25));
+  CHECK(std::get<SphereForm>(ball.form).radius == 0.125);
+}
+
 TEST_CASE("the option --set is checked with the scene's own words, and named as the place") {
   const auto refused = [](const char* change, const char* part) {
     const Reading reading = read(kScene, {change});

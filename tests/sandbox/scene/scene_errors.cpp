@@ -20,6 +20,8 @@ const Broken kCorpus[] = {
     {"[scene]\nseconds = 1\nseconds = 2\n", "t.toml:3:", "seconds", ""},
     {"[[body]]\nkind = \"sphere\"\nposition = [0, 1\n", "t.toml:", "", "this is not TOML"},
     {"[scene]\nseconds = 3 m\n", "t.toml:2:", "", "this is not TOML"},
+    {"[scene]\nseconds = .5\n", "t.toml:2:", "", "as in 0.5"},
+    {"[scene]\ngravity = [0, -.5, 0]\n", "t.toml:2:", "", "as in 0.5"},
     // Unknown keys and tables.
     {"[scene]\nsecond = 3\n", "t.toml:2:1", "unknown key \"second\"", "did you mean \"seconds\"?"},
     {"[scene]\ngravty = [0,0,0]\n", "t.toml:2:1", "unknown key \"gravty\"", "did you mean \"gravity\"?"},
