@@ -435,12 +435,23 @@ class Guard {
     return is_heaped;
   }
 
-  // So that it neither bounces nor is told as a hit.
+  // So that it neither bounces nor is told as a hit: by its way, and by its motion before and after, for who
+  // was struck late in the step has gone but a little.
   bool comes_slowly(std::size_t p) const {
     const WorkPair& pair = work_.pairs[p];
+    const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
     return std::all_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
+      const Opening o = make_opening(pair, work_, hit.contact, hit.knot, 0.0);
+      const auto closing = [&](const Vec3& velocity, const Vec3& spin) {
+        return -o.normal.dot(velocity + spin.cross(o.arm_a));
+      };
+      const Vec3 before_b = b.velocity_start + b.spin_start.cross(o.arm_b);
+      const Vec3 after_b = b.velocity + b.spin.cross(o.arm_b);
+      const double before = closing(a.velocity_start, a.spin_start) + o.normal.dot(before_b);
+      const double after = closing(a.velocity, a.spin) + o.normal.dot(after_b);
       const double come = hit.start_gap - gap_on_way(pair, work_, hit.contact, hit.knot);
-      return come <= pair.threshold * hit.knot * settings_.time_step;
+      const double mean = come / (hit.knot * settings_.time_step);
+      return std::max({mean, before, after}) <= pair.threshold;
     });
   }
 

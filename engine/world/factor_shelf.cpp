@@ -39,7 +39,8 @@ void FactorShelf::give_up_oldest(double sum, const Fragiles& fragiles,
   std::sort(kept.begin(), kept.end());
   for (const auto& [turn, id] : kept) {
     if (sum <= kKept * most_bytes_) break;
-    find_systems(*fragiles.at(id), ancestry.at(id))->give_up();
+    // An id may be another's since a step was put back.
+    if (auto* systems = find_systems(*fragiles.at(id), ancestry.at(id))) systems->give_up();
     sum -= used_.at(id).bytes;
     used_.erase(id);
   }

@@ -234,11 +234,11 @@ World::PartEnd World::judge_part(MovedPart& done, MovingState& snapshot, dynamic
   }
   const auto impacts =
       judge_impacts(done.given, {done.before, time() + step * part.number / part.count, time()});
+  for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id);
   if (divide(divide_before_holes(impacts, part, time(), step))) {
     s.borne.clear();  // their verdicts were not told
     return PartEnd::subdivided;
   }
-  for (const EvaluatedImpact& impact : impacts) s.factors.note_use(impact.id);
   const std::size_t known_breaks = s.report.breaks.size();
   if (s.contact_settings.has_ways && s.settings.after_break == AfterBreak::inherit) {
     done.unbroken = s.moving.bodies;

@@ -12,8 +12,9 @@ constexpr double kTowerBall = 0.05;                   // m
 
 /// Without gravity: a tower of sheets that nearly touch, over it a ball at rest, and over that one that comes
 /// down at `speed` (m/s) so that only the hit on the first sends that on its way to the sheets. Balls are
-/// elastic, and have the sheets' restitution with these. The first is so far (m) over the tower.
-test::Scene tower_scene(double speed, double restitution, double over_tower = 3e-3) {
+/// elastic, and have the sheets' restitution with these. The first is so far (m) over the tower, the second
+/// so far over it.
+test::Scene tower_scene(double speed, double restitution, double over_tower = 3e-3, double apart = 1e-3) {
   test::Scene scene;
   scene.settings.gravity.setZero();
   scene.settings.time_step = 1.0 / 60.0;
@@ -27,7 +28,7 @@ test::Scene tower_scene(double speed, double restitution, double over_tower = 3e
   // Not over a corner: there a ball meets several features at once.
   const Vec3 over(0.17, 0.0, 0.05);
   for (const double height :
-       {kTowerBall - kTowerGap + over_tower, 3.0 * kTowerBall - kTowerGap + over_tower + 1e-3})
+       {kTowerBall - kTowerGap + over_tower, 3.0 * kTowerBall - kTowerGap + over_tower + apart})
     scene.add(test::make_sphere(kTowerBall, over + Vec3(0.0, height, 0.0), 50.0)).restitution = 1.0;
   scene.bodies.back().velocity.y() = -speed;
   return scene;
@@ -62,9 +63,10 @@ TEST_CASE("what hits a large heap bounces off it as off any other body") {
 }
 
 TEST_CASE("what comes slowly upon a heap that may break is opened, and nobody solved anew for it") {
-  for (const double speed : {0.3, 0.6}) {
+  // Of the last the first is struck so late in the step that it goes but 3 mm.
+  for (const double speed : {0.3, 0.6, 20.0}) {
     // All fall alike, and what closes no faster than they fall in two steps does not bounce.
-    test::Scene scene = tower_scene(speed, 0.5, 1.5e-3);
+    test::Scene scene = tower_scene(speed, 0.5, 1.5e-3, speed < 1.0 ? 1e-3 : 0.99 * speed / 60.0);
     scene.settings.gravity = Vec3(0.0, -9.81, 0.0);
     for (int i = 0; i < kTowerSheets; ++i) scene.bodies[static_cast<std::size_t>(i)].may_break = true;
     const Vec3 before = scene.momentum();
