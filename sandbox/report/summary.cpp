@@ -172,7 +172,8 @@ std::string parted_line(const RunRecord& record) {
   const auto& names = record.world.contact.parted_names;
   if (names.empty()) return {};
   return fmt::format(
-      "{} lay exactly in each other: the second of each was set aside by a hundred thousandth of its size: "
+      "{} lay exactly on or in each other: the second of each was set aside by a hundred thousandth of its "
+      "size: "
       "{}{}\n",
       counted(static_cast<long>(names.size()), "pair", "pairs"), names.front(),
       names.size() > 1 ? ", ..." : "");

@@ -88,6 +88,27 @@ void doubt_sizes(const scene::SceneDescription& scene, const scene::BuiltScene& 
   }
 }
 
+/// Paths that go as fast as a shot, and strike as hard.
+void doubt_paths(const scene::SceneDescription& scene, scene::Problems& doubts) {
+  constexpr double kShot = 100.0;  // m/s
+  for (const scene::BodyEntry& body : scene.bodies) {
+    if (!body.path) continue;
+    const std::vector<body::Keyframe>& keys = body.path->keys;
+    const auto speed_to = [&](std::size_t k) {
+      return (keys[k].position - keys[k - 1].position).norm() / (keys[k].time - keys[k - 1].time);
+    };
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+      if (speed_to(k) <= kShot) continue;
+      scene::book(doubts, body.place,
+                  fmt::format("\"{}\" goes to its keyframe at {:g} s at {:.3g} m/s, which drives what is in "
+                              "its way as fast",
+                              body.name, keys[k].time, speed_to(k)),
+                  "give it more time; what is to hit that hard is thrown: do = \"projectile\"");
+      break;
+    }
+  }
+}
+
 /// Told once: of the first body that would be dented.
 void doubt_criterion(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                      scene::Problems& doubts) {
@@ -431,6 +452,7 @@ scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::B
   doubt_thickness(scene, built, doubts);
   doubt_triangles(scene, built, doubts);
   doubt_sizes(scene, built, doubts);
+  doubt_paths(scene, doubts);
   doubt_criterion(scene, built, doubts);
   doubt_room(scene, built, doubts);
   doubt_tables(scene, built, doubts);

@@ -144,6 +144,15 @@ TEST_CASE(
             .empty());
 }
 
+TEST_CASE("a path as fast as a shot is doubted, at the first keyframe that is reached so") {
+  const std::string ram = kCrate + std::string(
+                                       "motion = \"scripted\"\nkeyframes = [{at = 0, position = [3, 1, "
+                                       "0]}, {at = 1, position = [2, 1, 0]}, {at = ");
+  CHECK(has(doubts_of(ram + "1.01, position = [-2, 1, 0]}]\n"),
+            "t.toml:1:1: \"crate\" goes to its keyframe at 1.01 s at 400 m/s"));
+  CHECK(doubts_of(ram + "1.1, position = [-2, 1, 0]}]\n").empty());
+}
+
 TEST_CASE("a vase as large as a house is doubted, a pane is not") {
   const std::string vase = "[[body]]\nname = \"vase\"\nkind = \"shell\"\nthickness = 0.01\nshape = ";
   CHECK(has(doubts_of(vase + "\"wine_glass\"\nheight = 20\n"), "t.toml:1:1: \"vase\" is "));
