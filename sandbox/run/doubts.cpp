@@ -100,7 +100,7 @@ void doubt_paths(const scene::SceneDescription& scene, scene::Problems& doubts) 
     for (std::size_t k = 1; k < keys.size(); ++k) {
       if (speed_to(k) <= kShot) continue;
       scene::book(doubts, body.place,
-                  fmt::format("\"{}\" goes to its keyframe at {:g} s at {:.3g} m/s, which drives what is in "
+                  fmt::format("\"{}\" goes to its keyframe at {:g} s at {:.0f} m/s, which drives what is in "
                               "its way as fast",
                               body.name, keys[k].time, speed_to(k)),
                   "give it more time; what is to hit that hard is thrown: do = \"projectile\"");
