@@ -442,16 +442,12 @@ class Guard {
     const WorkBody &a = work_.bodies[at(pair.a)], &b = work_.bodies[at(pair.b)];
     return std::all_of(hits_[p].begin(), hits_[p].end(), [&](const PathHit& hit) {
       const Opening o = make_opening(pair, work_, hit.contact, hit.knot, 0.0);
-      const auto closing = [&](const Vec3& velocity, const Vec3& spin) {
-        return -o.normal.dot(velocity + spin.cross(o.arm_a));
-      };
-      const Vec3 before_b = b.velocity_start + b.spin_start.cross(o.arm_b);
-      const Vec3 after_b = b.velocity + b.spin.cross(o.arm_b);
-      const double before = closing(a.velocity_start, a.spin_start) + o.normal.dot(before_b);
-      const double after = closing(a.velocity, a.spin) + o.normal.dot(after_b);
       const double come = hit.start_gap - gap_on_way(pair, work_, hit.contact, hit.knot);
-      const double mean = come / (hit.knot * settings_.time_step);
-      return std::max({mean, before, after}) <= pair.threshold;
+      const Vec3 before =
+          a.velocity_start + a.spin_start.cross(o.arm_a) - b.velocity_start - b.spin_start.cross(o.arm_b);
+      const Vec3 after = a.velocity + a.spin.cross(o.arm_a) - b.velocity - b.spin.cross(o.arm_b);
+      return std::max({come / (hit.knot * settings_.time_step), -o.normal.dot(before),
+                       -o.normal.dot(after)}) <= pair.threshold;
     });
   }
 
