@@ -131,13 +131,11 @@ CrackGuide::CrackGuide(CrackGuide&&) noexcept = default;
 
 std::vector<std::vector<double>> CrackGuide::potentials(std::span<const GuideStart> starts) const {
   std::vector<std::vector<double>> values(starts.size());
+  if (!factor_->factor) {
+    for (std::vector<double>& unknown : values) unknown.assign(mesh_.positions.size(), 0.0);
+    return values;
+  }
   core::parallel_chunks(starts.size(), stress::SolveLanes::kMost, [&](Size begin, Size end) {
-    if (!factor_->factor) {
-      std::fill(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                values.begin() + static_cast<std::ptrdiff_t>(end),
-                std::vector<double>(mesh_.positions.size(), 0.0));
-      return;
-    }
     for (Size i = begin; i < end; ++i) values[i] = source_at(starts[i]);
     factor_->solve(std::span(values).subspan(begin, end - begin));
     for (Size i = begin; i < end; ++i) values[i] = level(starts[i], values[i]);

@@ -173,8 +173,7 @@ std::string parted_line(const RunRecord& record) {
   if (names.empty()) return {};
   return fmt::format(
       "{} lay exactly on or in each other: the second of each was set aside by a hundred thousandth of its "
-      "size: "
-      "{}{}\n",
+      "size: {}{}\n",
       counted(static_cast<long>(names.size()), "pair", "pairs"), names.front(),
       names.size() > 1 ? ", ..." : "");
 }

@@ -32,10 +32,6 @@ void move_to(TomlValue& value, const Place& place) {
   for (auto& [key, entry] : value.entries) move_to(entry, place);
 }
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// What is typed in a hurry: numbers that begin with their point get the digit that TOML asks for.
 std::string with_leading_digits(const std::string& text) {
   std::string full;
@@ -46,8 +42,7 @@ std::string with_leading_digits(const std::string& text) {
       quote = c;
     else if (c == quote)
       quote = 0;
-    const bool begins = i == 0 || std::string_view("[,=+- ").find(text[i - 1]) != std::string_view::npos;
-    if (quote == 0 && c == '.' && begins && i + 1 < text.size() && is_digit(text[i + 1])) full += '0';
+    if (quote == 0 && is_bare_point(text, i)) full += '0';
     full += c;
   }
   return full;

@@ -14,6 +14,13 @@
 
 namespace shatterbox::sandbox::scene {
 
+bool is_bare_point(std::string_view text, std::size_t place) {
+  const bool begins =
+      place == 0 || std::string_view("[,=+- \t").find(text[place - 1]) != std::string_view::npos;
+  return begins && place + 1 < text.size() && text[place] == '.' &&
+         std::isdigit(static_cast<unsigned char>(text[place + 1])) != 0;
+}
+
 namespace {
 
 Place place_of(const toml::source_region& region, const std::string& file) {
@@ -73,15 +80,10 @@ std::string_view line_of(std::string_view text, int number) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Whether what could not be read is a number that begins with its point: ".5", "-.5".
+/// Whether what could not be read is such a number.
 bool lacks_digit(std::string_view text, const Place& place) {
-  const std::string_view line = line_of(text, place.line);
-  const auto point = static_cast<std::size_t>(std::max(place.column, 1)) - 1;
-  const auto is_digit = [&](std::size_t i) {
-    return i < line.size() && std::isdigit(static_cast<unsigned char>(line[i])) != 0;
-  };
-  return point < line.size() && line[point] == '.' && is_digit(point + 1) &&
-         !(point > 0 && is_digit(point - 1));
+  const auto column = static_cast<std::size_t>(std::max(place.column, 1));
+  return is_bare_point(line_of(text, place.line), column - 1);
 }
 
 /// Whether what could not be read is a unit behind a number: "4mm", "0.5 cm".

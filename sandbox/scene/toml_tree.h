@@ -43,6 +43,9 @@ struct TomlEntry {
 /// "a table", "a number", ...: for sentences.
 std::string kind_in_words(const TomlValue& value);
 
+/// Whether a number begins with its point at this place, as ".5" and "-.5" do: TOML asks for a digit there.
+bool is_bare_point(std::string_view text, std::size_t place);
+
 /// Reads a TOML text. A text that is no TOML adds one problem (with line and column) and gives an empty
 /// table.
 TomlValue parse_toml(std::string_view text, const std::string& file, Problems& problems);

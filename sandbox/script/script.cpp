@@ -87,7 +87,7 @@ MovingTarget moving_target(const scene::BuiltScene& built, scene::BodyRef who, c
   return {centre, velocity, is_falling};
 }
 
-/// What an event brings in, and how long it flies to its target at least, s.
+/// What an event brings in, and how long it flies to its target, s.
 struct Coming {
   world::BodyDescription description;
   double flight = 0.0;
@@ -134,7 +134,8 @@ core::Result<Coming> describe(const scene::EventEntry& event, const scene::Built
         event.name, time_of(event, built), projectile.speed, distance));
   }
   description.angular_velocity = projectile.spin;
-  return Coming{std::move(description), distance / projectile.speed};
+  const auto flight = flight_time(way, projectile.speed, built.world.settings().gravity);
+  return Coming{std::move(description), flight.value_or(distance / projectile.speed)};
 }
 
 /// The first step border at or after `seconds`. A hair's breadth of tolerance: 0.1 s is step 24 of 240,

@@ -27,7 +27,7 @@ struct Sight {
 struct Throw {
   body::BodyId body = 0;
   const scene::EventEntry* event = nullptr;  // never null; of the scene
-  double arrival = 0.0;                      // s: no sooner is it at its target
+  double arrival = 0.0;                      // s: when it is to be at its target
 };
 
 class Script {
