@@ -56,10 +56,11 @@ class Decider {
       verdict.ratio = bound->stress / bound->strength;
       return std::move(decision_);
     }
-    if (!force_.settle(decision_, verdict.reason)) return std::move(decision_);
+    mesh_ = subject_.mesh;
+    const auto is_enough = may_estimate() ? [this] { return is_plainly_borne(); } : ImpactForce::IsEnough();
+    if (!force_.settle(is_enough, decision_, verdict.reason)) return std::move(decision_);
     verdict.duration = force_.duration();
     verdict.force = force_.hardest().first_force;
-    mesh_ = subject_.mesh;
     const bool is_over = is_overloaded();
     note_struck();
     if (!take_hole() && is_over && !leave_to_dent()) {
@@ -95,10 +96,30 @@ class Decider {
     for (const stress::LinearStress& fit : fits_) stresses_.push_back(fit.mean);
   }
 
+  /// What yields is dented by the hit as it is, and snapshots are taken at times of their own.
+  bool may_estimate() const {
+    return settings_.may_estimate && !(subject_.material.yield > 0.0) && !impact_.given_duration &&
+           !are_snapshots(impact_);
+  }
+
+  /// Whether it holds, however far an estimate falls short.
+  bool is_plainly_borne() {
+    const Verdict before = decision_.verdict;
+    solve_stresses();
+    find_candidates(true);
+    decision_.verdict.is_estimate = true;
+    if (decision_.verdict.most_ratio() < 1.0) return true;
+    decision_.verdict = before;
+    decision_.generations = 0;
+    return false;
+  }
+
   /// The first solve's verdict: held, unless a flaw bears more than it can.
   bool is_overloaded() {
-    solve_stresses();
-    candidates_ = find_candidates(true);
+    if (!decision_.verdict.is_estimate) {
+      solve_stresses();
+      candidates_ = find_candidates(true);
+    }
     note_element_stress(stresses_);
     if (decision_.verdict.ratio > 1.0) return true;
     decision_.verdict.outcome = Outcome::held;

@@ -48,6 +48,9 @@ struct Impact {
 
 enum class Outcome : std::uint8_t { held, broke, not_evaluated };
 
+/// An estimate of the ratio falls short of it by so many times at most, but for one of a thousand.
+inline constexpr double kMostOverEstimate = 5.0;
+
 struct Verdict {
   Outcome outcome = Outcome::not_evaluated;
   std::string reason;         // why not evaluated, or how it was settled ("bound")
@@ -57,9 +60,13 @@ struct Verdict {
   double stress = 0.0;        // Pa, greatest ratio's principal stress, at the pulse's peak
   double strength = 0.0;      // Pa, there
   double ratio = 0.0;         // stress / strength; below 1 the body holds
+  bool is_estimate = false;   // duration, force, stress and ratio are, of one that plainly holds
   Vec3 place = Vec3::Zero();  // m, material space
   double von_mises = 0.0;     // Pa, greatest, under the collisions alone; 0: not asked for
   double yield = 0.0;         // Pa; 0: the material does not yield, or it was not asked
+
+  /// What the ratio may be.
+  double most_ratio() const { return is_estimate ? kMostOverEstimate * ratio : ratio; }
 };
 
 inline bool is_collision(const ImpactLoad& load) {

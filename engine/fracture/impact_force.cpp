@@ -27,6 +27,7 @@ constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in el
 constexpr double kPatchShare = 0.075;
 constexpr int kMostScreenings = 6;         // steps of the search for the duration
 constexpr double kLargestResidual = 1e-4;  // of a solve that is an answer
+constexpr double kPieceResidual = 3e-5;    // that goes on no further, where estimates do
 constexpr double kSpinThatCounts = 1e-3;   // least stress of a spin worth a solve, in strengths
 constexpr double kSpinSafety = 4.0;        // by which a bound exceeds the estimate of the spin's stress
 // Compliance of a thin plate at a corner over that far from its rim, about: the search for the duration
@@ -132,7 +133,7 @@ bool ImpactForce::use(const System& system, std::string& problem) {
 }
 
 bool ImpactForce::solve(const VecX& load, stress::ShellSolution& solution, std::string& problem) {
-  solution = system_->solve(load, kVerdictResidual);
+  solution = system_->solve(load, settings_.may_estimate ? kPieceResidual : kVerdictResidual);
   residual_ = std::max(residual_, solution.residual);
   if (solution.residual < kLargestResidual) return true;
   problem = "the solve did not reach its accuracy";
@@ -336,17 +337,33 @@ bool ImpactForce::is_plainly_short(Size lead, Decision& decision, std::string& p
   return duration_ < 0.5 * system_->trial_period(lead_);
 }
 
+/// Whether what the system at hand answers is enough: it gives way more than the one that is sought, for
+/// longer, and presses less hard.
+bool ImpactForce::ends_search(Size lead, Decision& decision) {
+  if (!is_enough_) return false;
+  answer_others(lead, decision);
+  for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
+  std::string problem;
+  is_estimate_ = solve_together(*subject_.mesh, decision, problem) && is_enough_();
+  is_enough_ = nullptr;
+  if (is_estimate_)
+    duration_ = std::min(duration_, guess_duration(presses_[lead]));
+  else
+    answers_ = {std::move(answers_[lead])};
+  return is_estimate_;
+}
+
 /// The lead's duration, in the system that it is long enough, or too short, for.
 bool ImpactForce::settle_lead(Size lead, Decision& decision, std::string& problem) {
   has_lead_ = true;
-  is_screened_ = is_plainly_short(lead, decision, problem);
+  is_screened_ = !is_enough_ && is_plainly_short(lead, decision, problem);
   if (is_screened_) return true;
   problem.clear();
   if (!use_unscreened(decision, problem) || !answer_lead(lead, decision, problem)) return false;
   duration_ = duration_of(presses_[lead], answers_.front());
   exponent_ = stress::quantise_screening(1.0 / duration_);
   is_screened_ = is_short();
-  return !is_screened_ || find_screening(lead, decision, problem);
+  return !is_screened_ || ends_search(lead, decision) || find_screening(lead, decision, problem);
 }
 
 bool ImpactForce::use_unscreened(Decision& decision, std::string& problem) {
@@ -372,7 +389,7 @@ geometry::ShellMesh ImpactForce::pressed_parts(const geometry::ShellMesh& mesh) 
   return stress::loaded_parts(mesh, forces);
 }
 
-bool ImpactForce::settle(Decision& decision, std::string& problem) {
+bool ImpactForce::settle(const IsEnough& is_enough, Decision& decision, std::string& problem) {
   const stress::ShellFigures& figures = subject_.systems->figures();
   core::parallel_for(2, 1, [&](Size part) {
     if (part == 0)
@@ -382,10 +399,12 @@ bool ImpactForce::settle(Decision& decision, std::string& problem) {
   });
   const int made_before = subject_.systems->count();
   duration_ = impact_.contact_average;
+  is_enough_ = is_enough;
   const std::optional<Size> lead = find_lead();
   if (!(lead ? settle_lead(*lead, decision, problem) : use_unscreened(decision, problem))) return false;
-  answer_others(lead.value_or(0), decision);
+  if (!is_estimate_) answer_others(lead.value_or(0), decision);
   decision.factorisations += subject_.systems->count() - made_before;
+  if (is_estimate_) return true;
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
   return solve_together(*subject_.mesh, decision, problem);
 }

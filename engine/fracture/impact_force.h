@@ -2,6 +2,7 @@
 // peak force of each load, and what is left of it once the body cracks.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,9 +37,14 @@ class ImpactForce {
   /// none if a solve has to tell.
   std::optional<LoadBound::Worst> harmless_bound() const;
 
+  /// Whether displacement() tells enough. It is asked once, before the search for the duration goes on, with
+  /// all loads as the first system answered them.
+  using IsEnough = std::function<bool()>;
+
   /// Duration of the hardest collision, by a fixed point over screenings; then the peak forces. Factors and
-  /// times are booked in `decision`. False, and `problem` says why, if there is no answer.
-  bool settle(Decision& decision, std::string& problem);
+  /// times are booked in `decision`. False, and `problem` says why, if there is no answer. `is_enough`:
+  /// empty, nothing but the end of the search is.
+  bool settle(const IsEnough& is_enough, Decision& decision, std::string& problem);
 
   /// Before the body cracks: what the verdict did not have to know of the loads. Books the elastic energy.
   void complete(Decision& decision);
@@ -83,6 +89,7 @@ class ImpactForce {
   void find_groups(const geometry::ShellMesh& mesh, const std::vector<geometry::CellContact>& contacts);
   bool use_unscreened(Decision& decision, std::string& problem);
   bool settle_lead(std::size_t lead, Decision& decision, std::string& problem);
+  bool ends_search(std::size_t lead, Decision& decision);
   bool is_plainly_short(std::size_t lead, Decision& decision, std::string& problem);
   bool climb(std::size_t lead, Decision& decision, std::string& problem);
   bool find_screening(std::size_t lead, Decision& decision, std::string& problem);
@@ -103,7 +110,9 @@ class ImpactForce {
   std::shared_ptr<const stress::ShellSystem> system_;
   std::size_t hardest_ = 0;
   double duration_ = 0.0;  // s, of the lead; contact_average without one
+  IsEnough is_enough_;     // empty: not to be asked, or no more
   bool has_lead_ = false;
+  bool is_estimate_ = false;
   bool is_screened_ = false;
   bool is_cracked_ = false;
   int exponent_ = 0;  // of the screening of the cracked body

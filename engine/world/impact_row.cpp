@@ -45,8 +45,9 @@ ImpactRow describe_impact(const EvaluatedImpact& impact, const body::Body& body,
                                       : format_ratio("broke: ", verdict.ratio);
       break;
     case fracture::Outcome::held:
-      row.verdict =
-          verdict.reason.empty() ? format_ratio("held: ", verdict.ratio) : "held: " + verdict.reason;
+      row.verdict = verdict.reason.empty()
+                        ? format_ratio(verdict.is_estimate ? "held: about " : "held: ", verdict.ratio)
+                        : "held: " + verdict.reason;
       break;
     case fracture::Outcome::not_evaluated:
       row.verdict = "not evaluated: " + verdict.reason;

@@ -294,7 +294,8 @@ double load_growth(const std::vector<Load>& loads, const BorneImpact& borne, dou
 
 /// How many times its loads a body bears that has held.
 double most_growth_of(const fracture::Verdict& verdict) {
-  const double growth = verdict.ratio < 1.0 ? kBorneRatio / std::max(verdict.ratio, 1e-300) : kBorneAgain;
+  const double ratio = verdict.most_ratio();
+  const double growth = ratio < 1.0 ? kBorneRatio / std::max(ratio, 1e-300) : kBorneAgain;
   if (!(verdict.von_mises > 0.0)) return growth;
   return std::min(growth, kBorneRatio * verdict.yield / verdict.von_mises);
 }
@@ -389,6 +390,8 @@ fracture::FractureSettings how_to_decide(const WorldSettings& settings, const Ca
     how.most_generations = kSolidGenerations;
   if (candidate.has_used_all) how.most_generations = 1;  // for the verdict
   how.has_energy_guard = settings.has_energy_guard;
+  // Nobody asks how well each of a thousand shards held; of what a scene names, that is told as it is.
+  how.may_estimate = candidate.is_piece;
   how.solve_residual = settings.solve_residual;
   how.least_width = kLeastWidth * candidate.fragile->size;
   // The crushed core is the mark of the hit on the whole body; a shard is hardly larger than a core.
@@ -426,7 +429,7 @@ EvaluatedImpact judge_impact(const WorldSettings& settings, const Candidate& can
 void remember(const EvaluatedImpact& impact, Candidate& candidate, ImpactMemory& memory,
               BorneImpacts& borne) {
   const fracture::DecisionFigures& decision = impact.figures();
-  const double ratio = decision.verdict.ratio;
+  const double ratio = decision.verdict.most_ratio();
   const double duration = impact.is_struck ? decision.verdict.duration : 0.0;
   const double tested_growth =
       ratio < 1.0 ? std::min(kContactGrowth, 1.0 / std::max(ratio, 1e-300)) : kBorneAgain;

@@ -269,6 +269,57 @@ TEST_CASE("a plainly short impact needs no unscreened factor, and having one cha
   CHECK(subject.systems->unscreened().value()->first_period() > 2.0 * decision.verdict.duration);
 }
 
+TEST_CASE("a first answer far below what a piece bears is its verdict, and of others nothing is estimated") {
+  const auto subject = make_bauble(1, 0.0);
+  const auto broken = fracture::decide_shell(subject, drop_on_floor(subject, 4.4));
+  const auto split = fracture::split_shell(*broken.mesh, {1e-4});
+  fracture::FractureSettings estimating;
+  estimating.may_estimate = true;
+  const auto judge = [](const fracture::ShellSubject& piece, const fracture::ShellImpact& hit,
+                        const fracture::FractureSettings& settings) {
+    fracture::ShellSubject fresh = piece;  // with no factors yet
+    fresh.systems = nullptr;
+    return fracture::decide_shell(fresh, hit, settings);
+  };
+  int estimated = 0, sought = 0, broke = 0, saved = 0;
+  for (std::size_t p = 0; p < split.pieces.size(); p += 2) {
+    fracture::ShellSubject piece = subject;
+    piece.mesh = std::make_shared<const geometry::ShellMesh>(split.pieces[p]);
+    for (const double speed : {0.1, 0.6, 3.0}) {
+      auto hit = drop_on_floor(piece, speed);
+      const auto& first = piece.mesh->cells.front();
+      hit.loads.front().point_material =
+          geometry::position_in_element(*piece.mesh->elements, first.element, Vec2(0.3, 0.3));
+      const auto exact = judge(piece, hit, {}), decision = judge(piece, hit, estimating);
+      CAPTURE(p, speed, exact.verdict.ratio, decision.verdict.ratio);
+      CHECK(decision.verdict.outcome == exact.verdict.outcome);
+      broke += exact.verdict.outcome == fracture::Outcome::broke ? 1 : 0;
+      if (decision.needed_no_solve()) continue;
+      if (decision.verdict.is_estimate) {
+        ++estimated;
+        saved += exact.factorisations - decision.factorisations;
+        CHECK(decision.verdict.most_ratio() < 1.0);
+        CHECK(decision.verdict.most_ratio() > exact.verdict.ratio);
+        CHECK(decision.verdict.duration > 0.9 * exact.verdict.duration);
+        CHECK(decision.element_stress.size() == exact.element_stress.size());
+      } else {
+        ++sought;
+        CHECK(std::abs(decision.verdict.ratio / exact.verdict.ratio - 1.0) < 1e-3);
+        CHECK(decision.verdict.most_ratio() == decision.verdict.ratio);
+      }
+      piece.material.yield = 0.5 * piece.material.strength;
+      CHECK(!judge(piece, hit, estimating).verdict.is_estimate);
+      piece.material.yield = 0.0;
+      hit.given_duration = 1e-4;
+      CHECK(!judge(piece, hit, estimating).verdict.is_estimate);
+    }
+  }
+  CHECK(estimated > 5);
+  CHECK(sought > 5);
+  CHECK(broke > 0);
+  CHECK(saved > estimated);
+}
+
 TEST_CASE("several loads at once break the pane about each of them") {
   const auto subject = test::make_window(3);
   auto impact = test::steel_ball(8.0, Vec3(-0.25, 0.2, 0.0));
