@@ -29,6 +29,24 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("--seed", options.seed, "seed of flaws, grains and jitter");
 }
 
+/// A sentence if it is none of these names.
+CLI::Validator one_of(std::vector<std::string> names) {
+  return CLI::Validator(
+      [names](std::string& text) {
+        if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();
+        return "there is no \"" + text + "\"\n    " + scene::hint_for_name(text, names, "it takes");
+      },
+      "");
+}
+
+/// A sentence if there cannot be so many threads, or runs at a time.
+std::string count_of_threads(const std::string& text) {
+  const bool is_whole =
+      !text.empty() && text.size() <= 3 && text.find_first_not_of("0123456789") == std::string::npos;
+  if (is_whole && std::stoi(text) <= 256) return {};
+  return "\"" + text + "\" is no count: from 0 to 256; 0 is one a core";
+}
+
 /// A sentence if it is no number of frames a second.
 std::string whole_rate(const std::string& text) {
   const bool is_whole =
@@ -49,13 +67,13 @@ void add_picture_options(CLI::App& command, Options& options) {
       ->check(whole_rate);
   command.add_option("--quality", options.quality, "preview or full")
       ->capture_default_str()
-      ->check(CLI::IsMember({"preview", "full"}));
+      ->check(one_of({"preview", "full"}));
 }
 
 void add_gl_option(CLI::App& command, std::string& name) {
   command.add_option("--gl", name, "who draws: osmesa (the usual one) or egl; the pictures are the same")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"osmesa", "egl"}));
+      ->check(one_of({"osmesa", "egl"}));
 }
 
 void add_run_options(CLI::App& command, Options& options) {
@@ -81,7 +99,7 @@ void add_run_options(CLI::App& command, Options& options) {
       ->type_name("NAME.key=a,b");
   command.add_option("--threads", options.threads, "threads of the simulation; 0: one a core")
       ->capture_default_str()
-      ->check(CLI::Range(0, 256));
+      ->check(count_of_threads);
   command.add_flag("--audit", options.has_audit,
                    "check after every step that nothing crosses; status 1 if it does");
   command.add_flag("--trace", options.has_trace,
@@ -107,7 +125,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("camera.key=value")
       ->allow_extra_args(false);
   command.add_option("--quality", options.quality, "preview or full; as recorded without it")
-      ->check(CLI::IsMember({"preview", "full"}));
+      ->check(one_of({"preview", "full"}));
   add_gl_option(command, options.gl);
   command.footer("For example: render film.rec --frames 100:200 -o part.mp4");
 }
@@ -118,7 +136,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       .add_option("--threads", options.threads, "threads of the simulation; give several for one run each")
       ->capture_default_str()
       ->delimiter(',')
-      ->check(CLI::Range(0, 256));
+      ->check(count_of_threads);
   command.add_option("--report", options.report, "the table in JSON")->type_name("FILE");
   command.add_flag("--audit", options.has_audit, "count crossings and passages, in time of their own");
   command.add_flag("--brief", options.is_brief, "a tenth of a second each: does everything run?");
@@ -131,7 +149,7 @@ void add_batch_options(CLI::App& command, BatchOptions& options) {
       ->type_name("DIR");
   command.add_option("--jobs", options.jobs, "runs at a time; 0: one a core")
       ->capture_default_str()
-      ->check(CLI::Range(0, 256));
+      ->check(count_of_threads);
   command.add_option("--sweep", options.sweeps, "values to run with in turn; several: all combinations")
       ->type_name("NAME.key=a,b,..")
       ->allow_extra_args(false);
@@ -236,6 +254,42 @@ int refuse_rest(const CLI::App& app, const std::vector<std::string>& rest) {
   return kBadInput;
 }
 
+/// The option of which CLI11 speaks, if it does.
+const CLI::Option* find_told(const CLI::App& verb, const std::string& told) {
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name();
+    const std::size_t place = told.find(name);
+    if (place == std::string::npos || name[0] != '-') continue;
+    const std::size_t end = place + name.size();
+    if (end == told.size() || told.find_first_of(": =", end) == end) return option;
+  }
+  return nullptr;
+}
+
+/// What cannot be read, in words, and what the option is for.
+int refuse_value(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  std::string told = error.what();
+  const CLI::Option* option = find_told(*verb, told);
+  if (option != nullptr && dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+    const std::string type = option->get_type_name();
+    const std::size_t value = told.find(" = ");
+    if (value != std::string::npos)
+      told = option->get_name() + ": \"" + told.substr(value + 3) + "\" is no " +
+             (type == "INT" || type == "UINT" ? "whole " : "") + "number";
+  } else if (option != nullptr && dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    told = option->get_name() + " takes a value";
+  }
+  std::fprintf(stderr, "%s\n", told.c_str());
+  if (option != nullptr)
+    std::fprintf(stderr, "    %s: %s\n", option->get_name().c_str(), option->get_description().c_str());
+  else
+    std::fprintf(stderr, "    %s --help tells what it takes\n",
+                 verb == &app ? "shatterbox" : ("shatterbox " + words_of(*verb)).c_str());
+  return kBadInput;
+}
+
 /// The verbs of a verb.
 bool is_known_second(const std::string& verb, const std::string& second) {
   const std::vector<std::string> seconds{"make", "check"};
@@ -301,7 +355,8 @@ int run_command_line(int argc, char** argv) {
   } catch (const CLI::ExtrasError&) {
     return refuse_rest(app, app.remaining(true));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    if (error.get_exit_code() == 0) return app.exit(error);  // it is help that is asked for
+    return refuse_value(app, error);
   }
   if (app.got_subcommand("run")) return run_scene(options);
   if (app.got_subcommand("plan")) return plan_scene(options, is_lean);

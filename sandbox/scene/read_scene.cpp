@@ -169,9 +169,20 @@ void append_script(TomlValue& tree, const std::string& script_file, Problems& pr
   }
 }
 
+/// Events and nothing else: what --script takes.
+bool is_script(const TomlValue& tree) {
+  return !tree.entries.empty() &&
+         std::all_of(tree.entries.begin(), tree.entries.end(),
+                     [](const auto& entry) { return entry.key == "event" && entry.value.is_array(); });
+}
+
 SceneDescription read_tree(const TomlValue& tree, const std::string& file, Problems& problems) {
   SceneDescription scene;
   scene.file = file;
+  if (is_script(tree))
+    book(problems, tree.entries.front().value.key_place,
+         "events alone are a script, which is played on a scene",
+         fmt::format("shatterbox run SCENE --script {}, or add a [[body]]", file));
   TableReader root(tree, "the scene", problems);
   read_settings(table_of(root, "scene"), scene, problems);
   check_names(tree, problems);

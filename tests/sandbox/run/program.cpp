@@ -41,16 +41,21 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("run good.toml --stills 0.1", "--frames");
   refused("run good.toml --stills 0.1 --frames f -o v.mp4", "--stills");
   refused("bench bots", "did you mean \"bowls\"?");
-  refused("bench boats_10 --threads 1000", "--threads");
+  refused("bench boats_10 --threads 1000", "--threads: \"1000\" is no count: from 0 to 256");
   refused("run", "ornament");
   refused("run ornamnt", "did you mean \"ornament\"?");
   refused("run bad.toml", "bad.toml:2:1");
   refused("check bad.toml", "did you mean \"seconds\"?");
-  refused("check", "SCENE");
+  refused("check", "shatterbox check --help tells what it takes");
   refused("run good.toml --sise 3x4", "--sise");
   refused("run good.toml --size 640", "WIDTHxHEIGHT");
   refused("run good.toml --size 641x360", "even numbers");
-  refused("run good.toml --quality best", "--quality");
+  refused("run good.toml --quality ful", "--quality: there is no \"ful\"\n    did you mean \"full\"?");
+  refused("run good.toml --seconds abc",
+          "--seconds: \"abc\" is no number\n    --seconds: how long to simulate, s");
+  refused("run good.toml --seed 1.5", "--seed: \"1.5\" is no whole number");
+  refused("run good.toml --frames f --stills .1,b", "--stills: \".1,b\" is no number");
+  refused("run good.toml --report", "--report takes a value");
   refused("run good.toml --fps 0", "--fps");
   refused("run good.toml --fps 23.976", "24 for 23.976");
   refused("run good.toml --seconds -1", "from 0.001");

@@ -377,6 +377,8 @@ const Broken kCorpus[] = {
      "\"a\"\nkind = \"box\"\n",
      "t.toml:6:1", "cannot be where it looks at", "[0, 0.3, 1]"},
     {"", "t.toml", "the scene has no body", "[[body]]"},
+    {"\n[[event]]\nat = 1\ndo = \"push\"\nbody = \"a\"\n", "t.toml:2:3", "events alone are a script",
+     "shatterbox run SCENE --script t.toml"},
 };
 
 }  // namespace
