@@ -179,10 +179,6 @@ bool is_script(const TomlValue& tree) {
 SceneDescription read_tree(const TomlValue& tree, const std::string& file, Problems& problems) {
   SceneDescription scene;
   scene.file = file;
-  if (is_script(tree))
-    book(problems, tree.entries.front().value.key_place,
-         "events alone are a script, which is played on a scene",
-         fmt::format("shatterbox run SCENE --script {}, or add a [[body]]", file));
   TableReader root(tree, "the scene", problems);
   read_settings(table_of(root, "scene"), scene, problems);
   check_names(tree, problems);
@@ -207,9 +203,12 @@ SceneDescription read_tree(const TomlValue& tree, const std::string& file, Probl
   read_light(table_of(root, "light"), scene.light, problems);
   read_render(table_of(root, "render"), scene.render, problems);
   root.finish();
-  if (scene.bodies.empty() && problems.empty()) {
+  if (is_script(tree) && (scene.bodies.empty() || !problems.empty()))
+    book(problems, tree.entries.front().value.key_place,
+         "events alone are a script, which is played on a scene",
+         fmt::format("shatterbox run SCENE --script {}, or add a [[body]]", file));
+  else if (scene.bodies.empty() && problems.empty())
     book(problems, Place{file, 0, 0}, "the scene has no body", "add a [[body]] with kind = \"shell\"");
-  }
   std::stable_sort(scene.events.begin(), scene.events.end(), [](const EventEntry& a, const EventEntry& b) {
     return a.when == When::time && (b.when != When::time || a.at < b.at);
   });
