@@ -27,7 +27,7 @@ constexpr double kPatchElements = 1.5;  // least radius of a load's patch, in el
 constexpr double kPatchShare = 0.075;
 constexpr int kMostScreenings = 6;         // steps of the search for the duration
 constexpr double kLargestResidual = 1e-4;  // of a solve that is an answer
-constexpr double kPieceResidual = 3e-5;    // that goes on no further, where estimates do
+constexpr double kPieceResidual = 3e-5;    // of what may be estimated
 constexpr double kSpinThatCounts = 1e-3;   // least stress of a spin worth a solve, in strengths
 constexpr double kSpinSafety = 4.0;        // by which a bound exceeds the estimate of the spin's stress
 // Compliance of a thin plate at a corner over that far from its rim, about: the search for the duration
@@ -267,11 +267,11 @@ bool ImpactForce::is_short() const {
   return duration_ < 0.5 * system_->trial_period(lead_) || system_->is_first_period_above(2.0 * duration_);
 }
 
-/// A duration that is most likely at or above the true one: from an infinite plate, whose compliance under
-/// screening s is 1 / (8 s sqrt(D rho t)), half of it elastic, times the effect of a rim.
-double ImpactForce::guess_duration(const Press& lead) const {
+/// From an infinite plate, whose compliance under screening s is 1 / (8 s sqrt(D rho t)), half of it elastic,
+/// times the effect of a rim.
+double ImpactForce::guess_duration(const Press& lead, double rim) const {
   const stress::ShellProperties p = properties_of(subject_);
-  const double a = core::kPi * core::kPi * lead.load->effective_mass * kRimCompliance / 16.0 /
+  const double a = core::kPi * core::kPi * lead.load->effective_mass * rim / 16.0 /
                    core::sqrt(plate_stiffness(p) * p.density * p.thickness);
   const double b = core::kPi * core::kPi * lead.load->effective_mass * lead.contact.hertz_compliance;
   return 0.5 * (a + core::sqrt(a * a + 4.0 * b));  // T^2 = a T + b
@@ -305,7 +305,8 @@ bool ImpactForce::find_screening(Size lead, Decision& decision, std::string& pro
   const int lowest = stress::quantise_screening(1.0 / duration_);
   exponent_ = impact_.given_duration
                   ? lowest
-                  : std::max(stress::quantise_screening(1.0 / guess_duration(presses_[lead])), lowest);
+                  : std::max(stress::quantise_screening(1.0 / guess_duration(presses_[lead], kRimCompliance)),
+                             lowest);
   if (exponent_ > lowest) {
     if (!screen(exponent_, lead, decision, problem)) return false;
     const int next = stress::quantise_screening(1.0 / duration_);
@@ -320,7 +321,7 @@ bool ImpactForce::find_screening(Size lead, Decision& decision, std::string& pro
 /// unscreened solve has to tell.
 bool ImpactForce::is_plainly_short(Size lead, Decision& decision, std::string& problem) {
   if (impact_.given_duration) return false;
-  const double guess = guess_duration(presses_[lead]);
+  const double guess = guess_duration(presses_[lead], kRimCompliance);
   const stress::ShellProperties p = properties_of(subject_);
   const geometry::MassProperties& mass = subject_.systems->figures().mass;
   // Of a slender free plate of the same moment of inertia, m l^2 / 12.
@@ -337,33 +338,33 @@ bool ImpactForce::is_plainly_short(Size lead, Decision& decision, std::string& p
   return duration_ < 0.5 * system_->trial_period(lead_);
 }
 
-/// Whether what the system at hand answers is enough: it gives way more than the one that is sought, for
-/// longer, and presses less hard.
+/// Whether what the unscreened system answers is enough: most often it is pressed for longer than in the one
+/// that is sought, and not as hard, but bends more. The duration is that of a hit far from all rims: nobody
+/// knows it as long as no screening is sought, and hits must not be counted together for longer than they
+/// are.
 bool ImpactForce::ends_search(Size lead, Decision& decision) {
-  if (!is_enough_) return false;
+  std::string problem;
+  if (!is_enough_ || !use_unscreened(decision, problem) || !answer_lead(lead, decision, problem))
+    return false;
   answer_others(lead, decision);
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
-  std::string problem;
   is_estimate_ = solve_together(*subject_.mesh, decision, problem) && is_enough_();
-  is_enough_ = nullptr;
-  if (is_estimate_)
-    duration_ = std::min(duration_, guess_duration(presses_[lead]));
-  else
-    answers_ = {std::move(answers_[lead])};
+  duration_ = std::min(duration_of(presses_[lead], answers_[lead]), guess_duration(presses_[lead], 1.0));
   return is_estimate_;
 }
 
 /// The lead's duration, in the system that it is long enough, or too short, for.
 bool ImpactForce::settle_lead(Size lead, Decision& decision, std::string& problem) {
   has_lead_ = true;
-  is_screened_ = !is_enough_ && is_plainly_short(lead, decision, problem);
+  if (ends_search(lead, decision)) return true;
+  is_screened_ = is_plainly_short(lead, decision, problem);
   if (is_screened_) return true;
   problem.clear();
   if (!use_unscreened(decision, problem) || !answer_lead(lead, decision, problem)) return false;
   duration_ = duration_of(presses_[lead], answers_.front());
   exponent_ = stress::quantise_screening(1.0 / duration_);
   is_screened_ = is_short();
-  return !is_screened_ || ends_search(lead, decision) || find_screening(lead, decision, problem);
+  return !is_screened_ || find_screening(lead, decision, problem);
 }
 
 bool ImpactForce::use_unscreened(Decision& decision, std::string& problem) {

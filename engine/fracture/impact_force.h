@@ -37,8 +37,8 @@ class ImpactForce {
   /// none if a solve has to tell.
   std::optional<LoadBound::Worst> harmless_bound() const;
 
-  /// Whether displacement() tells enough. It is asked once, before the search for the duration goes on, with
-  /// all loads as the first system answered them.
+  /// Whether displacement() tells enough. It is asked once, before the duration is sought, with all loads as
+  /// the unscreened system answers them.
   using IsEnough = std::function<bool()>;
 
   /// Duration of the hardest collision, by a fixed point over screenings; then the peak forces. Factors and
@@ -85,7 +85,7 @@ class ImpactForce {
   double felt_compliance(const ContactAnswer& answer) const;
   double duration_of(const Press& press, const ContactAnswer& answer) const;
   bool is_short() const;
-  double guess_duration(const Press& lead) const;
+  double guess_duration(const Press& lead, double rim) const;
   void find_groups(const geometry::ShellMesh& mesh, const std::vector<geometry::CellContact>& contacts);
   bool use_unscreened(Decision& decision, std::string& problem);
   bool settle_lead(std::size_t lead, Decision& decision, std::string& problem);
@@ -110,7 +110,7 @@ class ImpactForce {
   std::shared_ptr<const stress::ShellSystem> system_;
   std::size_t hardest_ = 0;
   double duration_ = 0.0;  // s, of the lead; contact_average without one
-  IsEnough is_enough_;     // empty: not to be asked, or no more
+  IsEnough is_enough_;     // empty: not to be asked
   bool has_lead_ = false;
   bool is_estimate_ = false;
   bool is_screened_ = false;

@@ -390,7 +390,7 @@ fracture::FractureSettings how_to_decide(const WorldSettings& settings, const Ca
     how.most_generations = kSolidGenerations;
   if (candidate.has_used_all) how.most_generations = 1;  // for the verdict
   how.has_energy_guard = settings.has_energy_guard;
-  // Nobody asks how well each of a thousand shards held; of what a scene names, that is told as it is.
+  // Nobody asks how well each of a thousand shards held; of what has not cracked yet, that is told as it is.
   how.may_estimate = candidate.is_piece;
   how.solve_residual = settings.solve_residual;
   how.least_width = kLeastWidth * candidate.fragile->size;

@@ -300,11 +300,12 @@ TEST_CASE("a first answer far below what a piece bears is its verdict, and of ot
         saved += exact.factorisations - decision.factorisations;
         CHECK(decision.verdict.most_ratio() < 1.0);
         CHECK(decision.verdict.most_ratio() > exact.verdict.ratio);
-        CHECK(decision.verdict.duration > 0.9 * exact.verdict.duration);
+        CHECK(decision.verdict.duration > 0.1 * exact.verdict.duration);
+        CHECK(decision.verdict.duration < 5.0 * exact.verdict.duration);
         CHECK(decision.element_stress.size() == exact.element_stress.size());
       } else {
         ++sought;
-        CHECK(std::abs(decision.verdict.ratio / exact.verdict.ratio - 1.0) < 1e-3);
+        CHECK(std::abs(decision.verdict.ratio / exact.verdict.ratio - 1.0) < 1e-4);
         CHECK(decision.verdict.most_ratio() == decision.verdict.ratio);
       }
       piece.material.yield = 0.5 * piece.material.strength;
@@ -317,7 +318,7 @@ TEST_CASE("a first answer far below what a piece bears is its verdict, and of ot
   CHECK(estimated > 5);
   CHECK(sought > 5);
   CHECK(broke > 0);
-  CHECK(saved > estimated);
+  CHECK(saved > estimated / 2);
 }
 
 TEST_CASE("several loads at once break the pane about each of them") {

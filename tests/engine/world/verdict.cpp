@@ -130,6 +130,31 @@ TEST_CASE("an event lasts for two durations after its last collision, whatever t
   }
 }
 
+TEST_CASE("hits of a piece are not counted together for longer where they are only estimated") {
+  const Vec3 side(0.04, 0.0, 0.0);
+  const double speed = 0.1;
+  Hit whole(8.0);
+  std::map<body::BodyId, world::ImpactMemory> memories;
+  const body::ImpulseLog collision = {whole.impulse(body::ImpulseKind::collision, speed, side)};
+  const auto exact = whole.judge(collision, 0.0, memories);
+  REQUIRE(exact.size() == 1);
+  const double duration = exact[0].figures().verdict.duration;
+  Hit piece(8.0);
+  std::map<body::BodyId, world::ImpactMemory> of_piece;
+  of_piece[kStruck].charged_event = 77;  // born of it
+  for (int hit = 0; hit < 4; ++hit) {
+    const auto estimated = piece.judge(collision, 6.0 * hit * duration, of_piece);
+    piece.borne = {};
+    REQUIRE(estimated.size() == 1);
+    const fracture::Verdict& verdict = estimated[0].figures().verdict;
+    CAPTURE(hit, verdict.ratio, exact[0].figures().verdict.ratio, verdict.duration, duration);
+    CHECK(verdict.is_estimate);
+    CHECK(verdict.most_ratio() > exact[0].figures().verdict.ratio);
+    CHECK(of_piece[kStruck].event.size() == 1);
+    CHECK(verdict.impulse == Approx(exact[0].figures().verdict.impulse));
+  }
+}
+
 TEST_CASE("what presses for long does not make an event longer") {
   Hit hit(8.0);
   hit.settings.stress_window.reset();
