@@ -8,6 +8,7 @@
 
 #include "engine/body/polyhedron.h"
 #include "engine/geometry/bvh.h"
+#include "engine/material/tempering.h"
 #include "engine/world/forms.h"
 #include "sandbox/scene/build_mesh.h"
 #include "sandbox/scene/parts.h"
@@ -86,6 +87,70 @@ void doubt_sizes(const scene::SceneDescription& scene, const scene::BuiltScene& 
     scene::book(doubts, entry.place, fmt::format("\"{}\" is {:.3g} m across", entry.name, across),
                 "sizes are in metres: 30 cm are 0.3");
   }
+}
+
+/// Properties in other units than those of the SI: of anything that is solid they are far greater.
+void doubt_materials(const scene::SceneDescription& scene, scene::Problems& doubts) {
+  constexpr double kLeastStrength = 1e4, kLeastYoung = 1e6, kLeastDensity = 5.0;
+  for (const scene::MaterialEntry& entry : scene.materials) {
+    const material::Material& m = entry.material;
+    const auto doubt = [&](const char* what, double value, const char* unit, const char* hint) {
+      scene::book(doubts, entry.place, fmt::format("\"{}\" has a {} of {:g} {}", m.name, what, value, unit),
+                  hint);
+    };
+    if (m.strength > 0.0 && m.strength < kLeastStrength)
+      doubt("strength", m.strength, "Pa", "strengths are in pascals: 50 MPa are 50e6");
+    if (m.young > 0.0 && m.young < kLeastYoung)
+      doubt("young", m.young, "Pa", "moduli are in pascals: 70 GPa are 70e9");
+    if (m.density > 0.0 && m.density < kLeastDensity)
+      doubt("density", m.density, "kg/m3", "densities are in kg/m3: 2.5 g/cm3 are 2500");
+  }
+}
+
+/// Toughened glass that is so thin that what is stored in it does not break it into dice.
+void doubt_tempering(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                     scene::Problems& doubts) {
+  constexpr double kStep = 1e6, kMost = 3e8;  // Pa
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodyEntry& entry = scene.bodies[i];
+    const auto* shell = std::get_if<world::ShellDescription>(&built.plan.bodies[i].description.form);
+    material::Material material = scene.materials[static_cast<std::size_t>(entry.material)].material;
+    if (shell == nullptr || !scene::can_break(entry) || !(material.surface_compression > 0.0)) continue;
+    if (material::die_area(material, shell->thickness) > 0.0) continue;
+    do material.surface_compression += kStep;
+    while (material.surface_compression < kMost && !(material::die_area(material, shell->thickness) > 0.0));
+    scene::book(
+        doubts, entry.place,
+        fmt::format("\"{}\" stores too little for dice: {:g} mm of {} break into large pieces", entry.name,
+                    1e3 * shell->thickness, material.name),
+        fmt::format("make it thicker, or its surface_compression {:.3g} Pa", material.surface_compression));
+  }
+}
+
+/// What is to break, by its material, and cannot by its kind; where anything else moves, it may be the
+/// thrower's choice. Told once.
+void doubt_kinds(const scene::SceneDescription& scene, scene::Problems& doubts) {
+  const auto moves = [](const scene::BodyEntry& body) { return body.motion == body::Motion::dynamic; };
+  const auto name_of_kind = [](const scene::BodyEntry& body) {
+    if (std::holds_alternative<scene::BoxForm>(body.form)) return "box";
+    if (std::holds_alternative<scene::CapsuleForm>(body.form)) return "capsule";
+    return std::holds_alternative<scene::SphereForm>(body.form) ? "sphere" : "";
+  };
+  const auto is_doubtful = [&](const scene::BodyEntry& body) {
+    const std::string& material = scene.materials[static_cast<std::size_t>(body.material)].preset;
+    return name_of_kind(body)[0] != '\0' && material.find("glass") != std::string::npos;
+  };
+  const auto first = std::find_if(scene.bodies.begin(), scene.bodies.end(), moves);
+  if (first == scene.bodies.end() ||
+      !std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                   [&](const scene::BodyEntry& body) { return !moves(body) || is_doubtful(body); }))
+    return;
+  const bool is_box = std::holds_alternative<scene::BoxForm>(first->form);
+  scene::book(doubts, first->place,
+              fmt::format("\"{}\" is a {} of {}, which never breaks", first->name, name_of_kind(*first),
+                          scene.materials[static_cast<std::size_t>(first->material)].preset),
+              is_box ? "what breaks is kind = \"solid\" with shape = \"slab\" and a size, or kind = \"shell\""
+                     : "what breaks is kind = \"solid\" or kind = \"shell\" with shape = \"sphere\"");
 }
 
 /// Paths that go as fast as a shot, and strike as hard.
@@ -270,7 +335,8 @@ void doubt_camera(const scene::SceneDescription& scene, const scene::BuiltScene&
   const scene::CameraEntry& camera = scene.camera;
   view::CameraRig rig(camera, view::find_subject(scene, built.plan));
   const auto where = [&](scene::BodyRef who) { return scene::centre_of(built, built.world.bodies(), who); };
-  look(rig.view_at({0.0, 0.0, 1.0, built.world.bodies()}, where).position, true, camera.place);
+  if (camera.place.line > 0)  // else nobody has placed it
+    look(rig.view_at({0.0, 0.0, 1.0, built.world.bodies()}, where).position, true, camera.place);
   for (const scene::CameraKey& key : camera.path)
     if (key.at > 0.0) look(key.position, false, camera.place);
   for (const scene::EventEntry& event : scene.events)
@@ -452,6 +518,9 @@ scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::B
   doubt_thickness(scene, built, doubts);
   doubt_triangles(scene, built, doubts);
   doubt_sizes(scene, built, doubts);
+  doubt_materials(scene, doubts);
+  doubt_kinds(scene, doubts);
+  doubt_tempering(scene, built, doubts);
   doubt_paths(scene, doubts);
   doubt_criterion(scene, built, doubts);
   doubt_room(scene, built, doubts);

@@ -11,6 +11,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The scene beside a file that is not there whose name is nearest, as it is written; empty: none is near.
+std::string nearest_file(const fs::path& scene) {
+  const fs::path folder = scene.parent_path();
+  std::vector<std::string> stems;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, code))
+    if (entry.path().extension() == ".toml") stems.push_back(entry.path().stem().string());
+  std::sort(stems.begin(), stems.end());
+  const std::string stem = nearest_name(scene.stem().string(), stems);
+  return stem.empty() ? stem : (folder / (stem + ".toml")).string();
+}
+
 }  // namespace
 
 std::vector<fs::path> scene_folders() {
@@ -66,9 +78,10 @@ std::string find_scene(const std::string& scene, Problems& problems) {
     if (known.name == scene) return known.path.string();
     names.push_back(known.name);
   }
-  const std::string stem = fs::path(scene).stem().string();
+  const std::string beside = nearest_file(scene);
   book(problems, Place{scene, 0, 0}, "there is no such scene: neither a file nor a name",
-       hint_for_name(stem, names, "scenes"));
+       beside.empty() ? hint_for_name(fs::path(scene).stem().string(), names, "scenes")
+                      : "did you mean \"" + beside + "\"?");
   return {};
 }
 

@@ -44,6 +44,45 @@ TEST_CASE("a sheet from a file of few triangles is doubted, until they are divid
   CHECK(has(scene::describe(scene::read(stone + "edge_length = -1\n").problems), "edge_length"));
 }
 
+TEST_CASE("properties in other units, and glass of a kind that never breaks, are doubted") {
+  const auto bowl_of = [](const std::string& lines) {
+    return "[[material]]\nname = \"my\"\nlike = \"glass\"\n" + lines +
+           "[[body]]\nname = \"cup\"\nshape = \"bowl\"\nmaterial = \"my\"\n";
+  };
+  CHECK(has(doubts_of(bowl_of("strength = 50\n")), "t.toml:1:1: \"my\" has a strength of 50 Pa"));
+  CHECK(has(doubts_of(bowl_of("young = 70\n")), "70 GPa are 70e9"));
+  CHECK(has(doubts_of(bowl_of("density = 2.5\n")), "2.5 g/cm3 are 2500"));
+  CHECK(doubts_of(bowl_of("density = 2500\nyoung = 1e6\nstrength = 1e4\n")).empty());
+  const std::string ball =
+      "[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.05\nmaterial = \"glass\"\nposition = [0, 2, "
+      "0]\n";
+  CHECK(has(doubts_of(ball), "t.toml:1:1: \"ball\" is a sphere of glass, which never breaks"));
+  CHECK(has(doubts_of(ball), "kind = \"shell\" with shape = \"sphere\""));
+  CHECK(doubts_of(ball + "motion = \"static\"\n").empty());
+  CHECK(doubts_of(ball + bowl_of("")).empty());
+}
+
+TEST_CASE("toughened glass too thin for dice is doubted, with what would do") {
+  const auto pane_of = [](const char* thickness) {
+    return std::string(
+               "[[body]]\nname = \"pane\"\nshape = \"pane\"\nwidth = 0.6\nheight = 0.6\nsupport = \"edge\"\n"
+               "material = \"tempered_glass\"\nthickness = ") +
+           thickness + "\n";
+  };
+  const std::string doubt = doubts_of(pane_of("0.004"));
+  CHECK(has(doubt, "t.toml:1:1: \"pane\" stores too little for dice: 4 mm of tempered_glass"));
+  CHECK(has(doubt, "its surface_compression 1.2"));
+  CHECK(doubts_of(pane_of("0.006")).empty());
+}
+
+TEST_CASE("nobody is told to move a camera that he has not placed") {
+  const std::string above =
+      "[[body]]\nname = \"ceiling\"\nkind = \"plane\"\nposition = [0, 2, 0]\n"
+      "[[body]]\nname = \"cup\"\nshape = \"bowl\"\nposition = [0, 1, 0]\n";
+  CHECK(!has(doubts_of(above), "camera"));
+  CHECK(has(doubts_of(above + "[camera]\nposition = [0, 1, 2]\n"), "the camera is below the floor"));
+}
+
 TEST_CASE(
     "a joint far from both whom it holds is doubted, and what waits for a break where nothing can break") {
   const std::string crate = kCrate;

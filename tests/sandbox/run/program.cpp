@@ -44,6 +44,8 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("bench boats_10 --threads 1000", "--threads: \"1000\" is no count: from 0 to 256");
   refused("run", "ornament");
   refused("run ornamnt", "did you mean \"ornament\"?");
+  refused("run god.toml", "did you mean \"good.toml\"?");
+  refused("check good", "did you mean \"good.toml\"?");
   refused("run bad.toml", "bad.toml:2:1");
   refused("check bad.toml", "did you mean \"seconds\"?");
   refused("check", "shatterbox check --help tells what it takes");
