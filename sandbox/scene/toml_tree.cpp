@@ -97,6 +97,20 @@ bool is_unit(std::string_view text, const Place& place) {
          text.find_first_of(kLetters.substr(0, kLetters.size() - 1), last) != std::string_view::npos;
 }
 
+/// What was probably meant where the parser gives up with these words.
+std::string hint_for_syntax(const std::string& what, std::string_view text, const Place& place) {
+  const std::string is_none = "this is not TOML";
+  if (lacks_digit(text, place)) return is_none + ": a digit stands before the point of a number, as in 0.5";
+  if (is_unit(text, place))
+    return is_none +
+           ": numbers have no unit; lengths are metres (10 cm are 0.1), masses kg, times s, angles degrees";
+  if (what.find("control characters") != std::string::npos)
+    return is_none + ": a text ends with its second quote, on the same line: \"glass\"";
+  if (what.find("redefine existing array") != std::string::npos)
+    return is_none + ": what there are several of has double brackets, as [[body]]";
+  return is_none + "; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}";
+}
+
 }  // namespace
 
 const TomlValue* TomlValue::find(std::string_view key) const {
@@ -140,12 +154,8 @@ TomlValue parse_toml(std::string_view text, const std::string& file, Problems& p
     return value;
   } catch (const toml::parse_error& error) {
     const Place place = place_of(error.source(), file);
-    book(problems, place, std::string(error.description()),
-         lacks_digit(text, place) ? "this is not TOML: a digit stands before the point of a number, as in 0.5"
-         : is_unit(text, place)
-             ? "this is not TOML: numbers have no unit; lengths are metres (10 cm are 0.1), "
-               "masses kg, times s, angles degrees"
-             : "this is not TOML; values look like 1.5, \"text\", true, [1, 2, 3] or {x = 1}");
+    const std::string what(error.description());
+    book(problems, place, what, hint_for_syntax(what, text, place));
     TomlValue empty;
     empty.place = {file, 0, 0};
     return empty;

@@ -17,6 +17,8 @@ struct Broken {
 const Broken kCorpus[] = {
     // Not TOML at all.
     {"[scene\n", "t.toml:1:", "", "this is not TOML"},
+    {"[[body]]\nmaterial = \"glass\nkind = \"box\"\n", "t.toml:2:", "", "ends with its second quote"},
+    {"[[body]]\nkind = \"plane\"\n[body]\nkind = \"box\"\n", "t.toml:3:", "", "double brackets, as [[body]]"},
     {"[scene]\nseconds = 1\nseconds = 2\n", "t.toml:3:", "seconds", ""},
     {"[[body]]\nkind = \"sphere\"\nposition = [0, 1\n", "t.toml:", "", "this is not TOML"},
     {"[scene]\nseconds = 3 m\n", "t.toml:2:", "", "this is not TOML"},
