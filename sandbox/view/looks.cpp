@@ -79,10 +79,10 @@ render::Look make_look(const std::string& name, const std::optional<glm::vec3>& 
   if (name == "brick") return render::stone(paint(0xa2543b));
   if (name == "plaster") return render::matt(paint(0xebe6da));
   if (name == "ice") {  // clear, with clouds of bubbles and snow on what is broken
-    render::Look look = render::glass(paint(0xa9d8f0));
+    render::Look look = render::glass(paint(0xdbeaf0));
     look.transmission = 0.62F;
     look.pattern = render::Pattern::clouds;
-    look.pattern_colour = hex(0xe6f5fc);
+    look.pattern_colour = hex(0xf4f9fb);
     look.crack = hex(0xeaf4f9);
     return look;
   }

@@ -87,14 +87,14 @@ float pattern_share(int kind, vec3 p, float width) {
   }
 #endif
 #if PATTERNS & 224
-  if (kind >= 5 && kind <= 7) {  // wood along x, y or z: of rings about a heart beside the body, and fibres
+  if (kind >= 5 && kind <= 7) {  // wood along x, y or z: of rings about a heart far off, askew to the sides, and fibres
     p = kind == 5 ? p : kind == 6 ? p.yzx : p.zxy;
     float sway = grains(vec3(0.06 * p.x, 0.35 * p.yz)) + 0.3 * grains(vec3(0.3 * p.x, 1.1 * p.yz + 9.0));
-    float ring = fract(length(p.yz - vec2(3.7, 5.3)) + 2.2 * sway);
+    float ring = fract(length(p.yz - vec2(97.3, 131.9)) + 1.1 * sway);
     float late = smoothstep(0.25, 0.85, ring) * smoothstep(1.0, 0.93, ring);  // slowly darker, then at once pale
     float fibre = grains(vec3(0.5 * p.x, 14.0 * p.yz));
-    vec2 shown = clamp(1.5 - 1.5 * width * vec2(2.0, 14.0), 0.0, 1.0);
-    return clamp(0.4 + shown.x * 0.75 * (late - 0.4) + shown.y * 0.35 * (fibre - 0.5), 0.0, 1.0);
+    vec3 shown = clamp(1.5 - 1.5 * width * vec3(2.0, 14.0, 0.7), 0.0, 1.0);
+    return clamp(0.4 + shown.z * 0.3 * (sway - 0.65) + shown.x * 0.75 * (late - 0.4) + shown.y * 0.35 * (fibre - 0.5), 0.0, 1.0);
   }
 #endif
   vec3 s = (abs(fract(p * 0.5) - 0.5) - 0.25) * 2.0;  // checker
