@@ -349,7 +349,8 @@ bool ImpactForce::ends_search(Size lead, Decision& decision) {
   answer_others(lead, decision);
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
   is_estimate_ = solve_together(*subject_.mesh, decision, problem) && is_enough_();
-  duration_ = std::min(duration_of(presses_[lead], answers_[lead]), guess_duration(presses_[lead], 1.0));
+  if (is_estimate_)
+    duration_ = std::min(duration_of(presses_[lead], answers_[lead]), guess_duration(presses_[lead], 1.0));
   return is_estimate_;
 }
 

@@ -39,19 +39,22 @@ CLI::Validator one_of(std::vector<std::string> names) {
       "");
 }
 
+bool is_whole(const std::string& text, int least, int most) {
+  if (text.empty() || text.size() > 4 || text.find_first_not_of("0123456789") != std::string::npos)
+    return false;
+  const int number = std::stoi(text);
+  return number >= least && number <= most;
+}
+
 /// A sentence if there cannot be so many threads, or runs at a time.
 std::string count_of_threads(const std::string& text) {
-  const bool is_whole =
-      !text.empty() && text.size() <= 3 && text.find_first_not_of("0123456789") == std::string::npos;
-  if (is_whole && std::stoi(text) <= 256) return {};
+  if (is_whole(text, 0, 256)) return {};
   return "\"" + text + "\" is no count: from 0 to 256; 0 is one a core";
 }
 
 /// A sentence if it is no number of frames a second.
 std::string whole_rate(const std::string& text) {
-  const bool is_whole =
-      !text.empty() && text.size() <= 4 && text.find_first_not_of("0123456789") == std::string::npos;
-  if (is_whole && std::stoi(text) >= 1 && std::stoi(text) <= 1000) return {};
+  if (is_whole(text, 1, 1000)) return {};
   return "\"" + text + "\" is no rate: whole frames a second, 1 to 1000; 24 for 23.976, 30 for 29.97";
 }
 
@@ -233,10 +236,16 @@ void refuse_empty_names(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) refuse_empty_names(*verb);
 }
 
-/// What is left over on the command line, in words, with the nearest option that there is.
-int refuse_rest(const CLI::App& app, const std::vector<std::string>& rest) {
+/// The verb, or the verb of a verb; the program itself where there is none.
+const CLI::App* called_verb(const CLI::App& app) {
   const CLI::App* verb = &app;
   while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  return verb;
+}
+
+/// What is left over on the command line, in words, with the nearest option that there is.
+int refuse_rest(const CLI::App& app, const std::vector<std::string>& rest) {
+  const CLI::App* verb = called_verb(app);
   std::vector<std::string> known;
   for (const CLI::Option* option : verb->get_options())
     if (!option->get_positional())
@@ -268,8 +277,7 @@ const CLI::Option* find_told(const CLI::App& verb, const std::string& told) {
 
 /// What cannot be read, in words, and what the option is for.
 int refuse_value(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App* verb = &app;
-  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  const CLI::App* verb = called_verb(app);
   std::string told = error.what();
   const CLI::Option* option = find_told(*verb, told);
   if (option != nullptr && dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {

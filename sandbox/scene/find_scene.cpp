@@ -13,12 +13,11 @@ namespace fs = std::filesystem;
 
 /// The scene beside a file that is not there whose name is nearest, as it is written; empty: none is near.
 std::string nearest_file(const fs::path& scene) {
-  const fs::path folder = scene.parent_path();
+  const fs::path folder = scene.parent_path(), place = folder.empty() ? "." : folder;
   std::vector<std::string> stems;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, code))
-    if (entry.path().extension() == ".toml") stems.push_back(entry.path().stem().string());
-  std::sort(stems.begin(), stems.end());
+  if (std::error_code code; fs::is_directory(place, code))
+    for (const std::string& file : find_shots(place.string()))
+      stems.push_back(fs::path(file).stem().string());
   const std::string stem = nearest_name(scene.stem().string(), stems);
   return stem.empty() ? stem : (folder / (stem + ".toml")).string();
 }
