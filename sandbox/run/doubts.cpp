@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -511,6 +512,55 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
   }
 }
 
+void doubt_coarse_solids(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                         scene::Problems& doubts) {
+  std::map<int, const world::ImpactRow*> held;  // by entry
+  const world::WorldReport& report = built.world.report();
+  for (const world::ImpactRow& row : report.impacts) {
+    const auto origin = built.origins.find(row.id);  // none: a piece
+    if (origin == built.origins.end() || row.ratio < 1.0 ||
+        row.verdict.find("no crack could start") == std::string::npos)
+      continue;
+    const world::ImpactRow*& hardest = held[origin->second.entry];
+    if (hardest == nullptr || row.ratio > hardest->ratio) hardest = &row;
+  }
+  for (const world::BreakRow& row : report.breaks)
+    if (const auto origin = built.origins.find(row.id); origin != built.origins.end())
+      held.erase(origin->second.entry);
+  for (const auto& [entry, row] : held) {
+    const auto number = static_cast<std::size_t>(entry);
+    const auto* solid = std::get_if<world::SolidDescription>(&built.plan.bodies[number].description.form);
+    if (solid == nullptr) continue;
+    const double size = world::element_size_of(*solid);
+    scene::book(
+        doubts, scene.bodies[number].place,
+        fmt::format("\"{}\" held, stressed to {:.2g} of its strength: in elements of {:.2g} m no crack "
+                    "could start",
+                    row->body, row->ratio, size),
+        fmt::format("--set {}.element_size={:.2g} looks closer, and takes longer", scene.bodies[number].name,
+                    0.5 * size));
+  }
+}
+
+/// Nothing stands, and nobody met anybody on the way down.
+void doubt_bottomless(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                      scene::Problems& doubts) {
+  constexpr double kFast = 3.0;  // m/s: after half a metre
+  const std::span<const Body> bodies = built.world.bodies();
+  if (built.world.report().contact.most_contacts > 0 || scene.world.gravity.isZero(0.0) || bodies.empty() ||
+      !std::all_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.is_dynamic(); }))
+    return;
+  const Body& first = bodies.front();
+  const double speed = first.velocity.dot(scene.world.gravity.normalized());
+  const auto origin = built.origins.find(first.id);
+  if (speed < kFast || origin == built.origins.end()) return;
+  scene::book(
+      doubts, scene.bodies[static_cast<std::size_t>(origin->second.entry)].place,
+      fmt::format("nothing met anything: \"{}\" falls at {:.2g} m/s at the end, and there is no floor",
+                  first.name, speed),
+      "[[body]] with kind = \"plane\" is one; where nothing is to fall, [scene] has gravity = [0, 0, 0]");
+}
+
 }  // namespace
 
 scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
@@ -533,34 +583,10 @@ scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::B
   return doubts;
 }
 
-scene::Problems find_coarse_solids(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
-  std::map<int, const world::ImpactRow*> held;  // by entry
-  const world::WorldReport& report = built.world.report();
-  for (const world::ImpactRow& row : report.impacts) {
-    const auto origin = built.origins.find(row.id);  // none: a piece
-    if (origin == built.origins.end() || row.ratio < 1.0 ||
-        row.verdict.find("no crack could start") == std::string::npos)
-      continue;
-    const world::ImpactRow*& hardest = held[origin->second.entry];
-    if (hardest == nullptr || row.ratio > hardest->ratio) hardest = &row;
-  }
-  for (const world::BreakRow& row : report.breaks)
-    if (const auto origin = built.origins.find(row.id); origin != built.origins.end())
-      held.erase(origin->second.entry);
+scene::Problems find_afterthoughts(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
   scene::Problems doubts;
-  for (const auto& [entry, row] : held) {
-    const auto number = static_cast<std::size_t>(entry);
-    const auto* solid = std::get_if<world::SolidDescription>(&built.plan.bodies[number].description.form);
-    if (solid == nullptr) continue;
-    const double size = world::element_size_of(*solid);
-    scene::book(
-        doubts, scene.bodies[number].place,
-        fmt::format("\"{}\" held, stressed to {:.2g} of its strength: in elements of {:.2g} m no crack "
-                    "could start",
-                    row->body, row->ratio, size),
-        fmt::format("--set {}.element_size={:.2g} looks closer, and takes longer", scene.bodies[number].name,
-                    0.5 * size));
-  }
+  doubt_coarse_solids(scene, built, doubts);
+  doubt_bottomless(scene, built, doubts);
   return doubts;
 }
 

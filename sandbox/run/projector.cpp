@@ -116,7 +116,7 @@ void Projector::finish() {
   if (wants_to_stop_()) return;
   for (std::string& sentence : throws_.missed(built_.world.time()))
     recorder_.record.warnings.push_back(std::move(sentence));
-  for (const scene::Problem& doubt : find_coarse_solids(scene_, built_))
+  for (const scene::Problem& doubt : find_afterthoughts(scene_, built_))
     recorder_.record.warnings.push_back(scene::describe(doubt));
 }
 

@@ -275,10 +275,27 @@ TEST_CASE(
                     size);
     auto built = build(reading);
     for (int step = 0; step < steps; ++step) built->world.step();
-    return scene::describe(run::find_coarse_solids(*reading.scene, *built));
+    return scene::describe(run::find_afterthoughts(*reading.scene, *built));
   };
   CHECK(afterthoughts("element_size = 0.012\n", 60).empty());
   const std::string told = afterthoughts("element_size = 0.012\n", 96);
   CHECK(has(told, "t.toml:4:1: \"vase\" held, stressed to 1."));
   CHECK(has(told, "--set vase.element_size=0.006 looks closer"));
+}
+
+TEST_CASE("after a run: that all fell and met nothing is told, where something was met it is not") {
+  const auto afterthoughts = [](const std::string& more) {
+    const auto reading = scene::read(kCrate + more);
+    auto built = build(reading);
+    for (int step = 0; step < 120; ++step) built->world.step();
+    return scene::describe(run::find_afterthoughts(*reading.scene, *built));
+  };
+  const std::string told = afterthoughts("");
+  CHECK(has(told, "t.toml:1:1: nothing met anything: \"crate\" falls at 4.9 m/s at the end"));
+  CHECK(has(told, "kind = \"plane\""));
+  CHECK(afterthoughts(kFloor).empty());
+  CHECK(afterthoughts("[scene]\ngravity = [0, 0, 0]\n").empty());
+  CHECK(afterthoughts(
+            "[[body]]\nkind = \"sphere\"\nradius = 0.1\nposition = [0, -0.5, 0]\nvelocity = [0, 9, 0]\n")
+            .empty());
 }
