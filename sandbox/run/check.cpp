@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -23,12 +25,14 @@ int check_one(const Options& options) {
   const auto built = scene::build_world(*scene, problems);
   if (!built) return refuse(problems);
   for (const std::string& note : built->plan.notes) fmt::print("note: {}\n", note);
-  for (const std::string& warning : scene->warnings) fmt::print("warning: {}\n", warning);
-  for (const scene::Problem& doubt : find_doubts(*scene, *built))
-    fmt::print("warning: {}\n", scene::describe(doubt));
+  std::vector<std::string> warnings = scene->warnings;
+  for (const scene::Problem& doubt : find_doubts(*scene, *built)) warnings.push_back(scene::describe(doubt));
+  for (const std::string& warning : warnings) fmt::print("warning: {}\n", warning);
   std::size_t triangles = 0;
   for (const body::Body& body : built->world.bodies()) triangles += body.shape->surface.triangles.size();
-  fmt::print("{}: fine. {}, {}, {}, {:g} s at {} steps a second\n", file,
+  const std::string verdict =
+      warnings.empty() ? "fine" : scene::counted(static_cast<long>(warnings.size()), "warning") + "; it runs";
+  fmt::print("{}: {}. {}, {}, {}, {:g} s at {} steps a second\n", file, verdict,
              scene::counted(static_cast<long>(built->world.bodies().size()), "body", "bodies"),
              scene::counted(static_cast<long>(triangles), "triangle"),
              scene::counted(static_cast<long>(scene->events.size()), "event"), scene->seconds,

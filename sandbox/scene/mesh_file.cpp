@@ -5,6 +5,7 @@
 #include <new>
 #include <system_error>
 
+#include "sandbox/scene/mesh_ending.h"
 #include "sandbox/scene/mesh_text.h"
 
 namespace shatterbox::sandbox::scene {
@@ -33,9 +34,7 @@ core::Result<std::string> read_bytes(const std::filesystem::path& path) {
 
 core::Result<geometry::TriangleMesh> read_by_ending(const std::filesystem::path& path,
                                                     std::vector<std::string>* notes) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string ending = ending_of(path);
   const auto reader = ending == ".obj"                        ? read_obj
                       : ending == ".ply"                      ? read_ply
                       : ending == ".stl"                      ? read_stl

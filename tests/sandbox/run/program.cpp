@@ -46,6 +46,8 @@ TEST_CASE("exit status 2 and a word that helps for wrong input") {
   refused("run ornamnt", "did you mean \"ornament\"?");
   refused("run god.toml", "did you mean \"good.toml\"?");
   refused("check good", "did you mean \"good.toml\"?");
+  folder.write("cup.OBJ", "");
+  refused("run cup.OBJ", "this is a mesh; a scene says what becomes of it");
   refused("run bad.toml", "bad.toml:2:1");
   refused("check bad.toml", "did you mean \"seconds\"?");
   refused("check", "shatterbox check --help tells what it takes");
@@ -131,7 +133,7 @@ TEST_CASE("check and list say what there is") {
   const Outcome checked = program(folder, "check good.toml");
   INFO(checked.err);
   CHECK(checked.status == 0);
-  CHECK(checked.out.find("10 bodies") != std::string::npos);
+  CHECK(checked.out.find("good.toml: fine. 10 bodies") != std::string::npos);
   const Outcome listed = program(folder, "list");
   CHECK(listed.status == 0);
   for (const char* word :
