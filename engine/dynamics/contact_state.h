@@ -36,11 +36,11 @@ inline constexpr int kNoTrouble = 1000;
 /// One pair of bodies that were near each other in the last step.
 struct PairState {
   body::BodyId body_a = 0, body_b = 0;  // body_a < body_b
-  double kept_gap = 0.0;     // m: min(usual, least gap seen so far): never pushes newborn pieces apart
-  bool is_touching = false;  // a sleeper and what disturbs it, or holds it up
-  bool has_parted = false;   // pressed a step ago, and touches no longer
-  int trouble_age = 1000;    // steps since the continuous pass last had to act here
-  int stuck_steps = 0;       // steps in a row in which the pair had to be cut short
+  double kept_gap = 0.0;         // m: min(usual, least gap seen so far): never pushes newborn pieces apart
+  bool is_touching = false;      // a sleeper and what disturbs it, or holds it up
+  bool has_parted = false;       // pressed a step ago, and touches no longer
+  int trouble_age = kNoTrouble;  // steps since the continuous pass last had to act here
+  int stuck_steps = 0;           // steps in a row in which the pair had to be cut short
   bool is_exempt = false;    // crossed when it was first seen, and still does: passes until it has come apart
   bool is_reported = false;  // as exempt
   std::vector<RememberedContact> contacts;
