@@ -12,10 +12,20 @@ namespace {
 constexpr double kBeforeHit = 0.06;      // of the striker's diameter: how far from it a part begins, at most
 constexpr double kSurelyBefore = 0.002;  // and at least, so that rounding does not put the hit a part earlier
 constexpr int kMostHoleParts = 4096;     // of one step
-constexpr double kHoleLengths = 3.0;     // of its own, and of the hole, that a striker goes until he is out
-constexpr double kPlugAhead = 0.1;       // of the striker's diameter, that a sheet's plug begins ahead
-constexpr double kPlugRoom = 1e-6;       // of it, that it keeps from others there
-constexpr double kLongestWay = 30.0;     // times as long as at his first speed, that this takes at most
+constexpr double kHoleLengths = 3.0;     // of its own, and of the hole, that a striker goes until he is gone
+// The same, until what he dents on his way has room: by then he is out, and ahead of it.
+constexpr double kClearLengths = 1.6;
+constexpr double kPlugAhead = 0.1;    // of the striker's diameter, that a sheet's plug begins ahead
+constexpr double kPlugRoom = 1e-6;    // of it, that it keeps from others there
+constexpr double kLongestWay = 30.0;  // times as long as at his first speed, that this takes at most
+
+/// s: when striker and plug have gone so many lengths of the striker and of the hole.
+double time_after(double lengths, const fracture::Perforation& hole) {
+  const double way = lengths * (section_of(hole.striker).diameter + hole.thickness);
+  const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
+                      (hole.striker.mass + hole.plug_mass);
+  return hole.striker.time + way / std::max(left, hole.striker.speed / kLongestWay);
+}
 
 /// A plug is inside of all the hole's sides.
 bool is_plug(const body::Shape& shape, const fracture::Perforation& hole) {
@@ -70,10 +80,7 @@ const fracture::Perforation* find_hole(const EvaluatedImpact& impact) {
 }
 
 double time_behind(const fracture::Perforation& hole) {
-  const double way = kHoleLengths * (section_of(hole.striker).diameter + hole.thickness);
-  const double left = hole.striker.speed * (1.0 - hole.momentum_share()) * hole.striker.mass /
-                      (hole.striker.mass + hole.plug_mass);
-  return hole.striker.time + way / std::max(left, hole.striker.speed / kLongestWay);
+  return time_after(kHoleLengths, hole);
 }
 
 bool waits_for_striker(const EvaluatedImpact& impact, std::span<const EvaluatedImpact> impacts) {
@@ -180,7 +187,7 @@ void leave_dent(MovingState& moving, const EvaluatedImpact& impact, const BreakR
           if (decision.dent)
             moving.memories[id].dents.push_back({decision.dent, decision.verdict.von_mises,
                                                  decision.verdict.yield, hole.striker.place,
-                                                 time_behind(hole)});
+                                                 time_after(kClearLengths, hole)});
         },
         impact.decision);
   }
