@@ -3,7 +3,7 @@
 // that some do not.
 #include "common/samples.glsl"
 #include "common/shade.glsl"
-#include "common/specks.glsl"
+#include "common/seams.glsl"
 #include "common/tone.glsl"
 layout(location = 0) out vec4 colour;
 
@@ -12,11 +12,12 @@ void main() {
   vec3 ray = ray_at(gl_FragCoord.xy);
   float drop = ground_place.x - eye_exposure.y;
   float behind = ground_place.w * ray.y * drop > 0.0 ? drop / ray.y * 1.001 : 1e9;
-  ivec2 at = without_speck(ivec2(gl_FragCoord.xy));
+  ivec2 own = ivec2(gl_FragCoord.xy), at = without_speck(own);
   float depth = texelFetch(seen_depth, at, 0).x;
   Surface s = surface_at(texelFetch(seen_map, at, 0), min(depth, 0.9999999), vec2(at) + 0.5);
   if (s.view_depth >= behind) discard;
-  colour = vec4(tone_map(shade(s, gl_FragCoord.xy)), 1.0);
+  float light = min(seam_light(own), speck_light(own, at));
+  colour = vec4(tone_map(light * shade(s, gl_FragCoord.xy)), 1.0);
 }
 #else
 void main() {
@@ -58,6 +59,8 @@ void main() {
     own += others;
     others = 0.0;
   }
+  float light = speck_light(lone_at, seen_at);
+  for (int i = 1; i < SIDE * SIDE; ++i) light = min(light, seam_light(first + ivec2(i & 1, i >> 1)));
   vec3 sum = vec3(0.0);
   int turns = others > 0.0 ? 2 : 1;
   for (int turn = 0; turn < turns; ++turn) {
@@ -66,7 +69,7 @@ void main() {
     vec2 place = floor(pixel) + (vec2(shift) + 0.5) / float(SIDE);
     float depth = texelFetch(seen_depth, first + shift, 0).x;
     Surface s = surface_at(texelFetch(seen_map, first + shift, 0), min(depth, 0.9999999), place);
-    sum += (turn == 0 ? own : others) * tone_map(shade(s, pixel));
+    sum += (turn == 0 ? own : others) * tone_map(light * shade(s, pixel));
   }
   colour = vec4(sum / (own + others), (own + others) / float(SIDE * SIDE));
 }

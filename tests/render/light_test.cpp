@@ -331,17 +331,46 @@ int count_dark(const Image& image, const Frame& frame, int than) {
   return count;
 }
 
+// Of the same pixels.
+int find_darkest(const Image& image, const Frame& frame) {
+  int darkest = 255;
+  while (darkest > 0 && count_dark(image, frame, darkest) > 0) --darkest;
+  return darkest;
+}
+
+// Rows of them in which none is dark.
+int count_broken_rows(const Image& image, const Frame& frame, int than) {
+  const glm::ivec2 middle = pixel_of(frame, {0, 0.8F, 0.2F});
+  int count = 0;
+  for (int y = -20; y <= 20; ++y) {
+    bool is_broken = true;
+    for (int x = -20; x <= 20; ++x) is_broken = is_broken && green(image, middle + glm::ivec2(x, y)) >= than;
+    count += is_broken ? 1 : 0;
+  }
+  return count;
+}
+
 }  // namespace
 
-TEST_CASE("a crack shows when it is as wide as a pixel, not in dots where it is narrower") {
+TEST_CASE(
+    "a crack that is narrower than a pixel is an even line of shade and no dots, and a wider one is seen") {
   for (const Quality quality : {Quality::preview, Quality::full}) {
     Renderer renderer(kSize, quality);
-    const Frame closed = cracked_block(0.0F);
-    const int white = green(renderer.render(closed), pixel_of(closed, {0.3F, 0.8F, 0.2F}));
-    for (const float gap : {0.0005F, 0.002F, 0.005F}) {  // a pixel is 24 mm wide
-      CHECK(count_dark(renderer.render(cracked_block(gap)), closed, white - 12) == 0);
+    const Frame whole = cracked_block(0.0F);
+    const Image closed = renderer.render(whole);
+    const int white = green(closed, pixel_of(whole, {0.3F, 0.8F, 0.2F}));
+    const int darkest = find_darkest(closed, whole);
+    CHECK(darkest < white - 20);
+    CHECK(darkest > white / 2);
+    for (const float gap : {0.0F, 0.0005F, 0.002F, 0.005F}) {  // a pixel is 24 mm wide
+      const Image image = renderer.render(cracked_block(gap));
+      INFO("gap " << gap << ", " << (quality == Quality::full ? "full" : "preview"));
+      CHECK(count_broken_rows(image, whole, white - 12) == 0);
+      CHECK(count_dark(image, whole, white - 12) <= 41 * 2);
+      CHECK(find_darkest(image, whole) >= darkest - 8);
+      CHECK(darkest > white - 40);
     }
-    CHECK(count_dark(renderer.render(cracked_block(0.036F)), closed, white - 40) >= 40);
+    CHECK(count_dark(renderer.render(cracked_block(0.036F)), whole, white - 40) >= 40);
   }
 }
 
