@@ -121,6 +121,10 @@ TEST_CASE("slab: one ball dents it one goes through and what stands is one piece
   for (const auto& dent : report["dents"]) CHECK(dent["depth_m"].get<double>() > 0.03);
   REQUIRE(report["breaks"].size() == 1);
   CHECK(report["breaks"][0]["pieces"] == 2);
+  // The hole's comes when the ball is out, and that is soon.
+  const double late = report["dents"][1]["time"].get<double>() - report["breaks"][0]["time"].get<double>();
+  CHECK(late > 0.0);
+  CHECK(late < 1e-3);
   CHECK(report["audit"]["crossings"] == 0);
   CHECK(report["audit"]["passages"] == 0);
   std::vector<std::string> verdicts;
