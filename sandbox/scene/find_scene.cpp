@@ -68,7 +68,7 @@ std::vector<KnownScene> known_scenes() {
 
 std::string find_scene(const std::string& scene, Problems& problems) {
   std::error_code code;
-  if (fs::is_regular_file(scene, code) && has_mesh_ending(scene)) {
+  if (fs::is_regular_file(scene, code) && find_mesh_ending(scene)) {
     book(problems, Place{scene, 0, 0}, "this is a mesh; a scene says what becomes of it",
          "a file of two lines does: [[body]], and mesh = \"" + scene +
              "\"; and two more for a floor: [[body]], kind = \"plane\"");

@@ -1,8 +1,10 @@
 #include "sandbox/scene/mesh_file.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include "sandbox/scene/mesh_ending.h"
@@ -32,22 +34,20 @@ core::Result<std::string> read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
+// In the order of the endings.
+constexpr std::array<decltype(&read_obj), kMeshEndings.size()> kReaders{read_obj,  read_ply,  read_stl,
+                                                                        read_gltf, read_gltf, read_3ds};
+
 core::Result<geometry::TriangleMesh> read_by_ending(const std::filesystem::path& path,
                                                     std::vector<std::string>* notes) {
-  const std::string ending = ending_of(path);
-  const auto reader = ending == ".obj"                        ? read_obj
-                      : ending == ".ply"                      ? read_ply
-                      : ending == ".stl"                      ? read_stl
-                      : ending == ".3ds"                      ? read_3ds
-                      : ending == ".glb" || ending == ".gltf" ? read_gltf
-                                                              : nullptr;
   core::Result<std::string> bytes = read_bytes(path);
   if (!bytes) return core::Error{bytes.error()};
-  if (!reader)
+  const std::optional<std::size_t> ending = find_mesh_ending(path);
+  if (!ending)
     return mesh_fault(
         path, 0,
         "meshes are read from .obj, .ply, .stl, .glb, .gltf and .3ds files; convert it to one of them");
-  return reader(bytes.value(), path, notes);
+  return kReaders[*ending](bytes.value(), path, notes);
 }
 
 }  // namespace
