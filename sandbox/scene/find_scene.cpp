@@ -68,13 +68,13 @@ std::vector<KnownScene> known_scenes() {
 
 std::string find_scene(const std::string& scene, Problems& problems) {
   std::error_code code;
-  if (fs::is_regular_file(scene, code) && find_mesh_ending(scene)) {
+  if (fs::is_regular_file(scene, code)) {
+    if (!find_mesh_ending(scene)) return scene;
     book(problems, Place{scene, 0, 0}, "this is a mesh; a scene says what becomes of it",
          "a file of two lines does: [[body]], and mesh = \"" + scene +
              "\"; and two more for a floor: [[body]], kind = \"plane\"");
     return {};
   }
-  if (fs::is_regular_file(scene, code)) return scene;
   for (const fs::path& folder : scene_folders()) {  // one of a folder's: reel/1_ornament
     const fs::path file = folder / (scene + ".toml");
     if (fs::is_regular_file(file, code)) return file.string();

@@ -4,7 +4,6 @@
 const float kShade = 0.3;
 const float kJoint = 0.03;  // m: of wider samples a joint, with what is worn off and lies in it, is but a part
 
-float sample_width_at(float z) { return z * view_ray.y * 2.0 / float(textureSize(seen_map, 0).y); }  // m
 float joint_light(float z) { return 1.0 - kShade * min(1.0, kJoint / sample_width_at(z)); }
 
 // Between a sample and those to the right of it and above.

@@ -2,6 +2,8 @@
 // one surface and behind them, is taken for that surface: if it is alone or in a pair, or hardly behind.
 #include "common/paint.glsl"
 
+float sample_width_at(float z) { return z * view_ray.y * 2.0 / float(textureSize(seen_map, 0).y); }  // m
+
 // Cracks among the eight about a sample that is one: those beside it count twice, two at corners three.
 int cracks_about(ivec2 at, int turns) {
   vec2 texel = 1.0 / vec2(textureSize(seen_map, 0));
@@ -27,7 +29,7 @@ ivec2 without_speck(ivec2 at) {
     float a = view_depth_of(texelFetch(seen_depth, at - aside, 0).x);
     float b = view_depth_of(texelFetch(seen_depth, at + aside, 0).x);
     float depth = view_depth_of(texelFetch(seen_depth, at, 0).x);
-    float sample_width = depth * view_ray.y * 2.0 / float(textureSize(seen_map, 0).y);  // m
+    float sample_width = sample_width_at(depth);
     float behind = (depth - 0.5 * (a + b)) / sample_width;
     bool is_one = !is_crack(before.y) && !is_crack(after.y) && abs(a - b) < 20.0 * sample_width &&
                   dot(unpack_normal(before.x), unpack_normal(after.x)) > 0.9;
