@@ -358,7 +358,7 @@ void SolidForce::sum_up() {
   displacement_ = VecX::Zero(now_.system->dof_count());
   if (rest_displacement_.size() > 0) displacement_ += rest_displacement_;
   for (const SolidPress& press : presses_)
-    if (!press.is_minor) displacement_ += press.force * press.displacement;
+    if (!press.is_minor && press.force > 0.0) displacement_ += press.force * press.displacement;
 }
 
 }  // namespace shatterbox::fracture

@@ -25,7 +25,7 @@ struct SolidPress {
   double duration = 0.0;          // s
   double energy = 0.0;            // J, kinetic energy behind a collision; else elastic energy
   // Under a unit force, as the pieces share it, on the mesh last solved.
-  VecX displacement;                // |dof|, m
+  VecX displacement;                // |dof|, m; empty once its energy is spent
   double compliance = 0.0;          // m/N
   double elastic_compliance = 0.0;  // m/N
   std::vector<double> shares;       // of its groups in the force
@@ -102,6 +102,7 @@ class SolidForce {
   void put_together();
   bool promote_minor(SolidDecision& decision, std::string& problem);
   std::vector<double> part_forces() const;
+  void drop_spent(std::vector<std::size_t>& wanted, const SolidDecision& decision);
   void settle_cracked_force(SolidPress& press, const SolidDecision& decision);
   double first_inertia(const SolidPress& press) const;
   bool settle_lead(std::size_t lead, SolidDecision& decision, std::string& problem);

@@ -73,9 +73,22 @@ bool SolidForce::promote_minor(SolidDecision& decision, std::string& problem) {
         0.5 * press.force * press.force * (press.contact.hertz_compliance + press.elastic_compliance);
     press.first_compliance = press.compliance + first_inertia(press);
   }
+  drop_spent(promoted, decision);
   if (!answer(now_, promoted, decision, problem, true)) return false;
   for (const Size i : promoted) settle_cracked_force(presses_[i], decision);
   return true;
+}
+
+/// Leaves out the loads that the cracks have left no energy: they press no more, whatever they would meet.
+void SolidForce::drop_spent(std::vector<Size>& wanted, const SolidDecision& decision) {
+  std::erase_if(wanted, [&](Size i) {
+    SolidPress& press = presses_[i];
+    if (share_left(press.energy, decision.fracture_energy) > 0.0) return false;
+    press.force = 0.0;
+    press.displacement = VecX();
+    press.shares.clear();
+    return true;
+  });
 }
 
 void SolidForce::settle_cracked_force(SolidPress& press, const SolidDecision& decision) {
@@ -128,6 +141,7 @@ bool SolidForce::settle_again(SolidForm form, const std::vector<int>& origins, S
   std::vector<Size> wanted;
   for (Size i = 0; i < presses_.size(); ++i)
     if (!presses_[i].is_minor) wanted.push_back(i);
+  drop_spent(wanted, decision);
   if (!answer(now_, wanted, decision, problem, true)) return false;
   for (const Size i : wanted) settle_cracked_force(presses_[i], decision);
   if (!promote_minor(decision, problem)) return false;
