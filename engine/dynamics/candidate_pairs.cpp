@@ -34,7 +34,7 @@ constexpr double kOfTouch = 0.01;  // share of its momentum with which what only
 void find_colliders(ContactState& state, const std::vector<std::size_t>& unknown) {
   if (unknown.empty()) return;
   std::map<const body::Shape*, const BodyState*> known;
-  for (const auto* list : {&state.shelf->bodies, &state.bodies}) {
+  for (const auto* list : {&state.shelf->bodies, &state.bodies, &state.shelf->newborn}) {
     for (const BodyState& s : *list) {
       if (s.collider) known.emplace(s.shape.get(), &s);
     }
@@ -45,11 +45,7 @@ void find_colliders(ContactState& state, const std::vector<std::size_t>& unknown
     const auto [twin, is_first] = known.emplace(fresh.shape.get(), &fresh);
     if (is_first) to_make.push_back(i);
   }
-  core::parallel_for(to_make.size(), 1, [&](std::size_t k) {
-    BodyState& fresh = state.bodies[to_make[k]];
-    fresh.collider = collision::make_collider(*fresh.shape);
-    fresh.inertia = find_principal_inertia(fresh.shape->inertia);
-  });
+  core::parallel_for(to_make.size(), 1, [&](std::size_t k) { know_shape(state.bodies[to_make[k]]); });
   for (const std::size_t i : unknown) {
     BodyState& fresh = state.bodies[i];
     const BodyState& twin = *known.at(fresh.shape.get());
@@ -77,6 +73,7 @@ void match_bodies(const std::vector<Body>& bodies, ContactState& state, MotionWo
   state.bodies = std::move(matched);
   find_colliders(state, unknown);
   state.shelf->bodies = state.bodies;
+  state.shelf->newborn.clear();
 }
 
 // Per body: whether something bore it, or was borne by it, in the part before. Of no use where all sleep.

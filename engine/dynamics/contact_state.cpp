@@ -42,6 +42,11 @@ const PairState* ContactState::find_pair(body::BodyId a, body::BodyId b) const {
   return find_in(pairs, a, b);
 }
 
+void know_shape(BodyState& body) {
+  body.collider = collision::make_collider(*body.shape);
+  body.inertia = find_principal_inertia(body.shape->inertia);
+}
+
 void add_to_hash(const ContactState& state, core::Hash& hash) {
   hash.add(state.substep).add(static_cast<std::uint64_t>(state.next_parts));
   for (const BodyState& body : state.bodies) {

@@ -77,7 +77,8 @@ struct BodyState {
 /// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and
 /// lists here. A cache that a state shares with its snapshots: with whatever no other thread steps.
 struct SearchShelf {
-  std::vector<BodyState> bodies;  // ascending id
+  std::vector<BodyState> bodies;   // ascending id
+  std::vector<BodyState> newborn;  // of shapes whose bodies no step has seen yet; without ids
   struct Row {
     body::BodyId body_a = 0, body_b = 0;
     std::shared_ptr<const StartGaps> gaps;
@@ -100,6 +101,9 @@ struct ContactState {
   PairState* find_pair(body::BodyId a, body::BodyId b);
   const PairState* find_pair(body::BodyId a, body::BodyId b) const;
 };
+
+/// Makes what follows from the shape: collider and inertia.
+void know_shape(BodyState& body);
 
 /// Adds all that decides later steps to the hash; caches stay out.
 void add_to_hash(const ContactState& state, core::Hash& hash);

@@ -67,6 +67,19 @@ geometry::SolidMesh part_of(const geometry::SolidMesh& whole, const std::vector<
   return part;
 }
 
+/// Pieces, by cells, that are those of an earlier division in which these were their numbers; -1 for others.
+/// Since then pieces have been joined and none parted.
+std::vector<int> find_unchanged(const std::vector<std::vector<int>>& cells, const std::vector<int>& earlier) {
+  std::vector<int> number(cells.size(), -1);
+  if (earlier.empty()) return number;
+  std::vector<Size> size(at(*std::max_element(earlier.begin(), earlier.end()) + 1), 0);
+  for (const int piece : earlier) ++size[at(piece)];
+  for (Size p = 0; p < cells.size(); ++p)
+    if (const int piece = earlier[at(cells[p].front())]; size[at(piece)] == cells[p].size())
+      number[p] = piece;
+  return number;
+}
+
 }  // namespace
 
 SolidSplitter::SolidSplitter(SolidComplex complex, double least_width) : complex_(std::move(complex)) {
@@ -160,13 +173,15 @@ bool SolidSplitter::unite(const std::set<std::pair<int, int>>& pairs) {
   return true;
 }
 
-SolidSplit SolidSplitter::split() const {
+SolidSplit SolidSplitter::split() {
   SolidSplit split;
   split.merged_count = merged_count_;
   for (Size c = 0; c < was_merged_.size(); ++c)
     if (was_merged_[c]) split.merged_volume += complex_.cells[c].volume;
   std::vector<std::vector<int>> cells(volumes_.size());
   for (Size c = 0; c < piece_of_.size(); ++c) cells[at(piece_of_[c])].push_back(static_cast<int>(c));
+  const std::vector<int> before = find_unchanged(cells, last_split_);
+  last_split_ = piece_of_;
   // No two pieces' cells share a copy of a node, but where nothing more than nodes ever joined them.
   const geometry::SolidMesh whole = make_solid_mesh(complex_, contacts_);
   // The first is the greatest: beside it there is time for the others.
@@ -177,6 +192,8 @@ SolidSplit SolidSplitter::split() const {
     for (Size p = part; p < (part == 0 ? 1 : cells.size()); ++p) {
       core::stop_if_asked();
       SolidPiece& piece = split.pieces[p];
+      piece.before = before[p];
+      if (piece.before >= 0) continue;
       piece.complex = extractor.extract(cells[p]);
       piece.mesh = part_of(whole, cells[p], static_cast<int>(p), own_numbers);
     }

@@ -15,6 +15,7 @@ namespace shatterbox::fracture {
 struct SolidPiece {
   geometry::SolidComplex complex;  // its material
   geometry::SolidMesh mesh;        // the same cells, with degrees of freedom of the piece's own
+  int before = -1;  // its number in the split before, if there was one and it is as it was: then it is empty
 };
 
 struct SolidSplit {
@@ -37,7 +38,8 @@ class SolidSplitter {
  public:
   explicit SolidSplitter(geometry::SolidComplex complex, double least_width = 0.0);
 
-  SolidSplit split() const;
+  /// The pieces; of what the last call gave already, and nothing has joined since, only which it was.
+  SolidSplit split();
 
   /// From now on pieces of the last split that clash are one; where no crack is between them, the smaller one
   /// and its neighbour with the greatest common crack. False if nothing could be joined.
@@ -52,6 +54,7 @@ class SolidSplitter {
   geometry::SolidComplex complex_;
   std::vector<geometry::SolidContact> contacts_;
   std::vector<int> piece_of_;    // per cell
+  std::vector<int> last_split_;  // per cell: its piece then; empty: there was none
   std::vector<double> volumes_;  // per piece, m3, descending
   int merged_count_ = 0;
   std::vector<char> was_merged_;  // per cell; empty: none

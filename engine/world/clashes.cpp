@@ -26,17 +26,43 @@ struct Placed {
 
 Placed place(const Body& body, std::shared_ptr<const collision::Collider> collider) {
   Placed out;
-  out.collider = collider ? std::move(collider) : collision::make_collider(*body.shape);
+  out.collider = std::move(collider);
   out.placed = collision::place_collider(*out.collider, body.pose);
   for (const Vec3& v : out.placed.start) out.box.include(v);
   return out;
 }
 
+/// Null: nobody has met a body of that shape yet.
 std::shared_ptr<const collision::Collider> known_collider(const Body& body,
                                                           const dynamics::ContactState& contact) {
   const auto known = std::lower_bound(contact.bodies.begin(), contact.bodies.end(), body.id,
                                       [](const auto& state, body::BodyId id) { return state.id < id; });
-  return known != contact.bodies.end() && known->shape == body.shape ? known->collider : nullptr;
+  if (known != contact.bodies.end() && known->id == body.id && known->shape == body.shape)
+    return known->collider;
+  for (const dynamics::BodyState& state : contact.shelf->newborn)
+    if (state.shape == body.shape) return state.collider;
+  return nullptr;
+}
+
+/// Of all these; those that had to be made are on the shelf from now on.
+std::vector<Placed> place_all(const std::vector<const Body*>& all, const dynamics::ContactState& contact) {
+  std::vector<std::shared_ptr<const collision::Collider>> colliders;
+  std::vector<Size> unknown;
+  for (const Body* body : all) {
+    colliders.push_back(known_collider(*body, contact));
+    if (!colliders.back()) unknown.push_back(colliders.size() - 1);
+  }
+  std::vector<dynamics::BodyState> made(unknown.size());
+  core::parallel_for(made.size(), 1, [&](Size k) {
+    made[k].shape = all[unknown[k]]->shape;
+    dynamics::know_shape(made[k]);
+    colliders[unknown[k]] = made[k].collider;
+  });
+  std::vector<dynamics::BodyState>& newborn = contact.shelf->newborn;
+  newborn.insert(newborn.end(), made.begin(), made.end());
+  std::vector<Placed> placed(all.size());
+  core::parallel_for(placed.size(), 1, [&](Size i) { placed[i] = place(*all[i], std::move(colliders[i])); });
+  return placed;
 }
 
 /// Those with a surface that a piece of the whole may stick out into.
@@ -69,13 +95,10 @@ Meeting find_meeting(const Placed& a, const Placed& b) {
 std::vector<fracture::PieceClash> find_clashes(const Body& whole, const std::vector<Body>& born,
                                                const std::vector<Body>& bodies,
                                                const dynamics::ContactState& contact) {
-  const std::vector<const Body*> neighbours = find_neighbours(whole, bodies);
-  std::vector<Placed> placed(born.size() + neighbours.size());
-  core::parallel_for(placed.size(), 1, [&](Size i) {
-    placed[i] = i < born.size() ? place(born[i], nullptr)
-                                : place(*neighbours[i - born.size()],
-                                        known_collider(*neighbours[i - born.size()], contact));
-  });
+  std::vector<const Body*> all;
+  for (const Body& piece : born) all.push_back(&piece);
+  for (const Body* neighbour : find_neighbours(whole, bodies)) all.push_back(neighbour);
+  const std::vector<Placed> placed = place_all(all, contact);
   std::vector<collision::SweptBound> bounds;
   for (Size i = 0; i < placed.size(); ++i) bounds.push_back({placed[i].box, i < born.size()});
   const std::vector<IndexPair> pairs = collision::find_overlapping_pairs(bounds);
@@ -85,7 +108,7 @@ std::vector<fracture::PieceClash> find_clashes(const Body& whole, const std::vec
   });
 
   std::vector<fracture::PieceClash> clashes;
-  std::unique_ptr<Placed> before;  // where the whole is
+  std::vector<Placed> before;  // where the whole is
   for (Size k = 0; k < pairs.size(); ++k) {
     if (meetings[k] == Meeting::none) continue;
     const auto [a, b] = pairs[k];
@@ -93,8 +116,8 @@ std::vector<fracture::PieceClash> find_clashes(const Body& whole, const std::vec
       clashes.push_back({a, b});
       continue;
     }
-    if (!before) before = std::make_unique<Placed>(place(whole, known_collider(whole, contact)));
-    if (find_meeting(*before, placed[at(b)]) < meetings[k]) clashes.push_back({a, -1});
+    if (before.empty()) before = place_all({&whole}, contact);
+    if (find_meeting(before[0], placed[at(b)]) < meetings[k]) clashes.push_back({a, -1});
   }
   return clashes;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/fracture/split_shell.h"
 #include "engine/world/forms.h"
@@ -97,9 +98,10 @@ Pieces split_up(const Fragile& parent, const body::Shape& shape, const fracture:
   return out;
 }
 
+/// `last` is what it was before anything joined.
 Pieces split_up(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
-                const fracture::SolidDecision& decision, const fracture::SolidSplitter& splitter,
-                const geometry::SurfaceDistance* whole) {
+                const fracture::SolidDecision& decision, fracture::SolidSplitter& splitter,
+                const geometry::SurfaceDistance* whole, const Pieces& last) {
   fracture::SolidSplit split = splitter.split();
   Pieces out;
   out.merged_count = split.merged_count;
@@ -107,7 +109,9 @@ Pieces split_up(const Fragile& parent, std::shared_ptr<const body::Shape> shape,
   out.merged_share = volume > 0.0 ? split.merged_volume / volume : 0.0;
   out.pieces.resize(split.pieces.size());
   core::parallel_for(out.pieces.size(), 1, [&](std::size_t i) {
-    out.pieces[i] = make_piece(std::move(split.pieces[i]), parent, decision, whole);
+    const int before = split.pieces[i].before;
+    out.pieces[i] = before < 0 ? make_piece(std::move(split.pieces[i]), parent, decision, whole)
+                               : last.pieces[core::at(before)];
   });
   // What was joined again stands where it stood.
   if (out.pieces.size() == 1) out.pieces[0].shape = shape;
@@ -133,10 +137,11 @@ Splitter::Splitter(const Fragile& parent, std::shared_ptr<const body::Shape> sha
   whole_.emplace(standing_);
 }
 
-Pieces Splitter::split() const {
-  return solid_ ? split_up(parent_, shape_, std::get<fracture::SolidDecision>(impact_.decision), *solid_,
-                           whole_ ? &*whole_ : nullptr)
-                : split_up(parent_, *shape_, std::get<fracture::Decision>(impact_.decision));
+Pieces Splitter::split() {
+  last_ = solid_ ? split_up(parent_, shape_, std::get<fracture::SolidDecision>(impact_.decision), *solid_,
+                            whole_ ? &*whole_ : nullptr, last_)
+                 : split_up(parent_, *shape_, std::get<fracture::Decision>(impact_.decision));
+  return last_;
 }
 
 bool Splitter::join(const std::vector<fracture::PieceClash>& clashes) {

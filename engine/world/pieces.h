@@ -34,7 +34,7 @@ class Splitter {
   Splitter(const Splitter&) = delete;
   Splitter& operator=(const Splitter&) = delete;
 
-  Pieces split() const;
+  Pieces split();
 
   /// Sheets have room beside them; a solid's pieces fill it, and may be born in each other.
   bool may_clash() const { return solid_.has_value(); }
@@ -47,6 +47,7 @@ class Splitter {
   const std::shared_ptr<const body::Shape> shape_;
   const EvaluatedImpact& impact_;
   std::optional<fracture::SolidSplitter> solid_;
+  Pieces last_;                      // what split() gave last
   geometry::TriangleMesh standing_;  // the surface of a solid that has crack faces already, material space
   std::optional<geometry::SurfaceDistance> whole_;  // of that
 };

@@ -74,6 +74,42 @@ TEST_CASE("split solid: a cube in eight") {
   CHECK(total_volume(split.pieces[7].complex) == Approx(0.064).epsilon(0.1));
 }
 
+TEST_CASE("split solid: after a clash only what was joined is made again") {
+  SolidComplex complex = make_solid_complex(test::make_cube_elements(3, 0.2));
+  SolidCutter cutter(complex);
+  for (int k = 0; k < 3; ++k) {
+    SolidCut cut = test::plane_cut(complex, Vec3::Unit(k), 0.6, k);
+    keep_off_nodes(complex, 0.05, cut);
+    cutter.cut(cut);
+  }
+  fracture::SolidSplitter in_turn(complex), at_once(complex);
+  const auto first = in_turn.split();
+  for (const auto& piece : first.pieces) CHECK(piece.before == -1);
+  for (fracture::SolidSplitter* splitter : {&in_turn, &at_once}) REQUIRE(splitter->join({{3, 1}, {5, -1}}));
+  const auto second = in_turn.split(), fresh = at_once.split();
+  REQUIRE(second.pieces.size() == fresh.pieces.size());
+  CHECK(second.merged_count == fresh.merged_count);
+  CHECK(second.merged_volume == fresh.merged_volume);
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < fresh.pieces.size(); ++p) {
+    const int before = second.pieces[p].before;
+    kept += before >= 0 ? 1 : 0;
+    const auto& piece = before >= 0 ? first.pieces[static_cast<std::size_t>(before)] : second.pieces[p];
+    CHECK(fresh.pieces[p].before == -1);
+    REQUIRE(piece.complex.cells.size() == fresh.pieces[p].complex.cells.size());
+    CHECK(total_volume(piece.complex) == total_volume(fresh.pieces[p].complex));
+    CHECK(piece.complex.vertices.size() == fresh.pieces[p].complex.vertices.size());
+    CHECK(piece.mesh.vertex_source == fresh.pieces[p].mesh.vertex_source);
+    for (std::size_t c = 0; c < piece.mesh.cells.size(); ++c) {
+      CHECK(piece.mesh.cells[c].element == fresh.pieces[p].mesh.cells[c].element);
+      CHECK(piece.mesh.cells[c].vertices == fresh.pieces[p].mesh.cells[c].vertices);
+    }
+  }
+  CHECK(kept > 3);
+  CHECK(kept < fresh.pieces.size());
+  for (const auto& piece : in_turn.split().pieces) CHECK(piece.before >= 0);
+}
+
 TEST_CASE("split solid: a plate too thin joins what it has most in common with") {
   SolidComplex complex = make_solid_complex(test::make_cube_elements(3));
   SolidCutter cutter(complex, 1e-3);

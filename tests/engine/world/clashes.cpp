@@ -55,6 +55,22 @@ TEST_CASE("pieces that are apart do not clash, and those that cross or touch do"
   CHECK(clashes_of(whole, {left, tilted}, {}).empty());
 }
 
+TEST_CASE("colliders of pieces are made once, and are there for the next who asks") {
+  const body::Body whole = make_cube(1, Vec3::Zero());
+  const body::Body left = make_cube(0, Vec3(-0.6, 0, 0)), right = make_cube(0, Vec3(0.6, 0, 0));
+  const dynamics::ContactState contact;
+  world::find_clashes(whole, {left, right}, {whole}, contact);
+  REQUIRE(contact.shelf->newborn.size() == 2);
+  CHECK(contact.shelf->newborn[0].shape == left.shape);
+  CHECK(contact.shelf->newborn[1].shape == right.shape);
+  const auto collider = contact.shelf->newborn[1].collider;
+  const body::Body beside = make_cube(2, Vec3(0.6, 1.7, 0));
+  world::find_clashes(right, {left}, {right, beside}, contact);
+  REQUIRE(contact.shelf->newborn.size() == 3);
+  CHECK(contact.shelf->newborn[1].collider == collider);
+  CHECK(contact.shelf->newborn[2].shape == beside.shape);
+}
+
 TEST_CASE("a piece clashes with a body that its whole did not cross") {
   const body::Body whole = make_cube(1, Vec3::Zero());
   const body::Body left = make_cube(0, Vec3(-0.6, 0, 0)), right = make_cube(0, Vec3(0.6, 0, 0));
