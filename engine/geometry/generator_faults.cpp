@@ -11,9 +11,11 @@ std::string metres(double value) {
   return text.str();
 }
 
-std::optional<std::string> find_size_fault(const std::string& what, double value, double least) {
+std::optional<std::string> find_size_fault(const std::string& what, double value, double least,
+                                           const std::string& what_is_least) {
   if (std::isfinite(value) && value > least && value < 1e9) return std::nullopt;
-  return what + " must be greater than " + metres(least) + " (it is " + metres(value) + ")";
+  const std::string told = what_is_least.empty() ? "" : what_is_least + ", ";
+  return what + " must be greater than " + told + metres(least) + " (it is " + metres(value) + ")";
 }
 
 core::Error too_fine(const Meshing& meshing) {

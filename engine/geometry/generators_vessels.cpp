@@ -76,23 +76,27 @@ core::Result<TriangleMesh> close_vessel(std::vector<ProfileSegment> profile, con
 struct NamedSize {
   const char* name;
   double value, least;
+  const char* what_is_least = "";
 };
 
 template <std::size_t kCount>
 std::optional<std::string> find_fault_of(const char* thing, const std::array<NamedSize, kCount>& sizes) {
   for (const NamedSize& size : sizes)
-    if (auto fault = find_size_fault(std::string(thing) + " " + size.name, size.value, size.least))
+    if (auto fault =
+            find_size_fault(std::string(thing) + " " + size.name, size.value, size.least, size.what_is_least))
       return fault;
   return std::nullopt;
 }
 
 std::optional<std::string> find_bottle_fault(const BottleSizes& sizes) {
-  return find_fault_of("a bottle's", std::array<NamedSize, 5>{
-                                         {{"wall", sizes.wall, 0.0},
-                                          {"neck_radius", sizes.neck_radius, 2.0 * sizes.wall},
-                                          {"radius", sizes.radius, sizes.neck_radius},
-                                          {"neck_length", sizes.neck_length, sizes.wall},
-                                          {"height", sizes.height, 2.0 * sizes.radius + sizes.neck_length}}});
+  return find_fault_of(
+      "a bottle's",
+      std::array<NamedSize, 5>{
+          {{"wall", sizes.wall, 0.0},
+           {"neck_radius", sizes.neck_radius, 2.0 * sizes.wall, "two walls"},
+           {"radius", sizes.radius, sizes.neck_radius, "neck_radius"},
+           {"neck_length", sizes.neck_length, sizes.wall, "wall"},
+           {"height", sizes.height, 2.0 * sizes.radius + sizes.neck_length, "two radii and neck_length"}}});
 }
 
 /// Radius of the rounded edge of the bottom.
@@ -122,13 +126,14 @@ WallProfile bottle_side(const BottleSizes& sizes, double low, double inset) {
 core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& meshing) {
   const double wall = sizes.wall;
   if (const auto fault = find_fault_of(
-          "a vase's", std::array<NamedSize, 6>{{{"wall", wall, 0.0},
-                                                {"height", sizes.height, 10.0 * wall},
-                                                {"foot_radius", sizes.foot_radius, 2.0 * wall},
-                                                {"neck_radius", sizes.neck_radius, 2.0 * wall},
-                                                {"rim_radius", sizes.rim_radius, 2.0 * wall},
-                                                {"belly_radius", sizes.belly_radius,
-                                                 std::max(sizes.foot_radius, sizes.neck_radius)}}}))
+          "a vase's", std::array<NamedSize, 6>{
+                          {{"wall", wall, 0.0},
+                           {"height", sizes.height, 10.0 * wall, "ten walls"},
+                           {"foot_radius", sizes.foot_radius, 2.0 * wall, "two walls"},
+                           {"neck_radius", sizes.neck_radius, 2.0 * wall, "two walls"},
+                           {"rim_radius", sizes.rim_radius, 2.0 * wall, "two walls"},
+                           {"belly_radius", sizes.belly_radius,
+                            std::max(sizes.foot_radius, sizes.neck_radius), "foot_radius and neck_radius"}}}))
     return core::Error{*fault};
   const double top = sizes.height - 0.5 * wall;
   const auto side = [&](double floor, double inset) {
@@ -163,12 +168,14 @@ core::Result<TriangleMesh> make_bottle_sheet(const BottleSizes& sizes, const Mes
 core::Result<TriangleMesh> make_wine_glass(const WineGlassSizes& sizes, const Meshing& meshing) {
   const double stem = sizes.stem_radius, fillet = 2.0 * stem, rise = 0.12 * sizes.foot_radius;
   if (const auto fault = find_fault_of(
-          "a wine glass's", std::array<NamedSize, 6>{{{"stem_radius", stem, 0.0},
-                                                      {"foot_radius", sizes.foot_radius, stem + fillet},
-                                                      {"stem_length", sizes.stem_length, rise + 2.0 * fillet},
-                                                      {"height", sizes.height, sizes.stem_length},
-                                                      {"radius", sizes.radius, 2.0 * stem},
-                                                      {"rim_radius", sizes.rim_radius, stem}}}))
+          "a wine glass's",
+          std::array<NamedSize, 6>{
+              {{"stem_radius", stem, 0.0},
+               {"foot_radius", sizes.foot_radius, stem + fillet, "three stem_radius"},
+               {"stem_length", sizes.stem_length, rise + 2.0 * fillet, "what foot and stem are rounded by"},
+               {"height", sizes.height, sizes.stem_length, "stem_length"},
+               {"radius", sizes.radius, 2.0 * stem, "two stem_radius"},
+               {"rim_radius", sizes.rim_radius, stem, "stem_radius"}}}))
     return core::Error{*fault};
   using Kind = ProfileSegment::Kind;
   const Vec2 foot(sizes.foot_radius, 0.0), foot_end(stem + fillet, rise);

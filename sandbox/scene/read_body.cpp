@@ -90,11 +90,21 @@ CapsuleForm read_capsule(TableReader& reader) {
   return form;
 }
 
+/// Of what is no shell.
+std::string where_thickness_belongs(const TableReader& reader, const std::string& kind) {
+  const TomlValue* shape = reader.table().find("shape");
+  const bool has_wall =
+      shape != nullptr && shape->is_text() && (shape->text == "vase" || shape->text == "bottle");
+  if (kind == "solid" && has_wall)
+    return fmt::format("it is for kind = \"shell\"; how thick a solid {} is, is its wall", shape->text);
+  return fmt::format("it is for kind = \"shell\"; this is a {}", kind);
+}
+
 decltype(BodyEntry::form) read_form(TableReader& reader, const std::string& kind,
                                     const SceneDescription& scene) {
   if (kind != "solid") reader.foreign({"element_size", "grading"}, "it is for kind = \"solid\"");
   if (kind == "shell") return read_shell(reader, scene);
-  reader.foreign({"thickness"}, fmt::format("it is for kind = \"shell\"; this is a {}", kind));
+  reader.foreign({"thickness"}, where_thickness_belongs(reader, kind));
   if (kind == "solid") return read_solid(reader, scene);
   reader.foreign(kMeshKeys, fmt::format("it is for kind = \"shell\" or \"solid\"; this is a {}", kind));
   if (kind == "sphere") {

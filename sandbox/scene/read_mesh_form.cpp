@@ -32,6 +32,8 @@ constexpr const char* kGlass = "a drinking glass or cup is a high bowl, or a win
 constexpr const char* kTumbler =
     "write kind = \"shell\", shape = \"bowl\", radius = 0.037, foot_radius = 0.03, foot_height = 0, "
     "height = 0.1, thickness = 0.0015; or shape = \"wine_glass\"";
+constexpr const char* kSheet = "a flat sheet is a pane";
+constexpr const char* kPane = "write kind = \"shell\", shape = \"pane\", width = 0.3, height = 0.2";
 constexpr OtherName kOtherNames[] = {
     {"box", kBox, kSlab},
     {"cube", kBox, kSlab},
@@ -43,6 +45,9 @@ constexpr OtherName kOtherNames[] = {
     {"plate", "a plate is a low bowl",
      "write kind = \"shell\", shape = \"bowl\" with radius, foot_radius and height, as the scene plate_stack "
      "does"},
+    {"sheet", kSheet, kPane},
+    {"panel", kSheet, kPane},
+    {"window", kSheet, kPane},
     {"glass", kGlass, kTumbler},
     {"tumbler", kGlass, kTumbler},
     {"cup", kGlass, kTumbler},
@@ -248,6 +253,16 @@ std::optional<std::string> read_shape_name(TableReader& reader, const Shapes& sh
   return std::nullopt;
 }
 
+/// What a shape is stretched to, if anything.
+std::optional<Vec3> read_whole_size(TableReader& reader, const std::string& shape) {
+  const TomlValue* size = reader.value("size");
+  const bool is_vector = size != nullptr && size->is_array() && size->items.size() == 3;
+  if (shape != "pane" || size == nullptr || is_vector) return reader.vector("size", extent());
+  reader.add_problem(size->place, "a pane has a width and a height",
+                     "write width = 0.3, height = 0.2 in place of size");
+  return std::nullopt;
+}
+
 void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Shapes& shapes,
                     MeshForm& form) {
   if (reader.has("mesh") && reader.has("shape")) {
@@ -277,8 +292,9 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
       reader.foreign(kShapeKeys, fmt::format("it is no size of shape \"{}\"", *shape));
     } else {
       for (const std::string& key : kShapeKeys) reader.value(key);  // one fault is enough
+      reader.value("size");
     }
-    if (shape != "slab") form.size = reader.vector("size", extent());
+    if (shape && shape != "slab") form.size = read_whole_size(reader, *shape);
   }
   form.scale = reader.number_or_vector("scale", positive()).value_or(form.scale);
   if (form.size && reader.has("scale")) {

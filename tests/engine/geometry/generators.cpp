@@ -293,10 +293,14 @@ TEST_CASE("sizes that make no sense are refused in a sentence") {
   WineGlassSizes glass;
   glass.stem_length = 0.25;
   CHECK(make_wine_glass(glass, {}).error() ==
-        "a wine glass's height must be greater than 0.25 m (it is 0.2 m)");
+        "a wine glass's height must be greater than stem_length, 0.25 m (it is 0.2 m)");
   glass = {};
   glass.stem_radius = 0.02;
   CHECK(make_wine_glass(glass, {}).error().find("foot_radius") != std::string::npos);
+  VaseSizes vase;
+  vase.wall = 0.05;
+  vase.height = 0.3;
+  CHECK(make_vase(vase, {}).error() == "a vase's height must be greater than ten walls, 0.5 m (it is 0.3 m)");
   CHECK_FALSE(make_boat({1.0, 2.0, 0.2, 0.1}, {}).ok());
   CHECK_FALSE(make_boat({1.0, 0.4, nan, 0.1}, {}).ok());
   CHECK_FALSE(make_boat({1.0, 0.4, 0.2, -0.1}, {}).ok());
