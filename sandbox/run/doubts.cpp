@@ -219,6 +219,16 @@ std::vector<std::pair<const Body*, const Body*>> near_pairs(std::span<const Body
   return pairs;
 }
 
+/// The same thing in the same place: its surfaces nowhere cross.
+bool are_twins(const Body& a, const Body& b) {
+  const std::vector<Vec3>&own = a.shape->surface.positions, &other = b.shape->surface.positions;
+  if (!body::is_mesh(a.shape->kind) || own.size() != other.size()) return false;
+  const double rounding = 1e-9 * a.shape->bounding_radius;
+  return std::equal(own.begin(), own.end(), other.begin(), [&](const Vec3& p, const Vec3& q) {
+    return (a.pose.apply(p) - b.pose.apply(q)).norm() <= rounding;
+  });
+}
+
 void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                 scene::Problems& doubts) {
   struct Inside {
@@ -232,7 +242,9 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
     if (triangles > kMostTriangles) break;
     const std::pair names(entry_of(scene, built, *a).name, entry_of(scene, built, *b).name);
     const auto known = found.find(names);
-    if ((known == found.end() && found.size() == kMostTold) || !script::lie_in_each_other(*a, *b)) continue;
+    if ((known == found.end() && found.size() == kMostTold) ||
+        (!are_twins(*a, *b) && !script::lie_in_each_other(*a, *b)))
+      continue;
     if (known == found.end())
       found.emplace(names, Inside{a, b, 0});
     else
@@ -247,7 +259,9 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
     const Body &inner = holds ? *inside.b : *inside.a, &outer = holds ? *inside.a : *inside.b;
     scene::book(
         doubts, later.place,
-        fmt::format("\"{}\" begins inside {}\"{}\"{}", inner.name, is_floor ? "the plane " : "", outer.name,
+        fmt::format("\"{}\" begins {} {}\"{}\"{}", inner.name,
+                    are_twins(*inside.a, *inside.b) ? "exactly in" : "inside", is_floor ? "the plane " : "",
+                    outer.name,
                     inside.others == 0 ? ""
                                        : fmt::format(", and {} more such pair{}", inside.others,
                                                      inside.others > 1 ? "s" : "")),

@@ -162,6 +162,8 @@ TEST_CASE("bodies that begin in each other or in the floor are doubted, what tou
       "0]\n";
   CHECK(doubts_of(bowls + "repeat = {count = 2, spacing = [0, 0.004, 0]}\n").empty());
   CHECK(has(doubts_of(bowls + "repeat = {count = 2, spacing = [0.02, 0, 0]}\n"), "begins inside"));
+  for (const std::string& twice : {bowls, brick})
+    CHECK(has(doubts_of(twice + "repeat = {count = 2, spacing = 0}\n"), "begins exactly in"));
   CHECK(doubts_of(crate + "motion = \"static\"\n[[body]]\nkind = \"sphere\"\nmotion = \"static\"\n").empty());
 }
 
