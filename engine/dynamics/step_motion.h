@@ -59,7 +59,7 @@ struct StepPart {
   int number = 0, count = 1;
   bool may_return = false;  // it may be taken again
   bool is_again = false;    // it is: from its beginning, but for bodies that broke and what they touched
-  // It ends where ways would have to be opened: who breaks is known by then, and pieces go other ways.
+  // It ends where ways would have to be opened: what opens is known by then, and goes other ways.
   bool is_trial = false;
 };
 
@@ -85,7 +85,7 @@ StepPart divide_to(const ContactSettings& settings, const StepPart& part, double
 std::optional<StepPart> divide_where_cut(const ContactSettings& settings, const StepPart& part,
                                          const ContactReport& moved);
 
-/// Whether a trial of the part may tell who breaks in it: it is as short as parts get, so that it would not
+/// Whether a trial of the part may tell what opens in it: it is as short as parts get, so that it would not
 /// be divided whatever comes of it.
 bool may_be_tried(const ContactSettings& settings, const StepPart& part);
 

@@ -274,8 +274,8 @@ void World::take_parts(dynamics::ContactReport& contact, MovingState& snapshot) 
     if (may_break) timer.time("snapshot", [&] { snapshot = s.moving; });
     part.may_return = may_break;
     part.is_again = passes.count() > 0;
-    // Pieces that were just born in it often break as well.
-    part.is_trial = part.is_again && end != PartEnd::retaken_in_full && passes.breaks + 1 < kMostPasses &&
+    // What joints held opens others; pieces hardly ever break in the part in which they were born.
+    part.is_trial = end == PartEnd::retaken_without_joints && passes.breaks + 1 < kMostPasses &&
                     passes.openings + 1 < kMostPasses && dynamics::may_be_tried(s.contact_settings, part);
     MovedPart done = move_part(part, passes);
     end = may_break ? judge_part(done, snapshot, part, contact) : PartEnd::accepted;

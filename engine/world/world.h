@@ -162,7 +162,7 @@ class World {
     subdivided,              // in shorter parts
     retaken_without_joints,  // those that opened in it
     retaken_with_pieces,     // what broke in it is replaced by its pieces
-    retaken_in_full,         // it was a trial, which ends early, and nothing broke in it
+    retaken_in_full,         // it was a trial, which ends early, and nothing opened in it
   };
   PartEnd judge_part(MovedPart& done, MovingState& snapshot, dynamics::StepPart& part,
                      dynamics::ContactReport& contact);
