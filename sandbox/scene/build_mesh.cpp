@@ -187,6 +187,15 @@ bool fit(geometry::TriangleMesh& mesh, const MeshForm& form, const Place& place,
   return false;
 }
 
+/// Moves a file's mesh to where its frame is to begin.
+void set_origin(geometry::TriangleMesh& mesh, MeshOrigin origin) {
+  if (origin == MeshOrigin::file) return;
+  const Bounds bounds = bounds_of(mesh.positions);
+  Vec3 begin = 0.5 * (bounds.least + bounds.most);
+  if (origin == MeshOrigin::foot) begin.y() = bounds.least.y();
+  for (Vec3& p : mesh.positions) p -= begin;
+}
+
 /// Makes the triangles of a file no larger than that, m.
 bool divide(double edge_length, const Place& place, BuiltMesh& built, Problems& problems) {
   // Halving overshoots: there may be four times as many as of that length.
@@ -226,6 +235,7 @@ std::optional<BuiltMesh> build_mesh(const MeshForm& form, const Place& place, Pr
   for (const geometry::Part part : parted->parts) built.parts.push_back(static_cast<std::uint8_t>(part));
   if (!fit(built.mesh, form, place, problems)) return std::nullopt;
   if (const auto* files = std::get_if<MeshFileShape>(&form.shape)) {
+    set_origin(built.mesh, form.origin);
     if (form.edge_length && !divide(*form.edge_length, files->place, built, problems)) return std::nullopt;
     const Bounds bounds = bounds_of(built.mesh.positions);
     const double across = (bounds.most - bounds.least).maxCoeff();

@@ -13,7 +13,7 @@ namespace shatterbox::sandbox::scene {
 namespace {
 
 const std::vector<std::string> kKinds{"shell", "solid", "plane", "box", "sphere", "capsule"};
-const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up", "breakable", "support"};
+const std::vector<std::string> kMeshKeys{"mesh", "shape", "scale", "up", "origin", "breakable", "support"};
 
 Support read_support(TableReader& reader) {
   const TomlValue* value = reader.value("support");

@@ -59,12 +59,15 @@ const std::vector<std::string> kShapeKeys{
     "sheer",       "belly_radius", "rim_radius",    "wall",   "neck_length", "stem_radius",
     "stem_length", "blunt_height", "pointed_height"};
 
-/// Where a mesh file named in a scene lies: as it is, or beside the scene.
+/// Where a mesh file named in a scene lies: beside the scene, or, as one that is named at its call may, where
+/// the program runs.
 std::string find_mesh_file(const std::string& file, const std::string& scene_file) {
   namespace fs = std::filesystem;
   const fs::path path(file);
   if (path.is_absolute()) return file;
-  return (fs::path(scene_file).parent_path() / path).lexically_normal().string();
+  const fs::path beside = (fs::path(scene_file).parent_path() / path).lexically_normal();
+  std::error_code code;
+  return !fs::exists(beside, code) && fs::is_regular_file(path, code) ? file : beside.string();
 }
 
 std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDescription& scene) {
@@ -87,11 +90,11 @@ std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDes
     shape.files.push_back(find_mesh_file(name->text, scene.file));
     std::error_code code;
     if (!std::filesystem::is_regular_file(shape.files.back(), code)) {
-      reader.add_problem(
-          name->place, fmt::format("there is no mesh file {}", shape.files.back()),
-          shape.files.back().starts_with(kGlmarkFolder)
-              ? "it comes with Debian's package: sudo apt install glmark2-data"
-              : "files are looked for beside the scene; .obj, .ply, .stl, .glb, .gltf and .3ds are read");
+      reader.add_problem(name->place, fmt::format("there is no mesh file {}", shape.files.back()),
+                         shape.files.back().starts_with(kGlmarkFolder)
+                             ? "it comes with Debian's package: sudo apt install glmark2-data"
+                             : "files are looked for beside the scene, and where you are; .obj, .ply, .stl, "
+                               ".glb, .gltf and .3ds are read");
     }
   }
   if (names.empty()) reader.add_problem_at("mesh", "mesh names no file");
@@ -301,6 +304,10 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
     reader.add_problem_at("size", "a body has either a scale or a size, not both", "remove one of them");
   }
   form.up_is_z = reader.choice("up", {"y", "z"}).value_or("y") == "z";
+  if (const auto origin = reader.choice("origin", {"file", "middle", "foot"}))
+    form.origin = *origin == "foot"     ? MeshOrigin::foot
+                  : *origin == "middle" ? MeshOrigin::middle
+                                        : MeshOrigin::file;
   form.is_breakable = reader.truth("breakable").value_or(true);
 }
 

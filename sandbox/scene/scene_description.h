@@ -71,13 +71,16 @@ struct CapsuleForm {
   double radius = 0.1;
   double length = 0.4;  // m, from tip to tip, along its own y axis
 };
+/// Where the frame of a mesh file begins: where the file says, or in the middle of its box or of its foot.
+enum class MeshOrigin { file, middle, foot };
 struct MeshForm {
   MeshShape shape;
   // m, of generated meshes, nothing: kUsualTriangles, a boat 300; of a shell's file at most, nothing: as is
   std::optional<double> edge_length;
   Vec3 scale = Vec3::Ones();
-  std::optional<Vec3> size;  // the box that the mesh is stretched to, after `up`
-  bool up_is_z = false;      // the mesh's z axis points up in the scene
+  std::optional<Vec3> size;              // the box that the mesh is stretched to, after `up`
+  bool up_is_z = false;                  // the mesh's z axis points up in the scene
+  MeshOrigin origin = MeshOrigin::file;  // of files: shapes have theirs
   bool is_breakable = true;
 };
 struct ShellForm : MeshForm {

@@ -207,6 +207,32 @@ TEST_CASE("size stretches to a box, up = z turns") {
         1e-12);  // the pane's height lies along -z; no thickness to stretch
 }
 
+TEST_CASE("a file's mesh stands where it is asked to, wherever its own frame begins") {
+  const MeshFileFolder folder;
+  const std::string file =
+      folder.write("far.obj", "v 5 3 -2\nv 7 3 -2\nv 5 6 -2\nv 5 3 2\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+          .string();
+  const auto least_and_most = [&](const std::string& origin) {
+    const Reading reading =
+        read("[[body]]\nkind = \"shell\"\nmesh = \"" + file + "\"\nscale = 0.5\n" + origin);
+    REQUIRE(reading.scene.has_value());
+    Problems problems;
+    std::vector<std::string> notes;
+    const auto built = build_mesh(first_shell(reading), {}, problems, notes);
+    REQUIRE(built.has_value());
+    Vec3 least = Vec3::Constant(1e9), most = -least;
+    for (const Vec3& p : built->mesh.positions) {
+      least = least.cwiseMin(p);
+      most = most.cwiseMax(p);
+    }
+    return std::pair(least, most);
+  };
+  CHECK(least_and_most("") == std::pair(Vec3(2.5, 1.5, -1.0), Vec3(3.5, 3.0, 1.0)));
+  CHECK(least_and_most("origin = \"file\"\n") == least_and_most(""));
+  CHECK(least_and_most("origin = \"foot\"\n") == std::pair(Vec3(-0.5, 0.0, -1.0), Vec3(0.5, 1.5, 1.0)));
+  CHECK(least_and_most("origin = \"middle\"\n") == std::pair(Vec3(-0.5, -0.75, -1.0), Vec3(0.5, 0.75, 1.0)));
+}
+
 TEST_CASE("a file's mesh of a hundred metres is built, with a word on millimetres") {
   const MeshFileFolder folder;
   const std::string file = folder.write("tent.obj", "v 0 0 0\nv 150 0 0\nv 0 120 0\nf 1 2 3\n").string();
