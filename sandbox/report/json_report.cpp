@@ -151,6 +151,23 @@ Json audit(const RunRecord& record) {
   return json;
 }
 
+/// The frame that took longest, by stage.
+Json dearest(const RunRecord& record) {
+  const auto frame =
+      std::max_element(record.frames.begin(), record.frames.end(),
+                       [](const FrameRecord& a, const FrameRecord& b) { return a.frame < b.frame; });
+  if (frame == record.frames.end()) return nullptr;
+  const auto number_of_frame = static_cast<std::size_t>(frame - record.frames.begin());
+  Json stages = Json::object();
+  for (const auto& [name, times] : times_of(record.stages, {number_of_frame}))
+    if (!times.empty()) stages[name] = number(times.front());
+  return {{"frame", number_of_frame},
+          {"ms", number(frame->frame)},
+          {"stages", stages},
+          {"breaks", frame->breaks},
+          {"solves", frame->solves}};
+}
+
 Json times(const RunRecord& record) {
   std::vector<double> frame, simulate, render, encode;
   for (const FrameRecord& f : record.frames) {
@@ -165,6 +182,9 @@ Json times(const RunRecord& record) {
     entry.update(make_spread(phase.frame_times));
     entry["contacts"] = number(phase.contacts);
     entry["awake"] = number(phase.awake);
+    entry["awake_share"] = number(phase.awake_share);
+    entry["solves"] = phase.solves;
+    entry["stages"] = make_spreads(times_of(record.stages, phase.frames));
     phases[phase.name] = entry;
   }
   return {{"frame", make_spread(frame)},
@@ -173,7 +193,8 @@ Json times(const RunRecord& record) {
           {"encode", make_spread(encode)},
           {"stages", make_spreads(record.stages)},
           {"passes", make_spreads(record.passes)},
-          {"phases", phases}};
+          {"phases", phases},
+          {"dearest", dearest(record)}};
 }
 
 Json make_trace(const Trace& trace) {

@@ -25,10 +25,12 @@ struct FrameRecord {
   double encode = 0.0;  // by the encoder's own clock, and pictures written
   double audit = 0.0;   // in none of the times above
   int contacts = 0;     // most in any of its steps
-  int awake = 0;        // dynamic bodies not asleep, at its end
+  int movable = 0;      // dynamic bodies, at its end
+  int awake = 0;        // of them: not asleep
   int hits = 0;         // of the continuous pass, summed over its steps
   int impacts = 0;      // evaluated in it
   int breaks = 0;
+  long solves = 0;  // of stress
 };
 
 struct RunRecord {

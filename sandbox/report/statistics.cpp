@@ -27,7 +27,8 @@ std::vector<Phase> phases_of(const std::vector<FrameRecord>& frames) {
   }
   const double usual_hits = spread_of(hits).median;
   bool has_begun = false, has_broken = false;
-  for (const FrameRecord& frame : frames) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const FrameRecord& frame = frames[k];
     has_begun = has_begun || frame.contacts > 0 || frame.impacts > 0 || frame.breaks > 0;
     has_broken = has_broken || frame.breaks > 0;
     const bool is_in[] = {
@@ -35,17 +36,31 @@ std::vector<Phase> phases_of(const std::vector<FrameRecord>& frames) {
         has_broken, most > 0 && frame.contacts >= 0.8 * most, has_begun && frame.awake == 0};
     for (std::size_t i = 0; i < phases.size(); ++i) {
       if (!is_in[i]) continue;
+      phases[i].frames.push_back(k);
       phases[i].frame_times.push_back(frame.frame);
       phases[i].contacts += frame.contacts;
       phases[i].awake += frame.awake;
+      phases[i].awake_share += frame.movable > 0 ? static_cast<double>(frame.awake) / frame.movable : 0.0;
+      phases[i].solves += frame.solves;
     }
   }
   for (Phase& phase : phases) {
     const auto count = static_cast<double>(std::max<std::size_t>(1, phase.frame_times.size()));
     phase.contacts /= count;
     phase.awake /= count;
+    phase.awake_share /= count;
   }
   return phases;
+}
+
+TimesByName times_of(const TimesByName& all, const std::vector<std::size_t>& frames) {
+  TimesByName some;
+  for (const auto& [name, times] : all) {
+    std::vector<double>& own = some.emplace_back(name, std::vector<double>()).second;
+    for (const std::size_t frame : frames)
+      if (frame < times.size()) own.push_back(times[frame]);
+  }
+  return some;
 }
 
 }  // namespace shatterbox::sandbox::report

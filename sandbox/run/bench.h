@@ -12,6 +12,7 @@ struct Benchmark {
   std::string name;
   std::string what;                    // in words
   std::vector<std::string> arguments;  // of `run`; pictures are drawn unless they say --no-render
+  std::string needs = {};              // a file of Debian's glmark2-data; left out without it
 };
 
 /// All benchmarks, in the order of the table.
@@ -26,7 +27,8 @@ struct BenchOptions {
 };
 
 /// What one run's report says about speed, by the words of the table: medians, p95 and worst times in ms by
-/// phase, memory in MB, contacts, failsafe share, crossings (null without the audit).
+/// phase, the dearest frame by stage, memory in MB, contacts, failsafe share, crossings (null without the
+/// audit).
 nlohmann::ordered_json bench_row(const std::string& name, const nlohmann::json& report);
 
 /// The rows as a table for people.

@@ -26,9 +26,14 @@ void Recorder::note_frame(const world::World& world, double simulate, double aud
   frame.audit = audit;
   frame.contacts = most_contacts_;
   frame.hits = hits_;
-  for (const body::Body& body : world.bodies()) frame.awake += body.is_dynamic() && body.is_awake ? 1 : 0;
+  for (const body::Body& body : world.bodies()) {
+    if (!body.is_dynamic()) continue;
+    ++frame.movable;
+    if (body.is_awake) ++frame.awake;
+  }
   frame.impacts = static_cast<int>(report.impacts.size() - impacts_);
   frame.breaks = static_cast<int>(report.breaks.size() - breaks_);
+  frame.solves = report.solver.solves - solves_;
   const auto& stages = report.stages.stages();  // in the order of their first call: new ones come last
   stage_sums_.resize(stages.size(), 0.0);
   for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -43,6 +48,7 @@ void Recorder::note_frame(const world::World& world, double simulate, double aud
   hits_ = 0;
   impacts_ = report.impacts.size();
   breaks_ = report.breaks.size();
+  solves_ = report.solver.solves;
 }
 
 void Recorder::note_pictures(const Painted& painted, int first) {

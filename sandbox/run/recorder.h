@@ -34,6 +34,7 @@ class Recorder {
   int most_contacts_ = 0;  // in this frame
   int hits_ = 0;           // in this frame
   std::size_t impacts_ = 0, breaks_ = 0;
+  long solves_ = 0;
   std::vector<double> stage_sums_;
 };
 

@@ -152,6 +152,22 @@ TEST_CASE("median, 95th percentile and worst") {
   CHECK(spread_of(hundred).max == 100.0);
 }
 
+TEST_CASE("stages, solves and who is awake are told by phase, and the dearest frame by stage") {
+  RunRecord record = some_record();
+  for (FrameRecord& frame : record.frames) frame.movable = 4;
+  record.frames[2].solves = 7;
+  record.frames[3].solves = 2;
+  const auto times = make_json(record)["time_ms"];
+  CHECK(times["phases"]["breaking"]["stages"]["motion"]["max"] == 3.0);
+  CHECK(times["phases"]["after"]["stages"]["motion"]["median"] == 3.5);
+  CHECK(times["phases"]["after"]["solves"] == 9);
+  CHECK(times["phases"]["after"]["awake_share"] == 0.125);
+  CHECK(times["dearest"]["frame"] == 3);
+  CHECK(times["dearest"]["ms"] == 4.0);
+  CHECK(times["dearest"]["stages"]["motion"] == 4.0);
+  CHECK(times["dearest"]["solves"] == 2);
+}
+
 TEST_CASE("frames are sorted into phases") {
   const auto phases = phases_of(some_record().frames);
   CHECK(phases[0].frame_times == std::vector<double>{1.0});       // before
