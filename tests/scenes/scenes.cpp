@@ -42,6 +42,49 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
 
 }  // namespace
 
+TEST_CASE("armadillo: whatever mesh takes the figure's place is hit") {
+  const Folder folder;
+  // A block whose frame begins far from it.
+  folder.write("block.obj",
+               "v 3 5 -9\nv 4 5 -9\nv 4 5 -8\nv 3 5 -8\nv 3 7 -9\nv 4 7 -9\nv 4 7 -8\nv 3 7 -8\n"
+               "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n");
+  const nlohmann::json report = play(
+      folder, "armadillo --seconds 0.14 --set figure.mesh='\"block.obj\"' --set figure.element_size=0.06");
+  double hardest = 0.0, time = 0.0;  // N s
+  for (const auto& row : report["impacts"]) {
+    if (row["body"] != "figure" || row["impulse_ns"].get<double>() < hardest) continue;
+    hardest = row["impulse_ns"].get<double>();
+    time = row["time"].get<double>();
+  }
+  CHECK(hardest > 0.5 * 0.35 * 70.0);  // of what the ball has
+  CHECK(time > 0.12);
+}
+
+TEST_CASE("solids break where they are hit, more if harder, and without grains as well") {
+  const Folder folder;
+  const std::string crater = "crater --set block.element_size=0.035 ";
+  const auto report = play(folder, crater + "--seconds 0.155");
+  const auto moved = play(
+      folder,
+      crater + "--seconds 0.155 --set 'throw.at_point=[-0.09,0.35,0.2]' --set 'throw.from=[0.46,0.9,3]'");
+  const auto fast = play(folder, crater + "--seconds 0.14 --set throw.speed=120");
+  for (const auto& one : {report, moved, fast}) {
+    REQUIRE(one["breaks"].size() > 0);
+    check_breaks(one);
+  }
+  const auto place_of = [](const nlohmann::json& one, int axis) {
+    return one["breaks"][0]["place"][static_cast<std::size_t>(axis)].get<double>();
+  };
+  CHECK(place_of(moved, 0) - place_of(report, 0) == Approx(-0.14).margin(0.005));
+  CHECK(place_of(moved, 1) == Approx(place_of(report, 1)).margin(0.005));
+  CHECK(fast["pieces"].get<int>() > 1.3 * report["pieces"].get<int>());
+  const auto plain = play(folder, "lintel --seconds 0.42 --set stone.grain_size=0");
+  REQUIRE(plain["breaks"].size() > 0);
+  CHECK(plain["breaks"][0]["body"] == "lintel");
+  CHECK(plain["breaks"][0]["grain_share"] == 0.0);
+  check_breaks(plain);
+}
+
 TEST_CASE("every scene that comes along passes its check and says what must be seen") {
   const Folder folder;
   int count = 0;
