@@ -10,6 +10,19 @@
 
 namespace shatterbox::sandbox::report {
 
+namespace {
+
+/// As a comment, what of a body its surface does not tell.
+void append_motion(const body::Body& body, std::string& text) {
+  const Vec3 &x = body.pose.translation, &v = body.velocity, &w = body.angular_velocity;
+  fmt::format_to(std::back_inserter(text),
+                 "# mass {:.17g} kg, centre {:.17g} {:.17g} {:.17g} m, velocity {:.17g} {:.17g} {:.17g} m/s, "
+                 "angular velocity {:.17g} {:.17g} {:.17g} rad/s\n",
+                 body.shape->mass, x.x(), x.y(), x.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z());
+}
+
+}  // namespace
+
 std::string make_obj(std::span<const body::Body> bodies, double time) {
   std::string text;
   const auto out = std::back_inserter(text);
@@ -25,6 +38,7 @@ std::string make_obj(std::span<const body::Body> bodies, double time) {
       if (c == ' ') c = '_';
     }
     fmt::format_to(out, "o {}#{}\n", name, body.id);
+    if (body.is_dynamic()) append_motion(body, text);
     for (const Vec3& p : mesh.positions) {
       const Vec3 world_point = body.pose.apply(p);
       fmt::format_to(out, "v {:.17g} {:.17g} {:.17g}\n", world_point.x(), world_point.y(), world_point.z());

@@ -11,7 +11,8 @@
 namespace shatterbox::sandbox::report {
 
 /// The text of one frame, of `bodies` at `time` (s): an `o` group a body (its name and number), 17
-/// significant digits, metres. Planes have no end and are left out.
+/// significant digits, metres; of what can move a comment with mass, centre and velocities. Planes have no
+/// end and are left out.
 std::string make_obj(std::span<const body::Body> bodies, double time);
 
 /// Writes frame `number` as DIR/frame_000000.obj. A sentence if that fails, else empty.

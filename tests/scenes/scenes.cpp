@@ -1,8 +1,10 @@
 // What must be true of each scene: it breaks as its first line says, keeps mass and momenta, and holds when
 // spared.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -40,7 +42,89 @@ double mean_z(const std::filesystem::path& path, const std::string& object) {
   return sum / count;
 }
 
+/// What an OBJ file of a frame tells of all that can move.
+struct FrameSums {
+  double mass = 0.0, volume = 0.0;   // kg, m3; without the ball
+  std::array<double, 3> momentum{};  // kg m/s, with the ball
+  int bodies = 0;
+};
+
+FrameSums sums_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  REQUIRE(file.good());
+  FrameSums sums;
+  std::vector<std::array<double, 3>> points;
+  std::string line, name;
+  while (std::getline(file, line)) {
+    double m = 0.0, x[3], v[3], w[3];
+    int t[3];
+    if (line.rfind("o ", 0) == 0) name = line.substr(2);
+    const bool is_ball = name.rfind("ball", 0) == 0;
+    if (std::sscanf(
+            line.c_str(),
+            "# mass %lf kg, centre %lf %lf %lf m, velocity %lf %lf %lf m/s, angular velocity %lf %lf %lf", &m,
+            x, x + 1, x + 2, v, v + 1, v + 2, w, w + 1, w + 2) == 10) {
+      ++sums.bodies;
+      if (!is_ball) sums.mass += m;
+      for (std::size_t k = 0; k < 3; ++k) sums.momentum[k] += m * v[k];
+    } else if (std::sscanf(line.c_str(), "v %lf %lf %lf", x, x + 1, x + 2) == 3) {
+      points.push_back({x[0], x[1], x[2]});
+    } else if (!is_ball && std::sscanf(line.c_str(), "f %d %d %d", t, t + 1, t + 2) == 3) {
+      const auto &a = points[static_cast<std::size_t>(t[0] - 1)],
+                 &b = points[static_cast<std::size_t>(t[1] - 1)],
+                 &c = points[static_cast<std::size_t>(t[2] - 1)];
+      sums.volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                      a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                     6.0;
+    }
+  }
+  return sums;
+}
+
 }  // namespace
+
+TEST_CASE(
+    "a break in free flight keeps mass, momentum and, but for the kerf, volume: from the meshes alone") {
+  const Folder folder;
+  folder.write("free.toml", R"(# a block is hit where nothing else is
+[scene]
+seconds = 0.06
+gravity = [0, 0, 0]
+[[body]]
+name = "block"
+kind = "solid"
+shape = "slab"
+size = [0.2, 0.16, 0.12]
+material = "plaster"
+element_size = 0.02
+[[body]]
+name = "ball"
+kind = "sphere"
+radius = 0.03
+material = "steel"
+position = [0.02, 0.01, 0.3]
+velocity = [0, 0, -40]
+)");
+  const nlohmann::json report = play(folder, "free.toml --meshes m --fps 240");
+  REQUIRE(report["breaks"].size() > 0);
+  const FrameSums first = sums_of(folder / "m/frame_000000.obj");
+  CHECK(first.bodies == 2);
+  CHECK(first.volume == Approx(0.2 * 0.16 * 0.12).epsilon(1e-12));
+  int most = 0;
+  for (int frame = 1; frame < 14; ++frame) {
+    char name[32];
+    std::snprintf(name, sizeof name, "m/frame_%06d.obj", frame);
+    const FrameSums sums = sums_of(folder / name);
+    INFO(name << ", " << sums.bodies << " bodies");
+    CHECK(std::abs(sums.mass / first.mass - 1.0) < 1e-10);
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK(std::abs(sums.momentum[k] - first.momentum[k]) < 1e-10 * std::abs(first.momentum[2]));
+    CHECK(sums.volume <= first.volume * (1.0 + 1e-12));
+    CHECK(sums.volume > first.volume * (1.0 - 5e-3));
+    most = std::max(most, sums.bodies);
+  }
+  CHECK(most > 5);
+}
 
 TEST_CASE("armadillo: whatever mesh takes the figure's place is hit") {
   const Folder folder;
