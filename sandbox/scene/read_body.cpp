@@ -170,6 +170,32 @@ void settle_breaking(TableReader& reader, const BodyEntry& body, SolidForm& soli
                             "remove it, or write breakable = true");
 }
 
+/// A wall along x, about `position` in the middle of its foot. Courses are shifted by a third of a brick: one
+/// that stood out by half of it would tip.
+void lay_bricks(TableReader& reader, BodyEntry& body) {
+  const MeshForm* const form = find_mesh_form(body.form);
+  const auto* const brick = form != nullptr && form->wall ? std::get_if<SlabShape>(&form->shape) : nullptr;
+  if (brick == nullptr) return;
+  for (const char* key : {"repeat", "rotation"})
+    if (reader.has(key))
+      reader.add_problem_at(key, "a wall of bricks lies along x, each brick once",
+                            "lay a slab with repeat and bond, as the scene brick_wall does");
+  const Vec3 gap(0.001, 0.0001, 0.001);  // m: they touch from above and below
+  const Vec3 pitch = brick->size + gap;
+  const Eigen::Array3d fitting = ((*form->wall + gap).array() / pitch.array() + 1e-9).floor().max(1.0);
+  if (fitting.prod() > kMostCopies) {
+    reader.add_problem_at("size", fmt::format("more than {} bricks", kMostCopies));
+    return;
+  }
+  Repeat& repeat = body.repeat;
+  repeat.layout = Layout::grid;
+  for (int k = 0; k < 3; ++k) repeat.count[static_cast<std::size_t>(k)] = static_cast<int>(fitting[k]);
+  repeat.spacing = pitch;
+  repeat.bond = repeat.count[1] > 1 ? 1.0 / 3.0 : 0.0;
+  body.position += Vec3(-0.5 * (repeat.count[0] - 1 + repeat.bond) * pitch.x(),
+                        0.5 * brick->size.y() + gap.y(), -0.5 * (repeat.count[2] - 1) * pitch.z());
+}
+
 }  // namespace
 
 std::optional<Vec3> read_colour(TableReader& reader, const std::string& key) {
@@ -223,6 +249,7 @@ void read_body(const TomlValue& table, const std::string& name, bool is_held_bac
   body.group = reader.text("group").value_or("");
   body.contact_duration = reader.number("contact_duration", positive("s"));
   body.repeat = read_repeat(reader);
+  lay_bricks(reader, body);
   if (body.motion == body::Motion::scripted && body.repeat.every > 0.0)
     reader.add_problem_at("repeat", "scripted bodies are all there from the start", "remove every");
   body.look.name = reader.choice("look", kLookNames).value_or("");

@@ -52,4 +52,7 @@ void read_motion(TableReader& reader, const std::string& kind, BodyEntry& body);
 /// The key `repeat` of a body: its copies.
 Repeat read_repeat(TableReader& reader);
 
+/// Copies of a body, at most.
+inline constexpr int kMostCopies = 100000;
+
 }  // namespace shatterbox::sandbox::scene

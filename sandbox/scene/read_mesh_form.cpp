@@ -20,7 +20,7 @@ struct Shapes {
 };
 const Shapes kShellShapes{"shell",
                           {"ornament", "sphere", "bowl", "wine_glass", "pane", "boat", "bottle", "egg"}};
-const Shapes kSolidShapes{"solid", {"sphere", "slab", "vase", "bottle", "egg", "figure"}};
+const Shapes kSolidShapes{"solid", {"sphere", "slab", "bricks", "vase", "bottle", "egg", "figure"}};
 /// What goes by another name here.
 struct OtherName {
   const char *name, *what, *hint;
@@ -39,9 +39,6 @@ constexpr OtherName kOtherNames[] = {
     {"cube", kBox, kSlab},
     {"block", kBox, kSlab},
     {"brick", kBox, kSlab},
-    {"bricks", "bricks are bodies of their own, each of which can break",
-     "write kind = \"solid\", shape = \"slab\" with the size of one brick, and repeat = { "
-     "count = [12, 10, 1], spacing = ..., bond = 0.5 }, as the scene brick_wall does"},
     {"plate", "a plate is a low bowl",
      "write kind = \"shell\", shape = \"bowl\" with radius, foot_radius and height, as the scene plate_stack "
      "does"},
@@ -54,10 +51,10 @@ constexpr OtherName kOtherNames[] = {
     {"mug", kGlass, kTumbler},
 };
 const std::vector<std::string> kShapeKeys{
-    "radius",      "neck_radius",  "neck_height",   "cap",    "foot_radius", "foot_height",
-    "height",      "width",        "edge_length",   "length", "beam",        "depth",
-    "sheer",       "belly_radius", "rim_radius",    "wall",   "neck_length", "stem_radius",
-    "stem_length", "blunt_height", "pointed_height"};
+    "radius",      "neck_radius", "neck_height",  "cap",           "foot_radius", "foot_height",
+    "height",      "width",       "brick",        "edge_length",   "length",      "beam",
+    "depth",       "sheer",       "belly_radius", "rim_radius",    "wall",        "neck_length",
+    "stem_radius", "stem_length", "blunt_height", "pointed_height"};
 
 /// Where a mesh file named in a scene lies: beside the scene, or, as one that is named at its call may, where
 /// the program runs.
@@ -108,6 +105,18 @@ SlabShape read_slab(TableReader& reader) {
     reader.add_problem(reader.table().place, fmt::format("{} has no size", reader.what()),
                        "add size = [x, y, z] in metres");
   return slab;
+}
+
+/// One brick of a wall; of a German one, if its size is not given.
+SlabShape read_brick(TableReader& reader, MeshForm& form) {
+  SlabShape brick;
+  brick.size = reader.vector("brick", extent()).value_or(Vec3(0.24, 0.071, 0.115));
+  form.wall = reader.vector("size", extent());
+  if (!reader.has("size"))
+    reader.add_problem(
+        reader.table().place, fmt::format("{} has no size", reader.what()),
+        "add the size of the whole wall, size = [x, y, z] in metres; brick = [x, y, z] is that of one");
+  return brick;
 }
 
 struct NamedSize {
@@ -289,7 +298,10 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
           fmt::format("add mesh = \"file.obj\", or shape = one of {}", quoted_list(shapes.known)));
     }
     reader.value("mesh");
-    form.shape = read_shape(reader, shape.value_or("sphere"), &shapes == &kShellShapes);
+    if (shape == "bricks")
+      form.shape = read_brick(reader, form);
+    else
+      form.shape = read_shape(reader, shape.value_or("sphere"), &shapes == &kShellShapes);
     form.edge_length = reader.number("edge_length", extent());
     if (shape) {
       reader.foreign(kShapeKeys, fmt::format("it is no size of shape \"{}\"", *shape));
@@ -297,7 +309,7 @@ void read_mesh_form(TableReader& reader, const SceneDescription& scene, const Sh
       for (const std::string& key : kShapeKeys) reader.value(key);  // one fault is enough
       reader.value("size");
     }
-    if (shape && shape != "slab") form.size = read_whole_size(reader, *shape);
+    if (shape && shape != "slab" && shape != "bricks") form.size = read_whole_size(reader, *shape);
   }
   form.scale = reader.number_or_vector("scale", positive()).value_or(form.scale);
   if (form.size && reader.has("scale")) {

@@ -9,8 +9,6 @@ namespace shatterbox::sandbox::scene {
 
 namespace {
 
-constexpr std::int64_t kMostCopies = 100000;
-
 /// `count` whole numbers from 1 to 100000, or nothing after booking what is wrong.
 bool read_whole_numbers(TableReader& reader, const TomlValue& value, const std::string& name,
                         std::span<int> numbers) {

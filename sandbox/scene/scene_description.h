@@ -81,6 +81,7 @@ struct MeshForm {
   std::optional<Vec3> size;              // the box that the mesh is stretched to, after `up`
   bool up_is_z = false;                  // the mesh's z axis points up in the scene
   MeshOrigin origin = MeshOrigin::file;  // of files: shapes have theirs
+  std::optional<Vec3> wall;              // m: what copies of a brick fill
   bool is_breakable = true;
 };
 struct ShellForm : MeshForm {

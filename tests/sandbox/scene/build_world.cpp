@@ -207,6 +207,31 @@ TEST_CASE("size stretches to a box, up = z turns") {
         1e-12);  // the pane's height lies along -z; no thickness to stretch
 }
 
+TEST_CASE("bricks are a wall on the middle of its foot, each a body") {
+  const Reading reading = read(
+      "[[body]]\nname = \"brick\"\nkind = \"solid\"\nshape = \"bricks\"\nsize = [1, 0.5, 0.12]\nmaterial = "
+      "\"brick\"\nelement_size = 0.1\nposition = [3, 1, 2]\n");
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  const auto built = build_world(*reading.scene, problems);
+  REQUIRE(built.has_value());
+  REQUIRE(built->world.bodies().size() == 4 * 7);
+  Vec3 least = Vec3::Constant(1e9), most = -least;
+  double mass = 0.0;
+  for (const body::Body& brick : built->world.bodies()) {
+    mass += brick.shape->mass;
+    for (const Vec3& p : brick.shape->surface.positions) {
+      least = least.cwiseMin(brick.pose.apply(p));
+      most = most.cwiseMax(brick.pose.apply(p));
+    }
+  }
+  // Every other course stands out by a third of a brick.
+  const double half = 0.5 * ((4.0 + 1.0 / 3.0) * 0.241 - 0.001);
+  CHECK((least - Vec3(3 - half, 1.0001, 2 - 0.0575)).norm() < 1e-9);
+  CHECK((most - Vec3(3 + half, 1 + 7 * 0.0711, 2 + 0.0575)).norm() < 1e-9);
+  CHECK(mass == Approx(28 * built->world.bodies()[0].shape->mass));
+}
+
 TEST_CASE("a file's mesh stands where it is asked to, wherever its own frame begins") {
   const MeshFileFolder folder;
   const std::string file =
