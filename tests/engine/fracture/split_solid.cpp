@@ -45,9 +45,7 @@ std::string fault_of(const SolidSurface& surface, const SolidComplex& piece) {
   return "";
 }
 
-}  // namespace
-
-TEST_CASE("split solid: a cube in eight") {
+SolidComplex make_cube_in_eight() {
   SolidComplex complex = make_solid_complex(test::make_cube_elements(3, 0.2));
   SolidCutter cutter(complex);
   for (int k = 0; k < 3; ++k) {
@@ -55,6 +53,13 @@ TEST_CASE("split solid: a cube in eight") {
     keep_off_nodes(complex, 0.05, cut);
     cutter.cut(cut);
   }
+  return complex;
+}
+
+}  // namespace
+
+TEST_CASE("split solid: a cube in eight") {
+  const SolidComplex complex = make_cube_in_eight();
   const auto split = split_solid(complex);
   REQUIRE(split.pieces.size() == 8);
   double sum = 0.0, last = 1.0;
@@ -75,13 +80,7 @@ TEST_CASE("split solid: a cube in eight") {
 }
 
 TEST_CASE("split solid: after a clash only what was joined is made again") {
-  SolidComplex complex = make_solid_complex(test::make_cube_elements(3, 0.2));
-  SolidCutter cutter(complex);
-  for (int k = 0; k < 3; ++k) {
-    SolidCut cut = test::plane_cut(complex, Vec3::Unit(k), 0.6, k);
-    keep_off_nodes(complex, 0.05, cut);
-    cutter.cut(cut);
-  }
+  const SolidComplex complex = make_cube_in_eight();
   fracture::SolidSplitter in_turn(complex), at_once(complex);
   const auto first = in_turn.split();
   for (const auto& piece : first.pieces) CHECK(piece.before == -1);

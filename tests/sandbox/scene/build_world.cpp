@@ -33,6 +33,16 @@ BuiltScene build(const std::string& text) {
   return std::move(*built);
 }
 
+/// Least and greatest coordinates.
+std::pair<Vec3, Vec3> bounds_of(const geometry::TriangleMesh& mesh) {
+  Vec3 least = Vec3::Constant(1e9), most = -least;
+  for (const Vec3& p : mesh.positions) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  return {least, most};
+}
+
 }  // namespace
 
 TEST_CASE("generated meshes have about 5000 triangles unless told otherwise") {
@@ -198,11 +208,7 @@ TEST_CASE("size stretches to a box, up = z turns") {
   std::vector<std::string> notes;
   const auto built = build_mesh(first_shell(reading), {}, problems, notes);
   REQUIRE(built.has_value());
-  Vec3 least = Vec3::Constant(1e9), most = -least;
-  for (const Vec3& p : built->mesh.positions) {
-    least = least.cwiseMin(p);
-    most = most.cwiseMax(p);
-  }
+  const auto [least, most] = bounds_of(built->mesh);
   CHECK((most - least - Vec3(3, 0, 4)).norm() <
         1e-12);  // the pane's height lies along -z; no thickness to stretch
 }
@@ -245,12 +251,7 @@ TEST_CASE("a file's mesh stands where it is asked to, wherever its own frame beg
     std::vector<std::string> notes;
     const auto built = build_mesh(first_shell(reading), {}, problems, notes);
     REQUIRE(built.has_value());
-    Vec3 least = Vec3::Constant(1e9), most = -least;
-    for (const Vec3& p : built->mesh.positions) {
-      least = least.cwiseMin(p);
-      most = most.cwiseMax(p);
-    }
-    return std::pair(least, most);
+    return bounds_of(built->mesh);
   };
   CHECK(least_and_most("") == std::pair(Vec3(2.5, 1.5, -1.0), Vec3(3.5, 3.0, 1.0)));
   CHECK(least_and_most("origin = \"file\"\n") == least_and_most(""));
