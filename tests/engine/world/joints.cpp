@@ -160,7 +160,7 @@ TEST_CASE("a blast loads mortar by its own duration though something arrives in 
   CHECK(ratios[1] == Approx(ratios[0]).epsilon(0.05));
 }
 
-TEST_CASE("a hit opens the mortar about it and no other and bits repeat") {
+TEST_CASE("a hit opens mortar about it and not all of it and bits repeat") {
   const auto run = [](std::uint64_t& hash) {
     world::World world = make_world(240);
     const int stone = world.add_material(*material::find_preset("brick")).value();
