@@ -64,7 +64,8 @@ std::string find_mesh_file(const std::string& file, const std::string& scene_fil
   if (path.is_absolute()) return file;
   const fs::path beside = (fs::path(scene_file).parent_path() / path).lexically_normal();
   std::error_code code;
-  return !fs::exists(beside, code) && fs::is_regular_file(path, code) ? file : beside.string();
+  const bool is_here = !fs::exists(beside, code) && fs::is_regular_file(path, code);
+  return is_here ? fs::absolute(path).string() : beside.string();
 }
 
 std::optional<MeshFileShape> read_mesh_files(TableReader& reader, const SceneDescription& scene) {

@@ -251,7 +251,6 @@ const Broken kCorpus[] = {
      "names no body", "body = "},
     {"[[event]]\nat=0\ndo = \"remove\"\nbody=\"b\"\nimpulse=[1,0,0]\n[[body]]\nname=\"b\"\nkind=\"sphere\"\n",
      "t.toml:5:1", "does not belong here", "push"},
-    {"[[body]]\nkind = \"solid\"\nshape = \"bricks\"\n", "t.toml:3:9", "bodies of their own", "bond = 0.5"},
     {"[[body]]\nkind = \"solid\"\nshape = \"box\"\n", "t.toml:3:9", "is a slab", "shape = \"slab\""},
     {"[[body]]\nkind = \"shell\"\nshape = \"plate\"\n", "t.toml:3:9", "a low bowl", "shape = \"bowl\""},
     // Words of other programs, and units.
