@@ -317,6 +317,8 @@ void World::finish_parts(int count, const MovingState& snapshot, dynamics::Conta
     dynamics::end_step(s.contact_settings, contact, count, s.moving.contact);
     s.report.stages.time(
         "sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+  } else {
+    s.moving.contact.shelf->newborn.clear();  // the paper's surfaces are others: nobody takes these from it
   }
   tell_watcher("sleep", {count - 1, count}, 0);
 }

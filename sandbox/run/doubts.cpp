@@ -234,6 +234,7 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
   struct Inside {
     const Body *a, *b;
     int others;  // copies of the same two
+    bool are_same;
   };
   long triangles = 0;
   std::map<std::pair<std::string, std::string>, Inside> found;
@@ -242,11 +243,11 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
     if (triangles > kMostTriangles) break;
     const std::pair names(entry_of(scene, built, *a).name, entry_of(scene, built, *b).name);
     const auto known = found.find(names);
-    if ((known == found.end() && found.size() == kMostTold) ||
-        (!are_twins(*a, *b) && !script::lie_in_each_other(*a, *b)))
-      continue;
+    if (known == found.end() && found.size() == kMostTold) continue;
+    const bool are_same = are_twins(*a, *b);
+    if (!are_same && !script::lie_in_each_other(*a, *b)) continue;
     if (known == found.end())
-      found.emplace(names, Inside{a, b, 0});
+      found.emplace(names, Inside{a, b, 0, are_same});
     else
       ++known->second.others;
   }
@@ -259,14 +260,16 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
     const Body &inner = holds ? *inside.b : *inside.a, &outer = holds ? *inside.a : *inside.b;
     scene::book(
         doubts, later.place,
-        fmt::format("\"{}\" begins {} {}\"{}\"{}", inner.name,
-                    are_twins(*inside.a, *inside.b) ? "exactly in" : "inside", is_floor ? "the plane " : "",
-                    outer.name,
+        fmt::format("\"{}\" begins {} {}\"{}\"{}", inner.name, inside.are_same ? "exactly in" : "inside",
+                    is_floor ? "the plane " : "", outer.name,
                     inside.others == 0 ? ""
                                        : fmt::format(", and {} more such pair{}", inside.others,
                                                      inside.others > 1 ? "s" : "")),
-        "what is solid is brought out slowly, sheets pass each other: move one of them, or give copies more "
-        "spacing");
+        inside.are_same
+            ? "the second is set aside by a hundred thousandth of its size: move one of them, or give "
+              "copies more spacing"
+            : "what is solid is brought out slowly, sheets pass each other: move one of them, or give "
+              "copies more spacing");
   }
 }
 

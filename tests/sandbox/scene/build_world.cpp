@@ -222,15 +222,13 @@ TEST_CASE("bricks are a wall on the middle of its foot, each a body") {
   const auto built = build_world(*reading.scene, problems);
   REQUIRE(built.has_value());
   REQUIRE(built->world.bodies().size() == 4 * 7);
-  Vec3 least = Vec3::Constant(1e9), most = -least;
+  geometry::TriangleMesh wall;
   double mass = 0.0;
   for (const body::Body& brick : built->world.bodies()) {
     mass += brick.shape->mass;
-    for (const Vec3& p : brick.shape->surface.positions) {
-      least = least.cwiseMin(brick.pose.apply(p));
-      most = most.cwiseMax(brick.pose.apply(p));
-    }
+    for (const Vec3& p : brick.shape->surface.positions) wall.positions.push_back(brick.pose.apply(p));
   }
+  const auto [least, most] = bounds_of(wall);
   // Every other course stands out by a third of a brick.
   const double half = 0.5 * ((4.0 + 1.0 / 3.0) * 0.241 - 0.001);
   CHECK((least - Vec3(3 - half, 1.0001, 2 - 0.0575)).norm() < 1e-9);
