@@ -14,6 +14,7 @@
 #include "engine/fracture/solid_force.h"
 #include "engine/fracture/solid_hole.h"
 #include "engine/fracture/solid_tracer.h"
+#include "engine/fracture/torn_solid.h"
 
 namespace shatterbox::fracture {
 namespace {
@@ -36,6 +37,7 @@ class SolidDecider {
       : subject_(prepared(subject)),
         impact_(impact),
         settings_(settings),
+        cracked_material_(as_cracked(subject_)),
         force_(subject_, impact, settings) {}
 
   SolidDecision decide() {
@@ -56,16 +58,23 @@ class SolidDecider {
     verdict.force = force_.hardest().first_force;
     solve_stresses(true);
     std::vector<SolidCandidate> candidates = find_candidates(*subject_.complex, true);
-    const bool is_holed = take_hole();
-    take_dent(is_holed);
-    if (is_holed) return std::move(decision_);
+    if (take_hole()) {
+      take_dent(decision_.perforation->momentum_share());
+      return std::move(decision_);
+    }
     leave_to_dent(candidates);
     if (!(verdict.ratio > 1.0) || candidates.empty()) {
       verdict.outcome = Outcome::held;
+      take_dent();
       return std::move(decision_);
     }
+    tell_yield();
     if (!force_.complete(decision_, verdict.reason)) return std::move(decision_);
     run_generations(std::move(candidates));
+    if (verdict.outcome == Outcome::broke)
+      open_tears();
+    else
+      take_dent();
     return std::move(decision_);
   }
 
@@ -75,6 +84,14 @@ class SolidDecider {
     return subject;
   }
   const SolidModel& model() const { return *subject_.model; }
+  /// What cracks run in: beside the crack in what yields a neck as wide as the body is thick is drawn out to
+  /// the elongation, which takes the most of what a tear takes [CR77].
+  static material::Material as_cracked(const SolidSubject& subject) {
+    material::Material material = subject.material;
+    if (material.yield > 0.0 && subject.model)
+      material.fracture_energy += material.yield * material.elongation * subject.model->width;
+    return material;
+  }
 
   /// The least stress that an element bears, Pa: its weakest flaw's, or that of sound material.
   double weakest_of(int element) const {
@@ -149,15 +166,25 @@ class SolidDecider {
     return candidates.empty() ? sound : candidates;
   }
 
-  /// A plate that is gone through is dished as by a hit that it holds and that gives it as much momentum.
-  void take_dent(bool is_holed) {
+  /// The stress by which what yields is judged.
+  void tell_yield() {
+    if (!(subject_.material.yield > 0.0)) return;
+    decision_.verdict.von_mises = greatest_von_mises(model(), force_.struck_displacement());
+    decision_.verdict.yield = subject_.material.yield;
+  }
+
+  /// Of a hit that gives the body that share of its momentum: a plate that is gone through is dished as by
+  /// one that it holds and that gives it as much.
+  void take_dent(double share = 1.0) {
     const material::Material& material = subject_.material;
     if (!(material.yield > 0.0)) return;
-    const double share = is_holed ? decision_.perforation->momentum_share() : 1.0;
     const double energy = share * share;
     const DentEnergy struck = force_.struck_energy();
-    YieldFinding finding = find_yield(subject_.model, material, share * force_.struck_displacement(),
-                                      {energy * struck.all, energy * struck.most});
+    const DentEnergy brought{energy * struck.all, energy * struck.most};
+    const VecX displacement = share * force_.struck_displacement();
+    YieldFinding finding = has_open_cracks(*subject_.complex) && !decision_.perforates()
+                               ? find_yield(torn(subject_.complex), material, displacement, brought)
+                               : find_yield(subject_.model, material, displacement, brought);
     decision_.verdict.von_mises = finding.stress / share;
     decision_.verdict.yield = material.yield;
     decision_.dent = std::move(finding.dent);
@@ -182,12 +209,35 @@ class SolidDecider {
     return true;
   }
 
-  /// Under a striker who does not go through metal flows: he has been asked for his energy, and the linear
-  /// stress, which nothing bounds there, starts no cracks.
+  /// The solid that was solved last, with its cracks.
+  std::shared_ptr<const TornSolid> torn(std::shared_ptr<const geometry::SolidComplex> complex) const {
+    const material::Material& material = subject_.material;
+    return make_torn(std::move(complex), force_.mesh(), {material.young, material.poisson, material.density},
+                     subject_.clamped_vertices);
+  }
+
+  /// What has torn in this event goes on to flow.
   void leave_to_dent(std::vector<SolidCandidate>& candidates) {
-    if ((!decision_.perforation && !was_asked(impact_)) || candidates.empty()) return;
+    if (!impact_.has_torn || candidates.empty()) return;
     candidates.clear();
-    decision_.verdict.reason = "it is not gone through";
+    decision_.verdict.reason = "it has torn";
+  }
+
+  /// What tears and stays in one piece is dented as it is by then, by what the tears leave of the hit.
+  void open_tears() {
+    if (!(subject_.material.yield > 0.0)) return;
+    if (decision_.part_count != count_parts(*subject_.complex)) return;
+    complex_ = std::make_shared<geometry::SolidComplex>(*decision_.complex);
+    const int generations = decision_.generations;
+    const bool is_known = is_answered_ && (is_solved_ || solve_again());
+    decision_.generations = generations;
+    if (!is_known) return;
+    DentEnergy struck = force_.struck_energy();
+    const double left = std::max(0.0, struck.most - decision_.fracture_energy);
+    struck.all *= struck.most > 0.0 ? left / struck.most : 0.0;
+    struck.most = left;
+    decision_.dent =
+        find_yield(torn(decision_.complex), subject_.material, force_.struck_displacement(), struck).dent;
   }
 
   SolidTracerSetup tracer_setup() {
@@ -199,7 +249,7 @@ class SolidDecider {
     if (!trees_) trees_.emplace(model().stiffness->vertex_rank.of(*model().mesh.elements));
     setup.guides.trees = &*trees_;
     setup.guides.strength = subject_.material.strength;
-    setup.material = &subject_.material;
+    setup.material = &cracked_material_;
     setup.grains = subject_.grains.get();
     for (const SolidPress& press : force_.presses())
       setup.centres.push_back({press.contact.point, press.contact.radius});
@@ -250,9 +300,9 @@ class SolidDecider {
   bool break_bridges() {
     if (!is_answered_) return false;
     const int generations = decision_.generations;
-    const bool is_known = is_solved_ || solve_again();
+    is_solved_ = is_solved_ || solve_again();
     decision_.generations = generations;
-    if (!is_known) return false;
+    if (!is_solved_) return false;
     const double size = kToldSize * model().mean_edge_length;
     const double area = part_bridges(*complex_, {.contacts = &force_.contacts(),
                                                  .tensions = &tensions_,
@@ -263,7 +313,7 @@ class SolidDecider {
     if (!(area > 0.0)) return false;
     ++decision_.cracks;
     decision_.new_area += area;
-    decision_.fracture_energy += subject_.material.fracture_energy * area;
+    decision_.fracture_energy += cracked_material_.fracture_energy * area;
     return true;
   }
 
@@ -272,7 +322,7 @@ class SolidDecider {
 
   /// Area that the energy left allows, m2.
   double most_area() const {
-    const double cost = subject_.material.fracture_energy;
+    const double cost = cracked_material_.fracture_energy;
     return settings_.has_energy_guard && cost > 0.0 ? energy_left() / cost : 1e300;
   }
 
@@ -332,6 +382,7 @@ class SolidDecider {
   const SolidSubject subject_;
   const Impact& impact_;
   const FractureSettings& settings_;
+  const material::Material cracked_material_;
   SolidForce force_;
   SolidDecision decision_;
   std::shared_ptr<const CrackTurns> turns_;

@@ -45,6 +45,8 @@ struct SolidDecision : DecisionFigures {
   std::shared_ptr<const SolidDent> dent;                  // of the uncut elements; null: none
   /// Of what yields; if the striker goes through, its hole is the break. Null: nobody comes near that.
   std::shared_ptr<const Perforation> perforation;
+
+  bool perforates() const { return perforation && perforation->is_through(); }
 };
 
 /// Fills in what is kept between impacts where it is null.

@@ -11,9 +11,10 @@ struct DentEnergy {
 };
 
 struct DentFigures {
-  double work = 0.0;    // J, of plastic flow
-  double flowed = 0.0;  // m3
-  bool is_cut = false;  // elements would have been crushed or torn by all of it, or all have swollen
+  double work = 0.0;       // J, of plastic flow
+  double flowed = 0.0;     // m3
+  double torn_area = 0.0;  // m2, of the tears that it opens (one face)
+  bool is_cut = false;     // elements would have been crushed or torn by all of it, or all have swollen
 };
 
 }  // namespace shatterbox::fracture

@@ -42,6 +42,7 @@ struct Impact {
   Vec3 spin_material = Vec3::Zero();     // rad/s
   std::optional<double> given_duration;  // s; replaces the computed one
   double contact_average = 1.0 / 60.0;   // s
+  bool has_torn = false;                 // of what yields: in this event, which does so once
   /// Stress over strength, anywhere, by what rests on the body alone, as an earlier solve told.
   std::optional<double> resting_ratio;
 };

@@ -6,6 +6,8 @@
 
 #include "engine/core/index.h"
 #include "engine/fracture/dent_shape.h"
+#include "engine/fracture/torn_solid.h"
+#include "engine/geometry/crack_lips.h"
 #include "engine/geometry/solid_deform.h"
 #include "engine/stress/solid_stress.h"
 #include "engine/stress/solid_yield.h"
@@ -40,22 +42,41 @@ bool is_sound(const geometry::SolidComplex& complex, const std::vector<Vec3>& mo
          std::abs(geometry::volume_share(complex, moves) - 1.0) <= kMostSwelling;
 }
 
+/// Where the dent's strains leave the element mesh's vertices, of that displacement to first order.
+std::vector<Vec3> turned_moves(const SolidModel& model, const TornSolid* torn, const VecX& displacement) {
+  std::vector<Vec3> moves = moves_of(model.mesh, turn_dent_shape(model, displacement));
+  if (torn) part_lips(torn->copied, moves);
+  return moves;
+}
+
+std::vector<stress::SolidStress> averaged_stresses(const SolidModel& model, const VecX& displacement) {
+  return stress::average_stresses(model.mesh, model.contacts,
+                                  stress::cell_stresses(*model.stiffness, model.mesh, displacement));
+}
+
 }  // namespace
+
+double greatest_von_mises(const SolidModel& model, const VecX& displacement) {
+  double greatest = 0.0;
+  for (const stress::SolidStress& s : averaged_stresses(model, displacement))
+    greatest = std::max(greatest, stress::von_mises(s));
+  return greatest;
+}
 
 std::vector<Vec3> moves_of_share(const SolidDent& dent, double share, const LeftDents& before) {
   const geometry::SolidMesh& mesh = dent.model->mesh;
   if (before.elements != dent.model->complex->elements)
-    return share == 1.0 ? dent.moves
-                        : moves_of(mesh, turn_dent_shape(*dent.model, share * dent.displacement));
+    return share == 1.0 ? dent.moves : turned_moves(*dent.model, dent.torn.get(), share * dent.displacement);
   VecX all = share * dent.displacement;
   for (std::size_t v = 0; v < mesh.vertex_source.size(); ++v)
     all.segment<3>(static_cast<Eigen::Index>(3 * v)) += before.displacement[at(mesh.vertex_source[v])];
-  std::vector<Vec3> moves = moves_of(mesh, turn_dent_shape(*dent.model, all));
+  std::vector<Vec3> moves = turned_moves(*dent.model, dent.torn.get(), all);
   for (std::size_t v = 0; v < moves.size(); ++v) moves[v] -= before.moves[v];
   return moves;
 }
 
 void leave(const SolidDent& dent, double share, const std::vector<Vec3>& moves, LeftDents& left) {
+  if (moves.size() != dent.model->complex->elements->mesh.positions.size()) return;
   if (left.elements != dent.model->complex->elements) {
     left.elements = dent.model->complex->elements;
     left.displacement.assign(moves.size(), Vec3::Zero());
@@ -68,14 +89,16 @@ void leave(const SolidDent& dent, double share, const std::vector<Vec3>& moves, 
   }
 }
 
-YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model, const material::Material& material,
+namespace {
+
+YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model,
+                        const std::shared_ptr<const TornSolid>& torn, const material::Material& material,
                         const VecX& displacement, const DentEnergy& energy) {
   YieldFinding finding;
   const stress::SolidStiffness& stiffness = *model->stiffness;
-  const std::vector<stress::SolidStress> stresses = stress::average_stresses(
-      model->mesh, model->contacts, stress::cell_stresses(stiffness, model->mesh, displacement));
-  stress::PlasticFlow flow = stress::find_plastic_flow(stiffness, model->mesh, stresses,
-                                                       {material.yield, material.elongation, energy.all});
+  stress::PlasticFlow flow =
+      stress::find_plastic_flow(stiffness, model->mesh, averaged_stresses(*model, displacement),
+                                {material.yield, material.elongation, energy.all});
   finding.stress = flow.greatest_stress;
   const double factor = flow.work > energy.most ? energy.most / flow.work : 1.0;
   if (!(flow.work > 0.0) || !(factor * material.plasticity > 0.0)) return finding;
@@ -88,11 +111,13 @@ YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model, const ma
   if (!shape.is_evaluated()) return finding;
   auto dent = std::make_shared<SolidDent>();
   dent->model = model;
+  dent->torn = torn;
+  if (torn) dent->torn_area = torn->area;
   dent->displacement = std::move(shape.displacement);
   dent->work = factor * flow.work;
   dent->flowed = flow.volume;
   for (int step = 0;; ++step) {
-    dent->moves = moves_of(model->mesh, turn_dent_shape(*model, dent->displacement));
+    dent->moves = turned_moves(*model, torn.get(), dent->displacement);
     if (is_sound(*model->complex, dent->moves)) break;
     if (step == kMostCrushSteps) return finding;
     dent->is_cut = true;
@@ -100,6 +125,18 @@ YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model, const ma
   }
   finding.dent = std::move(dent);
   return finding;
+}
+
+}  // namespace
+
+YieldFinding find_yield(const std::shared_ptr<const SolidModel>& model, const material::Material& material,
+                        const VecX& displacement, const DentEnergy& energy) {
+  return find_yield(model, std::shared_ptr<const TornSolid>(), material, displacement, energy);
+}
+
+YieldFinding find_yield(const std::shared_ptr<const TornSolid>& torn, const material::Material& material,
+                        const VecX& displacement, const DentEnergy& energy) {
+  return find_yield(torn->model, torn, material, carry(*torn, displacement), energy);
 }
 
 }  // namespace shatterbox::fracture

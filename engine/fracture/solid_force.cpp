@@ -312,7 +312,7 @@ void SolidForce::settle_force(SolidPress& press) {
 VecX SolidForce::struck_displacement() const {
   VecX sum = VecX::Zero(now_.system->dof_count());
   for (const SolidPress& press : presses_)
-    if (!press.load->is_resting) sum += press.force * press.displacement;
+    if (!press.load->is_resting && press.force > 0.0) sum += press.force * press.displacement;
   return sum;
 }
 

@@ -83,9 +83,9 @@ class SolidForce {
 
   /// Displacement (|dof|) of the mesh last solved at the pulse's peak, under all loads and the spin together.
   const VecX& displacement() const { return displacement_; }
-  /// That part of it which the collisions cause, of the mesh first solved. Before settle_again.
+  /// That part of it which the collisions cause.
   VecX struck_displacement() const;
-  /// What the collisions bring for a dent. Before settle_again.
+  /// What the collisions bring for a dent.
   DentEnergy struck_energy() const;
   const std::vector<SolidPress>& presses() const { return presses_; }
   const SolidPress& hardest() const { return presses_[hardest_]; }

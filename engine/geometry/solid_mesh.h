@@ -15,7 +15,7 @@ namespace shatterbox::geometry {
 /// shared by all pieces that come from it.
 struct SolidElements {
   TetMesh mesh;
-  TetTopology topology;
+  TetTopology topology;  // empty of copies (copy_elements), of which several may share a face
 };
 
 /// A connected part of one element's material.

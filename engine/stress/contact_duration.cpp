@@ -67,6 +67,11 @@ double hertz_patch_radius(const HertzContact& contact, double force) {
   return core::pow(0.75 * force * contact.radius / contact.modulus, 1.0 / 3.0);
 }
 
+double plastic_patch_radius(const HertzContact& contact, double energy, double hardness) {
+  const double fourth = 4.0 * contact.radius * energy / (core::kPi * hardness);
+  return std::min(core::sqrt(core::sqrt(fourth)), contact.radius);
+}
+
 double seen_over_peak(const Snapshots& snapshots, double duration) {
   constexpr double kShort = 1e-4;  // of the duration: a step that misses nothing
   if (!(snapshots.step > kShort * duration)) return 1.0;

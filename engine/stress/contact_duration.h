@@ -46,6 +46,10 @@ double hertz_compliance(const HertzContact& contact, double force);
 /// Radius of the circle of contact at a force, m: (3 F R / 4 E*)^(1/3).
 double hertz_patch_radius(const HertzContact& contact, double force);
 
+/// m, at the end of a hit of `energy` J that presses a round body into one that flows under `hardness` (Pa)
+/// over all of the patch: (4 R* energy / (pi hardness))^(1/4), at most R*. [Hertz] ch. 11
+double plastic_patch_radius(const HertzContact& contact, double energy, double hardness);
+
 /// pi sqrt(mass (contact_compliance + body_compliance)), s.
 double series_duration(double mass, double contact_compliance, double body_compliance);
 

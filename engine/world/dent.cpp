@@ -158,6 +158,7 @@ DentRow describe_dent(const body::Body& body, const ComingDent& coming, const fr
   row.share = dented->share;
   row.depth = depth_of(dented->way);
   row.energy = figures.work;
+  row.torn_area = figures.torn_area;
   row.volume_change = dented->volume_change;
   row.mass_error = std::abs(dented->shape->mass / body.shape->mass - 1.0);
   return row;
@@ -258,6 +259,7 @@ std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
       DentRow row = describe_dent(body, coming, figures, dented ? &*dented : nullptr, end_time);
       if (dented) {
         if (solid) leave(*solid, dented->share, dented->moves, left);
+        if (dented->torn) left.torn = dented->torn;
         row.born = put_dented(s.moving, body, *dented, s.ancestry);
         regrip(s.hands, body, {row.born}, s.moving.bodies);
         rehang(s.moving.contact.joints, body, {row.born}, s.moving.bodies);

@@ -16,10 +16,11 @@ struct Dented {
   std::shared_ptr<const Fragile> fragile;
   std::shared_ptr<const body::Shape> shape;
   Pose pose;
-  MovingSurface way;           // of its surface
-  std::vector<Vec3> moves;     // |vertices of the elements|, m
-  double share = 0.0;          // of the whole dent
-  double volume_change = 0.0;  // relative; of a shell that of its area
+  MovingSurface way;                                // of its surface
+  std::vector<Vec3> moves;                          // |vertices of the elements|, m
+  std::shared_ptr<const fracture::TornSolid> torn;  // on whose copies it is by now; null: on what it was
+  double share = 0.0;                               // of the whole dent
+  double volume_change = 0.0;                       // relative; of a shell that of its area
 };
 
 /// `left`: what other dents of the same hit have done to the solid.

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <queue>
 #include <utility>
 
+#include "engine/core/buckets.h"
 #include "engine/core/index.h"
+#include "engine/fracture/torn_solid.h"
 #include "engine/geometry/solid_deform.h"
 #include "engine/world/dented.h"
 #include "engine/world/forms.h"
@@ -31,26 +34,42 @@ class Carrier {
   const geometry::TetMesh& to_;
 };
 
-/// In which of the elements with cells a place is.
+/// In which of the elements with cells a place is. Those beyond a tear may be there too, and are asked last.
 class ElementFinder {
  public:
-  explicit ElementFinder(const geometry::SolidComplex& piece) : mesh_(piece.elements->mesh) {
-    for (const geometry::SolidPart& cell : piece.cells) elements_.push_back(cell.element);
-    std::sort(elements_.begin(), elements_.end());
-    elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
-    inverses_.resize(mesh_.tetrahedra.size());
-    for (const int e : elements_) inverses_[at(e)] = edge_matrix(mesh_, e).inverse();
+  explicit ElementFinder(const geometry::SolidComplex& piece)
+      : mesh_(piece.elements->mesh), asked_(mesh_.tetrahedra.size(), 0) {
+    std::vector<char> has_cells(mesh_.tetrahedra.size(), 0);
+    for (const geometry::SolidPart& cell : piece.cells) has_cells[at(cell.element)] = 1;
+    at_node_ = core::Buckets(mesh_.positions.size(), 4 * mesh_.tetrahedra.size(), [&](std::size_t k) {
+      return has_cells[k / 4] != 0 ? mesh_.tetrahedra[k / 4][k % 4] : -1;
+    });
   }
 
-  /// `guess`, if the place is in it, or else the one in which it is most, or least outside.
-  int find(const Vec3& place, int guess) const {
+  /// From `guess` over common nodes, towards the place: the first element that it is in; or, if it is in none
+  /// of them, the one in which it is least outside.
+  int find(const Vec3& place, int guess) {
     if (depth(guess, place) > -kInside) return guess;
+    ++stamp_;
+    std::priority_queue<std::pair<double, int>> next;  // the nearest first
+    const auto reach = [&](int element) {
+      if (asked_[at(element)] == stamp_) return;
+      asked_[at(element)] = stamp_;
+      next.emplace(-(middle(element) - place).squaredNorm(), element);
+    };
+    reach(guess);
     double deepest = -1e300;
-    for (const int e : elements_) {
-      const double d = depth(e, place);
-      if (d <= deepest) continue;
-      deepest = d;
-      guess = e;
+    while (!next.empty()) {
+      const int element = next.top().second;
+      next.pop();
+      const double d = depth(element, place);
+      if (d > deepest) {
+        deepest = d;
+        guess = element;
+      }
+      if (d > -kInside) break;
+      for (const int node : mesh_.tetrahedra[at(element)])
+        for (const int k : at_node_.of(at(node))) reach(k / 4);
     }
     return guess;
   }
@@ -58,15 +77,22 @@ class ElementFinder {
  private:
   static constexpr double kInside = 1e-9;
 
+  Vec3 middle(int element) const {
+    Vec3 sum = Vec3::Zero();
+    for (const int node : mesh_.tetrahedra[at(element)]) sum += 0.25 * mesh_.positions[at(node)];
+    return sum;
+  }
   /// The least barycentric coordinate.
   double depth(int element, const Vec3& place) const {
-    const Vec3 b = inverses_[at(element)] * (place - mesh_.positions[at(mesh_.tetrahedra[at(element)][0])]);
+    const Vec3 b = edge_matrix(mesh_, element).inverse() *
+                   (place - mesh_.positions[at(mesh_.tetrahedra[at(element)][0])]);
     return std::min(b.minCoeff(), 1.0 - b.sum());
   }
 
   const geometry::TetMesh& mesh_;
-  std::vector<int> elements_;
-  std::vector<Mat3> inverses_;  // of their edges, by element
+  core::Buckets at_node_;   // corners of elements with cells (4 element + corner) by node
+  std::vector<int> asked_;  // by element: the last search that came to it
+  int stamp_ = 0;
 };
 
 std::shared_ptr<const fracture::SolidFlawField> carry_flaws(const fracture::SolidFlawField& flaws,
@@ -111,12 +137,22 @@ std::shared_ptr<Fragile> dent_fragile(const Fragile& whole, double mass, geometr
 
 }  // namespace
 
-Dented make_dented(const body::Body& body, const Fragile& whole, const fracture::SolidDent& dent,
+Dented make_dented(const body::Body& body, const Fragile& fragile, const fracture::SolidDent& dent,
                    const fracture::LeftDents& left, double share) {
-  const geometry::SolidComplex& before = *std::get<fracture::SolidSubject>(whole.subject).complex;
+  Fragile whole = fragile;
+  auto& subject = std::get<fracture::SolidSubject>(whole.subject);
   Dented dented;
   dented.share = share;
   dented.moves = moves_of_share(dent, share, left);
+  if (dent.torn && dent.torn->source == subject.complex) {
+    dented.torn = dent.torn;
+    subject = on_copies(subject, dent.torn);
+  } else {
+    // It has more cracks by now, or gaped before.
+    if (dent.torn) dented.moves = as_of_sources(*dent.torn, dented.moves);
+    if (left.torn) dented.moves = as_of_copies(*left.torn, dented.moves);
+  }
+  const geometry::SolidComplex& before = *subject.complex;
   std::shared_ptr<geometry::SolidComplex> complex;
   dented.fragile = dent_fragile(whole, body.shape->mass,
                                 deform(before, dented.moves, kDentFlatness * kKerf * whole.size), complex);
@@ -125,7 +161,7 @@ Dented make_dented(const body::Body& body, const Fragile& whole, const fracture:
   dented.volume_change = total_volume(*complex) / total_volume(before) - 1.0;
   const Carrier back(complex->elements->mesh, before.elements->mesh);
   // A triangle reaches over several elements where these have stayed flat, and tells one of them.
-  const ElementFinder finder(*complex);
+  ElementFinder finder(*complex);
   set_way(
       body, [&](int element, const Vec3& place) { return back.carry(finder.find(place, element), place); },
       dented);

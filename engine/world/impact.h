@@ -65,6 +65,7 @@ struct ImpactMemory {
   double tested_growth = 1.1;     // times that force, at which it is tested again
   double solved_contact = 0.0;    // N: that force when a solve last told that the body holds; 0: none has
   double solved_ratio = 0.0;      // stress over strength, as it told, with what struck
+  double torn_until = -1e9;       // s: an event that began by then has torn
   bool keeps_dents = true;        // false of a piece of what cracked, which tears
   int generation = 0;             // breaks since the event began from which this piece comes
 

@@ -77,6 +77,7 @@ struct DentRow {
   double volume_change = 0.0;  // relative
   double energy = 0.0;         // J, of plastic flow
   double flowed_volume = 0.0;  // m3
+  double torn_area = 0.0;      // m2, of the tears that it opened (one face)
   double von_mises = 0.0;      // Pa, greatest
   double yield = 0.0;          // Pa
   double share = 1.0;          // of the dent for which there was room; 0: none

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/parallel.h"
+#include "engine/fracture/perforation_law.h"
 #include "engine/material/tempering.h"
 #include "engine/stress/contact_duration.h"
 #include "engine/stress/stress_bound.h"
@@ -27,6 +28,8 @@ constexpr double kBorneAgain = 1.02;
 constexpr double kUsedAgain = 2.0;
 /// Loads smaller than this share of the hardest one do not decide whether two impacts are alike.
 constexpr double kMinorLoad = 0.05;
+/// Times its flow stress, that a body bears all over a patch that is pressed into it. [Hertz] ch. 6
+constexpr double kHardness = 3.0;
 constexpr int kSolidGenerations = 6;  // solves of a cracking solid
 
 struct Candidate {
@@ -55,7 +58,8 @@ struct Judge {
     return partner ? dynamics::pair_material(struck, *partner, contact).restitution : struck.restitution;
   }
 
-  fracture::ImpactLoad impact_load(const body::Body& struck, const Load& load, bool is_collision) const {
+  fracture::ImpactLoad impact_load(const body::Body& struck, const material::Material& material,
+                                   const Load& load, bool is_collision) const {
     fracture::ImpactLoad out;
     if (settings.criterion == Criterion::penalty) {
       out.snapshots.step = 1.0 / settings.steps_per_second;
@@ -92,6 +96,10 @@ struct Judge {
     const double force = stress::peak_force(contact_pair, out.effective_mass, out.closing_speed);
     out.hertz_compliance = stress::hertz_compliance(contact_pair, force);
     out.hertz_radius = stress::hertz_patch_radius(contact_pair, force);
+    if (const double flow = fracture::flow_stress(material); flow > 0.0)
+      out.hertz_radius = std::max(
+          out.hertz_radius,
+          stress::plastic_patch_radius(contact_pair, fracture::collision_energy(out), kHardness * flow));
     return out;
   }
 };
@@ -202,18 +210,18 @@ void fill_candidate(const Judge& judge, const body::Body& body, double radius, d
                     const ImpactMemory& memory, Candidate& candidate) {
   const bool is_paper = judge.settings.criterion == Criterion::paper;
   const std::vector<Load> event = is_struck ? memory.event : std::vector<Load>{};
+  const material::Material& material = candidate.fragile->material();
   for (const Load& load : event) {
-    candidate.impact.loads.push_back(judge.impact_load(body, load, !is_paper));
+    candidate.impact.loads.push_back(judge.impact_load(body, material, load, !is_paper));
     candidate.impact.loads.back().was_asked = load.was_asked;
-    if (judge.begin && !is_paper && load.time >= judge.begin->time &&
-        candidate.fragile->material().yield > 0.0)
+    if (judge.begin && !is_paper && load.time >= judge.begin->time && material.yield > 0.0)
       candidate.impact.loads.back().striker = find_striker(*judge.begin, judge.log, body.id, load.other);
   }
   const std::optional<double> blast = blast_duration_of(event);
   // What presses at rest is nothing beside a blast, whose duration is that of all loads.
   if (!blast)
     for (const Load& load : gather_by_place(memory.contact, radius))
-      candidate.impact.loads.push_back(judge.impact_load(body, load, false));
+      candidate.impact.loads.push_back(judge.impact_load(body, material, load, false));
   candidate.is_struck = is_struck;
   const std::vector<Load>& told = is_struck ? event : memory.contact;
   candidate.hardest = *std::max_element(told.begin(), told.end(), [](const Load& a, const Load& b) {
@@ -227,6 +235,7 @@ void fill_candidate(const Judge& judge, const body::Body& body, double radius, d
   // Generations are bounded per event: when the impact that made a piece is over, counting begins anew.
   const int generation = candidate.first_time > memory.charged_until ? 0 : memory.generation;
   candidate.has_used_all = generation >= judge.settings.most_generations;
+  candidate.impact.has_torn = candidate.first_time <= memory.torn_until;
   candidate.impact.contact_average = contact_average(1.0 / judge.settings.steps_per_second);
   candidate.impact.spin_material = body.pose.rotation.conjugate() * body.angular_velocity;
   if (judge.settings.stress_window) candidate.impact.given_duration = judge.settings.stress_window;

@@ -54,6 +54,7 @@ Json dents(const world::WorldReport& report) {
                     {"volume_change", number(row.volume_change)},
                     {"energy_j", number(row.energy)},
                     {"flowed_m3", number(row.flowed_volume)},
+                    {"torn_m2", number(row.torn_area)},
                     {"von_mises_pa", number(row.von_mises)},
                     {"yield_pa", number(row.yield)},
                     {"share", number(row.share)},

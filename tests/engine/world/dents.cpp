@@ -6,6 +6,7 @@
 #include "engine/core/parallel.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
+#include "engine/geometry/self_crossings.h"
 #include "tests/engine/world/audited.h"
 #include "tests/support/sanitized.h"
 
@@ -28,6 +29,28 @@ struct SlabRun {
   world::World world;
   audit::AuditReport audit;
 };
+
+/// m, greatest: from the middle of a crack face to the nearest one that looks the other way.
+double torn_gap(const body::Shape& shape) {
+  std::vector<std::pair<Vec3, Vec3>> faces;  // middle, unit normal
+  for (std::size_t t = 0; t < shape.surface.triangles.size(); ++t) {
+    if (shape.crack_faces.empty() || shape.crack_faces[t] == 0) continue;
+    const auto& corners = shape.surface.triangles[t];
+    const auto p = [&](std::size_t k) {
+      return shape.surface.positions[static_cast<std::size_t>(corners[k])];
+    };
+    const Vec3 area = (p(1) - p(0)).cross(p(2) - p(0));
+    if (area.norm() > 1e-9) faces.emplace_back((p(0) + p(1) + p(2)) / 3.0, area.normalized());
+  }
+  double widest = 0.0;
+  for (const auto& [middle, normal] : faces) {
+    double nearest = 1e300;
+    for (const auto& [other, facing] : faces)
+      if (normal.dot(facing) < -0.5) nearest = std::min(nearest, (other - middle).norm());
+    if (nearest < 1e300) widest = std::max(widest, nearest);
+  }
+  return widest;
+}
 
 /// A ball hits the middle of a steel slab.
 SlabRun hit_slab(const SlabHit& hit, double seconds = 0.03) {
@@ -121,7 +144,7 @@ TEST_CASE(
   hit.speed = 300.0;
   expect_volume(hit, 0.05);
   hit.is_held = false;
-  hit.speed = 250.0;
+  hit.speed = 180.0;  // at 250 it is torn in two
   expect_volume(hit, 0.04);
   // Half of the way is not half of every move.
   hit.half_extent = Vec3(0.2, 0.15, 0.01);
@@ -160,6 +183,61 @@ TEST_CASE("what tears breaks into pieces of its mass and keeps no dent") {
   CHECK(w.report().breaks[0].mass_error < 1e-10);
   CHECK(w.report().breaks[0].momentum_error < 1e-10);
   CHECK(run.audit.crossings + run.audit.passages == 0);
+}
+
+TEST_CASE("metal that is strained beyond its elongation and not gone through tears, and its tears gape") {
+  if (test::kIsSanitized) return;
+  double depth = 0.0;
+  for (const int rate : {240, 60, 960}) {
+    const SlabRun run = hit_slab({365.0, rate, true});
+    const world::World& w = run.world;
+    CAPTURE(rate);
+    CHECK(w.report().breaks.empty());
+    REQUIRE(w.report().dents.size() == 1);
+    const world::DentRow& dent = w.report().dents[0];
+    CHECK(dent.torn_area > 1e-4);
+    CHECK(dent.torn_area < 0.3 * 0.02 + 0.4 * 0.02);
+    CHECK(dent.mass_error < 1e-12);
+    CHECK(std::abs(dent.volume_change) < 0.03);
+    CHECK(run.audit.crossings + run.audit.passages == 0);
+    if (depth == 0.0) depth = dent.depth;
+    CHECK(dent.depth == Approx(depth).epsilon(1e-6));
+    bool has_torn = false;
+    for (const world::ImpactRow& row : w.report().impacts)
+      has_torn = has_torn || row.verdict.starts_with("torn, in one piece");
+    CHECK(has_torn);
+    for (const body::Body& body : w.bodies()) {
+      if (body.shape->kind != body::ShapeKind::solid) continue;
+      CHECK(body.id == dent.born);
+      CHECK(geometry::enclosed_volume(body.shape->surface) * 7850.0 ==
+            Approx(body.shape->mass).epsilon(0.03));
+      CHECK(torn_gap(*body.shape) > 1e-3);
+      CHECK(geometry::find_self_crossings(body.shape->surface).count == 0);
+    }
+  }
+  CHECK(hit_slab({200.0, 240, true}).world.report().dents[0].torn_area == 0.0);
+}
+
+TEST_CASE("a torn slab is hit again, dented again and gone through, and stays one piece with its tear") {
+  if (test::kIsSanitized) return;
+  SlabRun run = hit_slab({365.0, 240, true});
+  world::World& w = run.world;
+  REQUIRE(w.report().dents.size() == 1);
+  const auto shoot = [&](const Vec3& place, double speed) {
+    world::BodyDescription ball;
+    ball.form = world::SphereDescription{0.03};
+    ball.pose.translation = place + Vec3(0.0, 0.0, 0.5);
+    ball.velocity = Vec3(0.0, 0.0, -speed);
+    REQUIRE(w.add_body(ball).ok());
+    const audit::AuditReport audit = test::run_audited(w, w.time() + 0.03);
+    CHECK(audit.crossings + audit.passages == 0);
+  };
+  shoot(Vec3(-0.1, 0.05, 0.0), 120.0);
+  CHECK(w.report().dents.size() == 2);
+  shoot(Vec3(0.12, -0.05, 0.0), 600.0);
+  REQUIRE(w.report().breaks.size() == 1);
+  CHECK(w.report().breaks[0].mass_error < 1e-10);
+  CHECK(world::count_overlaps(w.report().breaks[0]) == 0);
 }
 
 TEST_CASE("a dent goes as far as there is room") {
