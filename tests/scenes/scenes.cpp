@@ -267,6 +267,23 @@ TEST_CASE("slab: one ball dents it one goes through and what stands is one piece
   CHECK(held["dents"].size() == 2);
 }
 
+TEST_CASE("slab: the third ball is held and the slab tears and stays one piece") {
+  const Folder folder;
+  const auto report = play(folder, "slab --seconds 0.54 --audit");
+  check_breaks(report);
+  CHECK(report["breaks"].size() == 1);
+  REQUIRE(report["dents"].size() == 3);
+  CHECK(report["dents"][1]["torn_m2"] == 0.0);
+  CHECK(report["dents"][2]["torn_m2"].get<double>() > 1e-3);
+  CHECK(report["dents"][2]["depth_m"].get<double>() > 0.05);
+  bool has_torn = false;
+  for (const auto& row : report["impacts"])
+    has_torn = has_torn || row["verdict"].get<std::string>().starts_with("torn, in one piece: ");
+  CHECK(has_torn);
+  CHECK(report["audit"]["crossings"] == 0);
+  CHECK(report["audit"]["passages"] == 0);
+}
+
 TEST_CASE("panel: three balls dent a sheet and the last goes through with a plug, at any rate") {
   const Folder folder;
   for (const char* rate : {"240", "960"}) {
