@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/elementary.h"
 #include "sandbox/report/statistics.h"
 #include "sandbox/report/text_file.h"
 
@@ -43,6 +44,18 @@ Json impacts(const world::WorldReport& report) {
     list.back()["perforation_ratio"] = number(row.perforation_ratio);
   }
   return list;
+}
+
+Json tetrahedra(const std::string& body, const geometry::TetQuality& quality) {
+  const auto degrees = [](double angle) { return number(angle * 180.0 / core::kPi); };
+  return {{"body", body},
+          {"count", quality.count},
+          {"edge_m", number(quality.mean_edge_length)},
+          {"dihedral_degrees",
+           {{"least", degrees(quality.least_dihedral)},
+            {"median_least", degrees(quality.median_least_dihedral)},
+            {"greatest", degrees(quality.greatest_dihedral)}}},
+          {"aspect", {{"median", number(quality.median_aspect)}, {"worst", number(quality.worst_aspect)}}}};
 }
 
 Json dents(const world::WorldReport& report) {
@@ -247,6 +260,8 @@ Json make_json(const RunRecord& record) {
   if (w.tetrahedra_most > 0)
     json["tetrahedra"] = {
         {"start", w.tetrahedra_start}, {"end", w.tetrahedra_end}, {"max", w.tetrahedra_most}};
+  for (const auto& [body, quality] : record.tetrahedra)
+    json["tetrahedra"]["meshes"].push_back(tetrahedra(body, quality));
   json["impacts"] = impacts(w);
   json["breaks"] = breaks(w);
   if (!w.dents.empty()) json["dents"] = dents(w);

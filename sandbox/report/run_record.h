@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/audit/audit.h"
+#include "engine/geometry/tet_quality.h"
 #include "engine/world/inventory.h"
 #include "engine/world/report.h"
 #include "sandbox/report/trace.h"
@@ -53,7 +54,8 @@ struct RunRecord {
   std::vector<std::pair<std::string, double>> load;  // ms
   std::vector<std::string> used, idle, left_out;     // parts of the program
   std::vector<world::PartCount> inventory;           // at the end
-  bool has_sleepers = false;                         // at the end
+  std::vector<std::pair<std::string, geometry::TetQuality>> tetrahedra;  // of what can break, as it was made
+  bool has_sleepers = false;                                             // at the end
   bool has_audit = false;
   audit::AuditReport audit;
   double audit_time = 0.0;               // ms, in no frame's time

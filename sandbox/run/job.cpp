@@ -9,6 +9,7 @@
 #include "engine/core/parallel.h"
 #include "sandbox/run/doubts.h"
 #include "sandbox/run/exports.h"
+#include "sandbox/run/progress.h"
 #include "sandbox/scene/find_scene.h"
 
 namespace shatterbox::sandbox::run {
@@ -40,6 +41,9 @@ void describe_job(const Job& job, report::RunRecord& record) {
   record.asked_seconds = scene.seconds;
   record.warnings = scene.warnings;
   record.warnings.insert(record.warnings.end(), job.built->plan.notes.begin(), job.built->plan.notes.end());
+  if (!job.options.report.empty())
+    for (const scene::BodyTetrahedra& own : scene::find_tetrahedra(*job.built))
+      record.tetrahedra.emplace_back(scene.bodies[static_cast<std::size_t>(own.entry)].name, own.quality);
   for (const scene::Problem& doubt : find_doubts(scene, *job.built))
     record.warnings.push_back(scene::describe(doubt));
 }
@@ -125,10 +129,14 @@ Job make_job(const Options& options, Recorder& recorder, scene::Problems& proble
   outputs.check(problems);
   if (!problems.empty()) return job;
   const auto start = Clock::now();
-  job.built = scene::build_world(*job.scene, problems);
+  const int body_count = static_cast<int>(job.scene->bodies.size());
+  Progress progress(body_count + 1, stderr_is_terminal());
+  job.built = scene::build_world(*job.scene, problems,
+                                 [&](int body, const std::string& note) { progress.show(body, note); });
   recorder.record.load.emplace_back("meshes", milliseconds_since(start));
   if (!job.built) return job;
   const auto prepared = Clock::now();
+  progress.show(body_count, "what the stress needs");
   job.built->world.prepare();
   recorder.record.load.emplace_back("factors", milliseconds_since(prepared));
   describe_job(job, recorder.record);

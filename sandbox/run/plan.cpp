@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -92,23 +91,17 @@ void tell_inventory(const std::vector<world::PartCount>& rows) {
     fmt::print("    {:<17} {:>6} {:>10.2f} MB\n", row.part, row.count, row.bytes / 1e6);
 }
 
-/// Of each [[body]] that is a solid which can break, its first copy.
 void tell_tetrahedra(const scene::SceneDescription& scene, const scene::BuiltScene& built) {
   const auto degrees = [](double angle) { return angle * 180.0 / core::kPi; };
-  std::set<int> told;
-  for (const auto& [id, origin] : built.origins) {
-    if (told.count(origin.entry) > 0) continue;
-    const auto quality = built.world.tetrahedra(id);
-    if (!quality) continue;
-    told.insert(origin.entry);
-    if (told.size() == 1) fmt::print("tetrahedra of what can break\n");
+  const std::vector<scene::BodyTetrahedra> all = scene::find_tetrahedra(built);
+  if (!all.empty()) fmt::print("tetrahedra of what can break\n");
+  for (const auto& [entry, quality] : all)
     fmt::print(
         "    {:<17} {:>6} of {:.2g} m; dihedral angles {:.0f} to {:.0f} degrees, half have none below "
         "{:.0f}; aspect {:.2g}, at worst {:.2g}\n",
-        scene.bodies[static_cast<std::size_t>(origin.entry)].name, quality->count, quality->mean_edge_length,
-        degrees(quality->least_dihedral), degrees(quality->greatest_dihedral),
-        degrees(quality->median_least_dihedral), quality->median_aspect, quality->worst_aspect);
-  }
+        scene.bodies[static_cast<std::size_t>(entry)].name, quality.count, quality.mean_edge_length,
+        degrees(quality.least_dihedral), degrees(quality.greatest_dihedral),
+        degrees(quality.median_least_dihedral), quality.median_aspect, quality.worst_aspect);
 }
 
 void tell_foreseen(const std::vector<Foreseen>& all, const scene::SceneDescription& scene) {

@@ -8,6 +8,11 @@
 #include <fmt/format.h>
 
 namespace shatterbox::sandbox::run {
+namespace {
+
+constexpr std::chrono::milliseconds kBarPause(100);  // between two times that a bar is drawn
+
+}  // namespace
 
 bool stderr_is_terminal() {
   return isatty(STDERR_FILENO) == 1;
@@ -36,7 +41,7 @@ Progress::Progress(int total, bool is_bar, std::chrono::milliseconds patience)
       is_bar_(is_bar),
       patience_(patience),
       start_(std::chrono::steady_clock::now()),
-      last_shown_(start_),
+      last_shown_(is_bar ? start_ - kBarPause : start_),
       last_news_(start_),
       watch_([this](const std::stop_token& stops) { wait_for_news(stops); }) {}
 
@@ -49,10 +54,17 @@ Progress::~Progress() {
 
 void Progress::wait_for_news(const std::stop_token& stops) {
   std::unique_lock lock(mutex_);
-  while (!wakes_.wait_until(lock, stops, last_shown_ + patience_, [&] { return stops.stop_requested(); })) {
+  const auto pause = [&] { return is_bar_ && is_news_ ? kBarPause : patience_; };
+  while (!stops.stop_requested() && !is_over_) {
+    const bool was_news = is_news_;
+    if (wakes_.wait_until(lock, stops, last_shown_ + pause(), [&] { return is_news_ != was_news; })) continue;
     const auto now = std::chrono::steady_clock::now();
     if (stops.stop_requested() || is_over_) return;
-    if (now - last_shown_ < patience_) continue;
+    if (now - last_shown_ < pause()) continue;
+    if (is_bar_ && is_news_) {
+      say(now, "", note_);
+      continue;
+    }
     const double waited = std::chrono::duration<double>(now - last_news_).count();
     say(now, "", fmt::format("{}{}nothing new for {:.0f} s", note_, note_.empty() ? "" : ", ", waited));
   }
@@ -69,13 +81,18 @@ void Progress::show(int done, const std::string& note) {
   done_ = done;
   note_ = note;
   const bool is_last = is_bar_ && done >= total_;
-  if (!is_last && now - last_shown_ < (is_bar_ ? std::chrono::milliseconds(100) : patience_)) return;
+  is_news_ = true;
+  if (!is_last && now - last_shown_ < (is_bar_ ? kBarPause : patience_)) {
+    wakes_.notify_all();
+    return;
+  }
   const double remaining = remaining_seconds(history_, total_);
   say(now, remaining < 0.0 ? "" : fmt::format("  {:.0f} s left", remaining), note);
 }
 
 void Progress::say(Time now, const std::string& left, const std::string& note) {
   last_shown_ = now;
+  is_news_ = false;
   if (total_ <= 0 || is_over_) return;
   const int percent = 100 * done_ / total_;
   if (is_bar_) {

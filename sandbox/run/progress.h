@@ -39,6 +39,7 @@ class Progress {
   const Time start_;
   std::mutex mutex_;  // of all that follows
   bool is_over_ = false;
+  bool is_news_ = false;  // that is not shown yet
   Time last_shown_, last_news_;
   int done_ = 0;
   std::string note_;

@@ -283,6 +283,16 @@ world::PathDescription path_of(const BodyEntry& body, const Pose& pose) {
   return path;
 }
 
+std::vector<BodyTetrahedra> find_tetrahedra(const BuiltScene& built) {
+  std::map<int, geometry::TetQuality> found;
+  for (const auto& [id, origin] : built.origins)
+    if (found.count(origin.entry) == 0)
+      if (const auto quality = built.world.tetrahedra(id)) found.emplace(origin.entry, *quality);
+  std::vector<BodyTetrahedra> all;
+  for (const auto& [entry, quality] : found) all.push_back({entry, quality});
+  return all;
+}
+
 std::string copy_name(const BodyEntry& body, int copy) {
   return body.repeat.total() > 1 ? fmt::format("{}[{}]", body.name, copy + 1) : body.name;
 }
@@ -322,15 +332,23 @@ bool clean_crossings(const BodyEntry& body, BodyPlan& plan, std::vector<std::str
   return true;
 }
 
-}  // namespace
-
-std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems) {
-  auto plan = plan_bodies(scene, problems);
-  if (!plan) return std::nullopt;
-  return raise_world(scene, std::move(*plan), problems);
+std::string describe_making(const BodyEntry& body, const world::BodyDescription& description) {
+  const auto* solid = std::get_if<world::SolidDescription>(&description.form);
+  return solid && solid->is_breakable ? fmt::format("dividing \"{}\" into tetrahedra", body.name)
+                                      : fmt::format("making \"{}\"", body.name);
 }
 
-std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan plan, Problems& problems) {
+}  // namespace
+
+std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems,
+                                      const BuildWatch& watch) {
+  auto plan = plan_bodies(scene, problems);
+  if (!plan) return std::nullopt;
+  return raise_world(scene, std::move(*plan), problems, watch);
+}
+
+std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan plan, Problems& problems,
+                                      const BuildWatch& watch) {
   const std::size_t before = problems.size();
   BuiltScene built{world::World(scene.world), std::move(plan), {}};
   add_materials(scene, built.world, problems);
@@ -338,6 +356,7 @@ std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan p
   std::optional<world::World> trial;  // of what comes in later
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodyEntry& body = scene.bodies[i];
+    if (watch) watch(static_cast<int>(i), describe_making(body, built.plan.bodies[i].description));
     const auto refuse = [&](const std::string& name, std::string fault) {
       const std::string own = "body '" + name + "': ";  // as the engine begins
       if (fault.starts_with(own)) fault.erase(0, own.size());

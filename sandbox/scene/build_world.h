@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/geometry/bvh.h"
+#include "engine/geometry/tet_quality.h"
 #include "engine/world/world.h"
 #include "sandbox/scene/scene_description.h"
 
@@ -44,12 +46,25 @@ struct BuiltScene {
 /// got any.
 std::optional<ScenePlan> plan_bodies(const SceneDescription& scene, Problems& problems);
 
+/// Told before each of SceneDescription::bodies is made: its number, and what is done.
+using BuildWatch = std::function<void(int body, const std::string& note)>;
+
 /// Makes the world with all bodies that neither an event nor `every` holds back. Nothing if `problems` got
 /// any.
-std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems);
+std::optional<BuiltScene> build_world(const SceneDescription& scene, Problems& problems,
+                                      const BuildWatch& watch = {});
 
 /// The same of bodies that are planned already: `plan` has the bodies of `scene`.
-std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan plan, Problems& problems);
+std::optional<BuiltScene> raise_world(const SceneDescription& scene, ScenePlan plan, Problems& problems,
+                                      const BuildWatch& watch = {});
+
+/// Of each [[body]] that is a solid which can break, in their order, how well-shaped the tetrahedra are of
+/// its first copy that is there.
+struct BodyTetrahedra {
+  int entry = 0;  // number in SceneDescription::bodies
+  geometry::TetQuality quality;
+};
+std::vector<BodyTetrahedra> find_tetrahedra(const BuiltScene& built);
 
 /// The places of the copies of a body, in the order of their numbers: grids with x fastest, then y, then z;
 /// jitter depends on (seed, number of the body, number of the copy) only.

@@ -245,6 +245,12 @@ TEST_CASE("slab: one ball dents it one goes through and what stands is one piece
   const auto report = play(folder, "slab --seconds 0.31 --audit");
   check_breaks(report);
   REQUIRE(report["dents"].size() == 2);  // one about the hole
+  const auto& mesh = report["tetrahedra"]["meshes"][0];
+  CHECK(mesh["body"] == "slab");
+  CHECK(mesh["count"] == report["tetrahedra"]["start"]);
+  CHECK(mesh["dihedral_degrees"]["least"].get<double>() > 20.0);
+  CHECK(mesh["dihedral_degrees"]["greatest"].get<double>() < 145.0);
+  CHECK(mesh["aspect"]["worst"].get<double>() < 6.0);
   for (const auto& dent : report["dents"]) CHECK(dent["depth_m"].get<double>() > 0.03);
   REQUIRE(report["breaks"].size() == 1);
   CHECK(report["breaks"][0]["pieces"] == 2);

@@ -48,6 +48,18 @@ TEST_CASE("a frame that takes long is told, and who is done says nothing any mor
   CHECK(listen([] { Progress(4, false).show(1, "quick"); }).empty());
 }
 
+TEST_CASE("a bar tells at once what is done, and what comes right behind it a moment later") {
+  const std::string said = listen([] {
+    Progress progress(4, true, std::chrono::hours(1));
+    progress.show(1, "meshing");
+    progress.show(2, "factors");
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  });
+  INFO(said);
+  CHECK(said.find(" 25 %  meshing") != std::string::npos);
+  CHECK(said.find(" 50 %  factors") != std::string::npos);
+}
+
 TEST_CASE("a bar lies between nothing and all, whatever it is told") {
   const std::string said = listen([] {
     Progress progress(4, true, std::chrono::hours(1));

@@ -33,6 +33,18 @@ BuiltScene build(const std::string& text) {
   return std::move(*built);
 }
 
+/// What is told while a world is made.
+std::vector<std::string> watched(const std::string& text) {
+  const Reading reading = read(text);
+  REQUIRE(reading.scene.has_value());
+  Problems problems;
+  std::vector<std::string> told;
+  REQUIRE(build_world(*reading.scene, problems, [&](int body, const std::string& note) {
+            told.push_back(fmt::format("{} {}", body, note));
+          }).has_value());
+  return told;
+}
+
 /// Least and greatest coordinates.
 std::pair<Vec3, Vec3> bounds_of(const geometry::TriangleMesh& mesh) {
   Vec3 least = Vec3::Constant(1e9), most = -least;
@@ -523,4 +535,13 @@ TEST_CASE("a scene beyond what the engine bears says so at load") {
   const std::string door = notes(pane(1.0));
   INFO(door);
   CHECK(door.find("\"door\" would break into about 2.2e+04 dice of 45 mm2") != std::string::npos);
+}
+
+TEST_CASE("whoever watches is told what is being made") {
+  const std::vector<std::string> told = watched(
+      "[[body]]\nname = \"floor\"\nkind = \"plane\"\n[[body]]\nname = \"block\"\nkind = \"solid\"\nshape = "
+      "\"slab\"\nsize = [0.2, 0.2, 0.2]\nelement_size = 0.1\nposition = [0, 1, 0]\n");
+  REQUIRE(told.size() == 2);
+  CHECK(told[0] == "0 making \"floor\"");
+  CHECK(told[1] == "1 dividing \"block\" into tetrahedra");
 }
