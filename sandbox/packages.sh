@@ -7,8 +7,8 @@ BUILD_PACKAGES=("${ENGINE_PACKAGES[@]}" pkg-config libosmesa6-dev libglm-dev lib
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libtinyobjloader-dev libgoogle-perftools-dev)
 
-# EGL is the second way to draw (--gl egl): tests hold both to the same bits.
-TEST_PACKAGES=("${BUILD_PACKAGES[@]}" libegl-dev libgl1-mesa-dri ffmpeg gnuplot-nox libgmp-dev mold)
+# EGL is the second way to draw (--gl egl): tests hold both to the same bits. glmark2-data has the bunny.
+TEST_PACKAGES=("${BUILD_PACKAGES[@]}" libegl-dev libgl1-mesa-dri ffmpeg gnuplot-nox libgmp-dev mold glmark2-data)
 
 # install_packages WHAT-FOR NAME...: installs those that are missing; says how where it cannot.
 install_packages() {

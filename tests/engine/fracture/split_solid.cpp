@@ -3,12 +3,16 @@
 
 #include <catch2/catch.hpp>
 
+#include <filesystem>
+#include <fstream>
+
 #include "engine/core/disjoint_sets.h"
 #include "engine/geometry/edge_topology.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/solid_surface.h"
 #include "engine/geometry/tetrahedralise.h"
 #include "engine/geometry/vertex_fans.h"
+#include "engine/geometry/weld.h"
 #include "tests/engine/geometry/solids.h"
 #include "tests/support/sanitized.h"
 
@@ -298,8 +302,33 @@ int try_figure_cuts(const SolidComplex& whole, int trial, std::size_t& pieces) {
   return count;
 }
 
-void cut_figure(int most) {
-  const SolidComplex whole = make_figure_complex();
+constexpr const char* kBunny = "/usr/share/glmark2/models/bunny.obj";  // of Debian's glmark2-data
+
+/// The bunny of scenes/bunny.toml in coarser elements; its file has vertices and triangles alone.
+SolidComplex make_bunny_complex() {
+  TriangleMesh surface;
+  std::ifstream file(kBunny);
+  std::string word;
+  while (file >> word) {
+    if (word == "v") {
+      Vec3& p = surface.positions.emplace_back();
+      file >> p.x() >> p.y() >> p.z();
+    } else if (word == "f") {
+      Triangle& t = surface.triangles.emplace_back();
+      file >> t[0] >> t[1] >> t[2];
+      for (int& v : t) --v;
+    }
+  }
+  weld_equal_positions(surface);
+  TetrahedraOptions options;
+  options.element_size = 0.12;
+  const EmbeddedSolid solid = tetrahedralise(surface, options).value();
+  SolidComplex complex = build_solid_complex(solid.elements, solid.embedded.material);
+  settle(complex);
+  return complex;
+}
+
+void cut_solid(const SolidComplex& whole, int most) {
   REQUIRE(fault_of(extract_surface(whole), whole).empty());
   std::size_t pieces = 0;
   int cuts = 0, trials = 0;
@@ -310,11 +339,25 @@ void cut_figure(int most) {
 }  // namespace
 
 TEST_CASE("split solid: 1e2 random cuts of a figure") {
-  cut_figure(static_cast<int>(test::how_many(100, 5)));
+  cut_solid(make_figure_complex(), static_cast<int>(test::how_many(100, 5)));
 }
 
 TEST_CASE("split solid: 1e3 random cuts of a figure", "[.][long]") {
-  cut_figure(1000);
+  cut_solid(make_figure_complex(), 1000);
+}
+
+TEST_CASE("split solid: 1e2 random cuts of the bunny") {
+  if (!std::filesystem::exists(kBunny)) {
+    WARN("there is no bunny: apt install glmark2-data");
+    return;
+  }
+  if (test::kIsSanitized) return;  // as of the figure, and 70 000 triangles
+  cut_solid(make_bunny_complex(), 100);
+}
+
+TEST_CASE("split solid: 1e3 random cuts of the bunny", "[.][long]") {
+  REQUIRE(std::filesystem::exists(kBunny));
+  cut_solid(make_bunny_complex(), 1000);
 }
 
 TEST_CASE("split solid: a rim that comes to a vertex again and a triangle that is divided twice") {
