@@ -72,6 +72,7 @@ struct BodyState {
   Pose rest_pose;          // the body has stayed about here for its quiet time
   Pose last_pose;          // at the end of the last step: whoever moves a body by hand makes its lists void
   double travelled = 0.0;  // m: no point of it has moved further, from step to step, since it is known
+  int cut_steps = 0;       // steps in a row in which it had to be cut short, by whomever
 };
 
 /// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and

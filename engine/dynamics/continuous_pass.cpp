@@ -124,7 +124,7 @@ class Guard {
       if (round < kMostZoneRounds && zones_->has_wholes()) has_hits = open_zones_in_rounds(has_hits);
     }
     if (zones_) settle_zones();
-    note_stuck_pairs();
+    note_stuck();
     report_.test_bytes = kept_bytes();
   }
 
@@ -712,15 +712,30 @@ class Guard {
     }
   }
 
-  void note_stuck_pairs() {
+  /// Pairs, and those that can move, whoever each of them meets.
+  void note_stuck() {
+    std::vector<char> is_body_cut(state_.bodies.size(), 0);
+    const auto note = [this](int steps, const PairState& pair) {
+      if (steps <= report_.longest_cut) return;
+      report_.longest_cut = steps;
+      report_.longest_cut_pair = {pair.body_a, pair.body_b};
+    };
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       PairState& memory = state_.pairs[at(work_.pairs[p].state)];
       if (work_.pairs[p].passes) continue;
       const bool is_cut = in_zone_[p] && zones_->share(work_.pairs[p].a) < 1.0;
       memory.stuck_steps = is_cut ? memory.stuck_steps + 1 : 0;
-      if (memory.stuck_steps <= report_.longest_cut) continue;
-      report_.longest_cut = memory.stuck_steps;
-      report_.longest_cut_pair = {memory.body_a, memory.body_b};
+      note(memory.stuck_steps, memory);
+      if (!is_cut) continue;
+      for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) {
+        if (is_body_cut[at(i)] != 0 || !bodies_[at(i)].is_dynamic()) continue;
+        is_body_cut[at(i)] = 1;
+        note(state_.bodies[at(i)].cut_steps + 1, memory);
+      }
+    }
+    for (std::size_t i = 0; i < is_body_cut.size(); ++i) {
+      int& steps = state_.bodies[i].cut_steps;
+      steps = is_body_cut[i] != 0 ? steps + 1 : 0;
     }
   }
 

@@ -30,7 +30,7 @@ struct ContactReport {
   long ways_tested = 0;  // pairs of bodies whose ways it tested, in all of them
   double test_bytes = 0.0;  // that it kept for that, hits apart
   int failsafe_steps = 0;   // bodies whose step was cut short
-  int longest_cut = 0;      // steps in a row, of the pair that was cut longest:
+  int longest_cut = 0;      // steps in a row, of what was cut longest; and, at last, by this pair:
   std::pair<body::BodyId, body::BodyId> longest_cut_pair{};
   int crossing_pairs = 0;  // crossed when they were first seen, and still do
   std::vector<std::pair<body::BodyId, body::BodyId>> new_crossing_pairs;  // seen in this step

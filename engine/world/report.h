@@ -109,8 +109,8 @@ struct ContactFigures {
   long crossing_pairs = 0;  // crossed when they were first seen: exempt until they have come apart
   std::vector<std::string> crossing_names;  // "a / b", of the first hundred
   std::vector<std::string> parted_names;    // "a / b": b lay exactly in a and was set aside; a hundred
-  int longest_cut = 0;                      // steps in a row in which the failsafe had to cut one pair short:
-  std::string longest_cut_names;            // "a / b"; empty: none
+  int longest_cut = 0;                      // steps in a row in which the failsafe had to cut one body short:
+  std::string longest_cut_names;            // "a / b", it and whom it met then; empty: none
   long failsafe_steps = 0;
   double body_steps = 0.0;  // steps of bodies that were awake
   double frozen_body_steps = 0.0;

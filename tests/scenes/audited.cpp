@@ -16,7 +16,7 @@ struct Audited {
   bool breaks;
 };
 
-constexpr int kMostCut = 8;  // steps in a row that one pair may be held back
+constexpr int kMostCut = 8;  // steps in a row that one body may be held back
 
 void check_audited(const Audited& audited, const std::string& rate) {
   const Folder folder;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
 
 namespace shatterbox::material {
 
@@ -22,6 +25,32 @@ TEST_CASE("presets are sound, sorted, sourced and found by name") {
   for (const char* name : {"aluminium", "brick", "ceramic", "concrete", "eggshell", "glass", "ice", "plaster",
                            "porcelain", "steel", "terracotta"})
     CHECK(find_preset(name));
+}
+
+TEST_CASE("each preset says where its density stiffness and strength come from, by works that are listed") {
+  std::ifstream file(SHATTERBOX_SOURCE_DIR "/engine/references.md");
+  const std::string listed((std::istreambuf_iterator<char>(file)), {});
+  REQUIRE_FALSE(listed.empty());
+  const auto speaks_of = [](const std::string& text, std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return text.find(word) != std::string::npos; });
+  };
+  for (const Preset& preset : presets()) {
+    INFO(preset.material.name << ": " << preset.source);
+    const std::string source(preset.source);
+    // What is as another is has that one's.
+    if (!speaks_of(source, {"as glass", "As glass"})) {
+      CHECK(speaks_of(source, {"density"}));
+      CHECK(speaks_of(source, {" E ", " E,", "E of", ": E "}));
+      CHECK(speaks_of(source, {"strength"}));
+      CHECK(speaks_of(source, {"K_Ic", "fracture energy"}));
+      CHECK(speaks_of(source, {"GPa", "MPa", "J/m2"}));
+    }
+    for (std::size_t at = source.find('['); at != std::string::npos; at = source.find('[', at + 1)) {
+      const std::string key = source.substr(at, source.find(']', at) - at + 1);
+      CHECK(listed.find("| " + key + " |") != std::string::npos);
+    }
+  }
 }
 
 TEST_CASE("the fracture energy of brittle presets is that of a known toughness") {
