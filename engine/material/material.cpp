@@ -191,7 +191,8 @@ std::vector<Preset> make_presets() {
        "flaw_area, "
        "crack_spacing estimated"},
       {concrete,
-       "Concrete C30/37: density usual for normal weight, E 33 GPa, mean tensile strength 2.9 MPa, nu 0.2 by [EN1992]; fracture energy 73 "
+       "Concrete C30/37: density usual for normal weight, E 33 GPa, mean tensile strength 2.9 MPa, nu 0.2 by "
+       "[EN1992]; fracture energy 73 "
        "f_cm^0.18 "
        "J/m2, f_cm 38 MPa, by [MC2010]; Weibull modulus and flaw_area estimated"},
       {eggshell,
