@@ -6,7 +6,25 @@
 namespace shatterbox::fracture {
 namespace {
 
+// Rounds in which flow spreads, how much more each asks for, and by how much work it must grow.
+constexpr int kMostSpreads = 12;
+constexpr double kLeastSpread = 1.1, kGreatestSpread = 10.0, kWorthSpread = 1.01;
 constexpr double kLeastDepth = 0.05;  // of the thickness: what moves by less cannot be seen
+
+/// Where a sheet flows as far as it can it gives way to no more force, and what is about flows in its stead:
+/// as much more, everywhere, as it takes to spend `most` J, if all that flows can.
+stress::SheetFlow spread_flow(const stress::ShellStiffness& stiffness, const geometry::ShellMesh& mesh,
+                              const std::vector<stress::CellStress>& stresses, stress::YieldLaw law,
+                              double most) {
+  stress::SheetFlow flow = stress::find_plastic_flow(stiffness, mesh, stresses, law);
+  for (int round = 0; round < kMostSpreads && flow.work > 0.0 && flow.work < most; ++round) {
+    law.energy *= std::clamp(most / flow.work, kLeastSpread, kGreatestSpread);
+    const double before = flow.work;
+    flow = stress::find_plastic_flow(stiffness, mesh, stresses, law);
+    if (flow.work < kWorthSpread * before) break;
+  }
+  return flow;
+}
 
 }  // namespace
 
@@ -28,8 +46,8 @@ ShellYieldFinding find_yield(const ShellSubject& subject, const VecX& displaceme
   const std::vector<stress::CellStress> stresses =
       stress::average_stresses(*subject.mesh, subject.systems->figures().contacts,
                                stress::cell_stresses(stiffness, *subject.mesh, displacement));
-  stress::SheetFlow flow = stress::find_plastic_flow(stiffness, *subject.mesh, stresses,
-                                                     {material.yield, material.elongation, energy.all});
+  const stress::SheetFlow flow = spread_flow(stiffness, *subject.mesh, stresses,
+                                             {material.yield, material.elongation, energy.all}, energy.most);
   finding.stress = flow.greatest_stress;
   finding.takes_all = energy.most > 0.0 && flow.work >= energy.most;
   const double work = std::min(flow.work, energy.most);
@@ -38,7 +56,7 @@ ShellYieldFinding find_yield(const ShellSubject& subject, const VecX& displaceme
   dent->work = work;
   dent->flowed = flow.volume;
   dent->subject = subject;
-  dent->flow = std::move(flow);
+  dent->flow = flow;
   finding.dent = std::move(dent);
   return finding;
 }

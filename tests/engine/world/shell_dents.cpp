@@ -238,3 +238,36 @@ TEST_CASE("shell dents: a held sheet keeps out of a wall that stands behind it")
       if (const Vec3 x = body.pose.apply(p); x.head<2>().cwiseAbs().maxCoeff() < 0.19) CHECK(x.z() > -0.004);
   }
 }
+
+TEST_CASE("shell dents: a steel pot thrown on a floor crumples, the harder the more, and does not shatter") {
+  double last = 0.0;
+  for (const double speed : {10.0, 20.0, 60.0}) {
+    world::WorldSettings settings;
+    settings.gravity = Vec3::Zero();
+    world::World w(settings);
+    REQUIRE(w.add_material(*material::find_preset("steel")).ok());
+    world::ShellDescription shell;
+    shell.mesh =
+        geometry::make_bowl({0.12, 0.05, 0.006, 0.1}, {test::kIsSanitized ? 0.03 : 0.012, 0.3, 1}).value();
+    shell.thickness = 1e-3;
+    world::BodyDescription floor, pot;
+    floor.form = world::PlaneDescription{};
+    REQUIRE(w.add_body(floor).ok());
+    pot.form = shell;
+    pot.pose.translation = Vec3(0.0, 0.25, 0.0);
+    pot.pose.rotation = Quat(Eigen::AngleAxisd(1.9, Vec3::UnitZ()));
+    pot.velocity = Vec3(0.0, -speed, 0.0);
+    REQUIRE(w.add_body(pot).ok());
+    const audit::AuditReport audit = test::run_audited(w, 0.2 / speed + 0.05);
+    CAPTURE(speed);
+    CHECK(w.report().breaks.empty());
+    REQUIRE(w.report().dents.size() >= 1);
+    const world::DentRow& dent = w.report().dents[0];
+    CHECK(dent.depth > 1.05 * last);
+    last = dent.depth;
+    CHECK(dent.mass_error < 1e-12);
+    CHECK(std::abs(dent.volume_change) < 0.01);
+    CHECK(audit.crossings + audit.passages == 0);
+    if (test::kIsSanitized) return;
+  }
+}
