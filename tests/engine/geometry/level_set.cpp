@@ -145,6 +145,25 @@ TEST_CASE("level set: kept work of triangles gives the same bits as work done an
   CHECK(fresh.patches->figures().found == 0);
 }
 
+TEST_CASE("level set: what is dented has the distances of its new surface, with what is kept of the old") {
+  const TriangleMesh ball = make_sphere(0.1, fine(0.01)).value();
+  const LevelSetSpace space = make_level_set_space(0.2);
+  REQUIRE(LevelSet::make(ball, Vec3::Zero(), space).ok());
+  TriangleMesh dented = ball;
+  for (Vec3& p : dented.positions)  // pressed in at the top, by 4 cm at most
+    if (const double over = p.y() - 0.06; over > 0.0) p.y() -= 1.0 * over;
+  const auto set = LevelSet::make(dented, Vec3::Zero(), space).value();
+  CHECK(space.patches->figures().found > static_cast<long>(ball.triangles.size() / 2));
+  const SurfaceDistance exact(dented);
+  for (const Vec3& p : {Vec3(0.0, 0.09, 0.0), Vec3(0.01, 0.065, 0.01), Vec3(0.0, 0.05, 0.0),
+                        Vec3(0.02, 0.055, -0.01), Vec3(0.0, -0.095, 0.0), Vec3(0.09, 0.0, 0.0)}) {
+    const double distance = exact.find(p, 1e3).distance;
+    const double sign = std::abs(winding_number(dented, p)) > 0.5 ? -1.0 : 1.0;
+    CHECK(set->distance(p) == Approx(sign * distance).margin(0.3 * set->spacing()));
+  }
+  CHECK(set->distance(Vec3(0.0, 0.09, 0.0)) > 0.02);  // it was inside of the ball
+}
+
 TEST_CASE("level set: a piece that is too small for the grid has none") {
   const LevelSetSpace space = make_level_set_space(0.2);
   CHECK(space.spacing == Approx(0.2 / kLevelSetCells));
