@@ -14,6 +14,7 @@
 #include "engine/fracture/solid_force.h"
 #include "engine/fracture/solid_hole.h"
 #include "engine/fracture/solid_tracer.h"
+#include "engine/fracture/split_solid.h"
 #include "engine/fracture/torn_solid.h"
 
 namespace shatterbox::fracture {
@@ -27,6 +28,9 @@ constexpr double kSolidGrowthThatCounts =
     0.04;  // of the cracks' area: a generation that adds less is the last
 
 constexpr double kLeastLump = 0.5;  // of the cube of that, is what parts from bridges
+
+// Of what a hit does not give back: more does not go into tears, for what they open flows before.
+constexpr double kTornShare = 0.5;
 
 // Where a crack came to nothing, none is begun again before the stress is so many times as great.
 constexpr double kSolidTriedAgain = 1.25;
@@ -70,6 +74,8 @@ class SolidDecider {
     }
     tell_yield();
     if (!force_.complete(decision_, verdict.reason)) return std::move(decision_);
+    if (subject_.material.yield > 0.0)
+      decision_.elastic_energy = std::min(decision_.elastic_energy, kTornShare * force_.struck_energy().most);
     run_generations(std::move(candidates));
     if (verdict.outcome == Outcome::broke)
       open_tears();
@@ -223,10 +229,19 @@ class SolidDecider {
     decision_.verdict.reason = "it has torn";
   }
 
+  /// Whether what came off is too little to be a piece: then it holds on to the whole again.
+  bool join_crumbs() {
+    SolidSplit split = split_solid(*decision_.complex, settings_.least_width);
+    if (split.pieces.size() != 1) return false;
+    decision_.complex = std::make_shared<geometry::SolidComplex>(std::move(split.pieces.front().complex));
+    decision_.part_count = 1;
+    return true;
+  }
+
   /// What tears and stays in one piece is dented as it is by then, by what the tears leave of the hit.
   void open_tears() {
     if (!(subject_.material.yield > 0.0)) return;
-    if (decision_.part_count != count_parts(*subject_.complex)) return;
+    if (decision_.part_count != count_parts(*subject_.complex) && !join_crumbs()) return;
     complex_ = std::make_shared<geometry::SolidComplex>(*decision_.complex);
     const int generations = decision_.generations;
     const bool is_known = is_answered_ && (is_solved_ || solve_again());

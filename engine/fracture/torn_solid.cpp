@@ -73,6 +73,10 @@ bool has_open_cracks(const geometry::SolidComplex& complex) {
   return std::any_of(complex.facets.begin(), complex.facets.end(), is_open);
 }
 
+bool is_torn(const SolidSubject& subject) {
+  return subject.complex && subject.complex->elements->topology.faces.empty();
+}
+
 std::shared_ptr<const TornSolid> make_torn(std::shared_ptr<const geometry::SolidComplex> source,
                                            const geometry::SolidMesh& mesh,
                                            const stress::SolidProperties& properties,

@@ -21,6 +21,9 @@ struct TornSolid {
 /// Whether material stands on both sides of a crack of a settled complex.
 bool has_open_cracks(const geometry::SolidComplex& complex);
 
+/// Whether it is on copies: its tears are open.
+bool is_torn(const SolidSubject& subject);
+
 /// `mesh`: the degrees of freedom of `source`. `clamped`: held vertices of its element mesh.
 std::shared_ptr<const TornSolid> make_torn(std::shared_ptr<const geometry::SolidComplex> source,
                                            const geometry::SolidMesh& mesh,

@@ -17,11 +17,13 @@ namespace {
 using Size = std::size_t;
 using core::at;
 
-constexpr int kMostRounds = 16;      // in which what has begun to overlap is held, too
-constexpr int kMostMeetings = 10;    // in one round
-constexpr double kKept = 0.01;       // of the faces' mean size, that what is held keeps apart
-constexpr double kMet = 1e-3;        // tolerance of a solve: the next one mends what it leaves
-constexpr double kGive = 0.02;       // what asks for large moves to close a small gap gets less
+constexpr int kMostRounds = 16;   // in which what has begun to overlap is held, too
+constexpr int kMostMeetings = 2;  // in one round
+constexpr double kKept = 0.01;    // of the faces' mean size, that what is held keeps apart
+constexpr double kMet = 1e-3;     // tolerance of a solve: the next one mends what it leaves
+constexpr double kPull = 1e4;     // of what is held on what is about
+constexpr double kAlone =
+    0.05;  // of what a vertex's neighbours hold it with: so far, some four edges, it goes on
 constexpr double kLeastPull = 1e-2;  // what hangs hardly on a copied vertex opens hardly, and is let go
 
 /// A corner of a crack's faces, as it is behind and in front: how far it is from there to here is a sum of
@@ -126,7 +128,8 @@ class LipParter {
     return has_new;
   }
 
-  /// The least change of the moves by which all that is held stands as far apart as is kept.
+  /// The change of the moves by which all that is held stands as far apart as is kept; what is about goes
+  /// along, ever less.
   void meet() {
     std::vector<Eigen::Triplet<double>> pulls;
     std::vector<const LipPoint*> held;
@@ -136,19 +139,37 @@ class LipParter {
         pulls.emplace_back(static_cast<int>(held.size()), point.vertices[k], point.pulls[k]);
       held.push_back(&point);
     }
-    Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(held.size()),
-                                       static_cast<Eigen::Index>(moves_.size()));
+    const auto vertex_count = static_cast<Eigen::Index>(moves_.size());
+    Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(held.size()), vertex_count);
     matrix.setFromTriplets(pulls.begin(), pulls.end());
     Eigen::MatrixX3d off(static_cast<Eigen::Index>(held.size()), 3);
     for (Size i = 0; i < held.size(); ++i)
       off.row(static_cast<Eigen::Index>(i)) = held[i]->gap(moves_) - kept_ * held[i]->normal;
-    Eigen::SparseMatrix<double> normal_matrix = matrix * matrix.transpose();
-    for (Eigen::Index i = 0; i < off.rows(); ++i) normal_matrix.coeffRef(i, i) += kGive;
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(normal_matrix);
+    const Eigen::SparseMatrix<double> all = company() + kPull * matrix.transpose() * matrix;
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(all);
     solver.setTolerance(kMet);
-    const Eigen::MatrixX3d change = matrix.transpose() * solver.solve(off);
+    const Eigen::MatrixX3d change = solver.solve(kPull * (matrix.transpose() * off));
     for (Size v = 0; v < moves_.size(); ++v)
       moves_[v] -= change.row(static_cast<Eigen::Index>(v)).transpose();
+  }
+
+  /// What neighbours ask of each other: to go alike, and not far.
+  const Eigen::SparseMatrix<double>& company() {
+    if (company_.rows() > 0) return company_;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const Tetrahedron& t : copied_.complex.elements->mesh.tetrahedra)
+      for (const auto& [a, b] : kTetrahedronEdges) {
+        const int i = t[at(a)], j = t[at(b)];
+        entries.emplace_back(i, j, -1.0);
+        entries.emplace_back(j, i, -1.0);
+        entries.emplace_back(i, i, 1.0 + kAlone);
+        entries.emplace_back(j, j, 1.0 + kAlone);
+      }
+    company_.resize(static_cast<Eigen::Index>(moves_.size()), static_cast<Eigen::Index>(moves_.size()));
+    company_.setFromTriplets(entries.begin(), entries.end());
+    for (Eigen::Index i = 0; i < company_.rows(); ++i)
+      if (company_.coeff(i, i) == 0.0) company_.coeffRef(i, i) = 1.0;  // of no element
+    return company_;
   }
 
   const CopiedSolid& copied_;
@@ -156,7 +177,8 @@ class LipParter {
   std::map<std::pair<int, int>, int> known_;  // points by their vertices behind and in front
   std::vector<LipPoint> points_;
   std::vector<std::vector<int>> points_of_;  // by lip
-  double kept_ = 0.0;                        // m
+  Eigen::SparseMatrix<double> company_;
+  double kept_ = 0.0;  // m
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
+#include "engine/fracture/torn_solid.h"
+#include "engine/geometry/self_crossings.h"
 #include "engine/world/acts.h"
 #include "engine/world/dented.h"
 #include "engine/world/state.h"
@@ -24,6 +26,9 @@ constexpr double kRoomSlack = 0.9;   // of what was found free, then: the cut de
 // Durations of a hit after its last impulse, until its dent is there. A sheet's hit lasts for several
 // pictures, and its dent is made in the first half; what comes later in it is a hit of its own then.
 constexpr double kSolidWait = 2.0, kSheetWait = 0.5;
+constexpr double kLongestHit = 8.0;  // durations: who is hit time and again for longer is dented on the way
+constexpr double kFewCrossings = 0.01;  // of a surface's triangles: so many more may pass through each other
+constexpr double kLipShare = 0.5;       // of a dent that would close lips beyond each other
 constexpr double kLeastDentShare = 0.01;  // of a dent; less is none
 
 /// How far a dent can go before it meets anybody, or a sheet itself.
@@ -55,10 +60,9 @@ void replace_by(MovingState& moving, const body::Body& body, body::Body born, co
   ImpactMemory memory = moving.memories[body.id];
   memory.dents.clear();
   memory.has_open_dent = false;
-  if (body.shape->kind == body::ShapeKind::shell) {
-    memory.event.clear();
-    memory.event_duration = 0.0;
-  }
+  // What comes later in a hit that goes on is a hit of its own.
+  memory.event.clear();
+  memory.event_duration = 0.0;
   moving.memories.erase(body.id);
   moving.memories[born.id] = std::move(memory);
   moving.fragiles.erase(body.id);
@@ -101,18 +105,33 @@ std::optional<Dented> find_aside(const MovingState& moving, const dynamics::Cont
   return std::nullopt;
 }
 
+/// Whether tears of earlier hits stand open in it.
+bool gapes(const Fragile& fragile) {
+  const auto* solid = std::get_if<fracture::SolidSubject>(&fragile.subject);
+  return solid && fracture::is_torn(*solid);
+}
+
 /// A dent with the whole share that there is room for; nothing if there is none at all. `make` of a share.
+///
+/// Of what gapes already none that would press its lips far into each other: no continuous test tells them
+/// from neighbours where they meet.
 template <class Make>
 std::optional<Dented> find_dented(const MovingState& moving, const dynamics::ContactSettings& contact,
-                                  const body::Body& body, const Make& make) {
+                                  const body::Body& body, bool gapes, const Make& make) {
+  const auto own_crossings = [gapes](const body::Shape& shape) {
+    return gapes ? geometry::find_self_crossings(shape.surface).count : 0;
+  };
+  const auto size = static_cast<double>(body.shape->surface.triangles.size());
+  const int crossings = own_crossings(*body.shape) + static_cast<int>(kFewCrossings * size);
   double free = 0.0;  // of it, where it lies
-  if (std::optional<Dented> aside = find_aside(moving, contact, body, make, free)) return aside;
-  double share = kRoomSlack * free;
+  if (std::optional<Dented> aside = find_aside(moving, contact, body, make, free))
+    if (own_crossings(*aside->shape) <= crossings) return aside;
+  double share = free < 1.0 ? kRoomSlack * free : kLipShare;
   for (int number = 1; number < kMostRooms && share > kLeastDentShare; ++number) {
     Dented dented = make(share);
     free = find_least_room(moving, contact, body, dented.way).share;
-    if (free >= 1.0) return dented;
-    share *= kRoomSlack * free;
+    if (free >= 1.0 && own_crossings(*dented.shape) <= crossings) return dented;
+    share *= free < 1.0 ? kRoomSlack * free : kLipShare;
   }
   return std::nullopt;
 }
@@ -226,8 +245,9 @@ std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
     }
     const bool is_sheet = memory.dents.back().shell() != nullptr;
     const double wait = is_sheet ? kSheetWait : kSolidWait;
+    const double longest = is_sheet ? 1.0 : kLongestHit;
     if (!memory.has_open_dent || end_time - last > wait * memory.event_duration ||
-        (is_sheet && end_time - first > memory.event_duration))
+        end_time - first > longest * memory.event_duration)
       due.push_back(id);
   }
   const std::vector<ShapedDents> all = find_shapes(s.moving.memories, due);
@@ -252,10 +272,11 @@ std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
         figures.is_cut = shape.is_cut;
         if (shape.way.empty()) continue;
       }
-      const std::optional<Dented> dented = find_dented(s.moving, s.contact_settings, body, [&](double share) {
-        return solid ? make_dented(body, whole, *solid, left, share)
-                     : make_dented(body, whole, moves_at(shape, share), share);
-      });
+      const std::optional<Dented> dented =
+          find_dented(s.moving, s.contact_settings, body, gapes(whole), [&](double share) {
+            return solid ? make_dented(body, whole, *solid, left, share)
+                         : make_dented(body, whole, moves_at(shape, share), share);
+          });
       DentRow row = describe_dent(body, coming, figures, dented ? &*dented : nullptr, end_time);
       if (dented) {
         if (solid) leave(*solid, dented->share, dented->moves, left);

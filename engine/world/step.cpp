@@ -366,8 +366,9 @@ std::vector<const EvaluatedImpact*> World::book_verdicts(std::span<const Evaluat
       const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
       const auto fragile = cracked(*s.moving.fragiles.at(impact.id), decision);
       s.moving.fragiles[impact.id] = snapshot.fragiles[impact.id] = fragile;
-      const bool is_torn = fragile->material().yield > 0.0;
-      if (is_torn)
+      // What tears as a piece of what has just broken keeps no dent that would open it.
+      const bool is_torn = memory.has_open_dent;
+      if (fragile->material().yield > 0.0)
         memory.torn_until = snapshot.memories[impact.id].torn_until =
             impact.first_time + 2.0 * decision.verdict.duration;
       ImpactRow row = describe_impact(impact, body, end_time);

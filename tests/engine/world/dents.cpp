@@ -176,7 +176,7 @@ TEST_CASE("what is dented keeps its momentum and its centre, and its copies keep
 }
 
 TEST_CASE("what tears breaks into pieces of its mass and keeps no dent") {
-  const SlabRun run = hit_slab({600.0, 240, true, 0.0, false, 1.0, false});
+  const SlabRun run = hit_slab({900.0, 240, true, 0.0, false, 1.0, false});
   const world::World& w = run.world;
   REQUIRE_FALSE(w.report().breaks.empty());
   CHECK(w.report().dents.empty());
@@ -216,6 +216,25 @@ TEST_CASE("metal that is strained beyond its elongation and not gone through tea
     }
   }
   CHECK(hit_slab({200.0, 240, true}).world.report().dents[0].torn_area == 0.0);
+}
+
+TEST_CASE("tears leave a free plate energy for a dent, the same at any rate") {
+  if (test::kIsSanitized) return;
+  const auto hit = [](double speed, int rate) {
+    SlabHit free{speed, rate};
+    free.half_extent = Vec3(0.3, 0.25, 0.015);
+    const SlabRun run = hit_slab(free);
+    CAPTURE(speed, rate);
+    CHECK(run.world.report().breaks.empty());
+    CHECK(run.audit.crossings + run.audit.passages == 0);
+    REQUIRE(run.world.report().dents.size() >= 1);
+    CHECK(run.world.report().dents[0].torn_area > 1e-3);
+    return run.world.report().dents[0].depth;
+  };
+  CHECK(hit(360.0, 240) > 0.04);
+  const double depth = hit(450.0, 240);
+  CHECK(depth > 0.04);
+  CHECK(hit(450.0, 960) == Approx(depth).epsilon(0.1));
 }
 
 TEST_CASE("a torn slab is hit again, dented again and gone through, and stays one piece with its tear") {
