@@ -21,10 +21,6 @@ using core::at;
 
 constexpr int kMergeRounds = 8;
 
-bool is_open(const SolidFacet& facet) {
-  return facet.parts[0] < 0 && facet.kind == FacetKind::crack && facet.cells[0] >= 0 && facet.cells[1] >= 0;
-}
-
 /// The neighbour of each piece with the greatest common crack, -1 if there is none.
 std::vector<int> find_partners(Size piece_count, const std::map<std::pair<int, int>, double>& common) {
   std::vector<int> partner(piece_count, -1);
@@ -116,7 +112,7 @@ void SolidSplitter::label() {
 std::map<std::pair<int, int>, double> SolidSplitter::find_common_areas() const {
   std::map<std::pair<int, int>, double> areas;
   for (const SolidFacet& facet : complex_.facets) {
-    if (!is_open(facet)) continue;
+    if (!is_open_crack(facet)) continue;
     const auto [a, b] = std::minmax(piece_of_[at(facet.cells[0])], piece_of_[at(facet.cells[1])]);
     if (a != b) areas[{a, b}] += facet_area_vector(complex_, facet).norm();
   }
@@ -127,7 +123,7 @@ std::map<std::pair<int, int>, double> SolidSplitter::find_common_areas() const {
 bool SolidSplitter::join_narrow(double least_width) {
   std::vector<double> area(volumes_.size(), 0.0);
   for (const SolidFacet& facet : complex_.facets) {
-    if (!is_open(facet)) continue;
+    if (!is_open_crack(facet)) continue;
     const double own = facet_area_vector(complex_, facet).norm();
     for (const int c : facet.cells) area[at(piece_of_[at(c)])] += own;
   }
@@ -159,7 +155,7 @@ bool SolidSplitter::join(const std::vector<PieceClash>& clashes) {
 bool SolidSplitter::unite(const std::set<std::pair<int, int>>& pairs) {
   if (pairs.empty()) return false;
   for (SolidFacet& facet : complex_.facets) {
-    if (!is_open(facet)) continue;
+    if (!is_open_crack(facet)) continue;
     const auto pair = std::minmax(piece_of_[at(facet.cells[0])], piece_of_[at(facet.cells[1])]);
     if (pairs.count(pair) > 0) facet.kind = FacetKind::grain;
   }

@@ -62,15 +62,10 @@ std::shared_ptr<const SpaceGrains> copy_grains(const geometry::CopiedSolid& copi
   return std::make_shared<const SpaceGrains>(std::move(own));
 }
 
-bool is_open(const geometry::SolidFacet& facet) {
-  return facet.parts[0] < 0 && facet.kind == geometry::FacetKind::crack && facet.cells[0] >= 0 &&
-         facet.cells[1] >= 0;
-}
-
 }  // namespace
 
 bool has_open_cracks(const geometry::SolidComplex& complex) {
-  return std::any_of(complex.facets.begin(), complex.facets.end(), is_open);
+  return std::any_of(complex.facets.begin(), complex.facets.end(), geometry::is_open_crack);
 }
 
 bool is_torn(const SolidSubject& subject) {
@@ -84,7 +79,7 @@ std::shared_ptr<const TornSolid> make_torn(std::shared_ptr<const geometry::Solid
   auto torn = std::make_shared<TornSolid>();
   torn->copied = geometry::copy_elements(*source, mesh);
   for (const geometry::SolidFacet& facet : source->facets)
-    if (is_open(facet)) torn->area += facet_area_vector(*source, facet).norm();
+    if (is_open_crack(facet)) torn->area += facet_area_vector(*source, facet).norm();
   torn->source = std::move(source);
   const auto& complex = torn->copied.complex;
   torn->model = make_solid_model(std::make_shared<const geometry::SolidComplex>(complex),

@@ -54,6 +54,11 @@ struct SolidPart {
   Vec3 centroid = Vec3::Constant(0.25);  // as in SolidCell
 };
 
+/// A facet of a crack with material on both of its sides.
+inline bool is_open_crack(const SolidFacet& facet) {
+  return facet.parts[0] < 0 && facet.kind == FacetKind::crack && facet.cells[0] >= 0 && facet.cells[1] >= 0;
+}
+
 /// Edges and facets that were divided stay, with their parts; lists that name them are brought up to date
 /// when they are read (settle_facet, settle_cell).
 struct SolidComplex {

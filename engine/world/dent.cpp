@@ -183,6 +183,14 @@ DentRow describe_dent(const body::Body& body, const ComingDent& coming, const fr
   return row;
 }
 
+/// What is told of elements, of their copies.
+std::shared_ptr<const std::vector<double>> of_copies(const geometry::CopiedSolid& copied,
+                                                     const std::vector<double>& told) {
+  std::vector<double> own;
+  for (const int source : copied.element_sources) own.push_back(told[core::at(source)]);
+  return std::make_shared<const std::vector<double>>(std::move(own));
+}
+
 /// The dents of one body, and the shapes of those that are of a sheet.
 struct ShapedDents {
   std::vector<ComingDent> dents;
@@ -285,6 +293,9 @@ std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
         regrip(s.hands, body, {row.born}, s.moving.bodies);
         rehang(s.moving.contact.joints, body, {row.born}, s.moving.bodies);
         inherit_stress(id, {row.born});
+        const auto known = s.element_stress.find(row.born);
+        if (dented->torn && known != s.element_stress.end())
+          known->second = of_copies(dented->torn->copied, *known->second);
         s.is_disturbed = true;
         id = row.born;
       }

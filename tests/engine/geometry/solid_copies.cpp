@@ -37,7 +37,7 @@ SolidComplex make_slit_cube(double depth) {
   return cube;
 }
 
-double area_of(const SolidComplex& complex, FacetKind kind) {
+double area_of_kind(const SolidComplex& complex, FacetKind kind) {
   double area = 0.0;
   for (const SolidFacet& facet : complex.facets)
     if (facet.parts[0] < 0 && facet.kind == kind) area += facet_area_vector(complex, facet).norm();
@@ -96,8 +96,8 @@ TEST_CASE("solid copies: both sides of a slit are border, and its end holds") {
   CHECK(are_cells_closed(complex));
   CHECK(count_parts(complex) == 1);
   CHECK(total_volume(complex) == Approx(1.0).epsilon(1e-12));
-  CHECK(area_of(cube, FacetKind::crack) == Approx(0.5).epsilon(1e-9));
-  CHECK(area_of(complex, FacetKind::crack) == Approx(1.0).epsilon(1e-9));
+  CHECK(area_of_kind(cube, FacetKind::crack) == Approx(0.5).epsilon(1e-9));
+  CHECK(area_of_kind(complex, FacetKind::crack) == Approx(1.0).epsilon(1e-9));
   for (const SolidFacet& facet : complex.facets)
     if (facet.kind == FacetKind::crack) CHECK((facet.cells[0] < 0) != (facet.cells[1] < 0));
   // As many copies as the stress has, and each cell in one of its own element.

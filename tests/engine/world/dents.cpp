@@ -218,6 +218,25 @@ TEST_CASE("metal that is strained beyond its elongation and not gone through tea
   CHECK(hit_slab({200.0, 240, true}).world.report().dents[0].torn_area == 0.0);
 }
 
+TEST_CASE("what is torn shows the stress that tore it") {
+  const SlabRun run = hit_slab({365.0, 240, true});
+  REQUIRE(run.world.report().dents.size() == 1);
+  const world::DentRow& dent = run.world.report().dents[0];
+  CHECK(dent.torn_area > 0.0);
+  CHECK(run.audit.crossings + run.audit.passages == 0);
+  const world::StressPicture picture = run.world.stress_picture(dent.born);
+  const body::Body* slab = body::find_body(run.world.bodies(), dent.born);
+  REQUIRE(slab);
+  REQUIRE(picture.triangle_stress.size() == slab->shape->surface.triangles.size());
+  double greatest = 0.0;
+  for (const double stress : picture.triangle_stress) {
+    CHECK(stress >= 0.0);
+    greatest = std::max(greatest, stress);
+  }
+  CHECK(greatest > 0.0);
+  CHECK(greatest <= 1.01 * run.world.report().impacts[0].stress);
+}
+
 TEST_CASE("tears leave a free plate energy for a dent, the same at any rate") {
   if (test::kIsSanitized) return;
   const auto hit = [](double speed, int rate) {
