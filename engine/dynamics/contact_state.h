@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -72,7 +73,6 @@ struct BodyState {
   Pose rest_pose;          // the body has stayed about here for its quiet time
   Pose last_pose;          // at the end of the last step: whoever moves a body by hand makes its lists void
   double travelled = 0.0;  // m: no point of it has moved further, from step to step, since it is known
-  int cut_steps = 0;       // steps in a row in which it had to be cut short, by whomever
 };
 
 /// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and
@@ -91,12 +91,13 @@ struct SearchShelf {
 };
 
 struct ContactState {
-  std::vector<PairState> pairs;   // ascending (body_a, body_b)
-  std::vector<BodyState> bodies;  // ascending id
-  std::vector<Joint> joints;      // ascending number; those that hold
-  double substep = 0.0;           // s, of the impulses that contacts remember
-  int next_parts = 1;             // in which the next step is taken: many bodies collide
-  double swing = 0.0;             // rad/s, the fastest of what joints pull taut
+  std::vector<PairState> pairs;           // ascending (body_a, body_b)
+  std::vector<BodyState> bodies;          // ascending id
+  std::map<body::BodyId, int> cut_steps;  // of those cut short in the last step: in so many, in a row
+  std::vector<Joint> joints;              // ascending number; those that hold
+  double substep = 0.0;                   // s, of the impulses that contacts remember
+  int next_parts = 1;                     // in which the next step is taken: many bodies collide
+  double swing = 0.0;                     // rad/s, the fastest of what joints pull taut
   std::shared_ptr<SearchShelf> shelf = std::make_shared<SearchShelf>();
 
   PairState* find_pair(body::BodyId a, body::BodyId b);

@@ -5,6 +5,7 @@
 // false negatives.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "engine/core/buckets.h"
@@ -714,7 +715,7 @@ class Guard {
 
   /// Pairs, and those that can move, whoever each of them meets.
   void note_stuck() {
-    std::vector<char> is_body_cut(state_.bodies.size(), 0);
+    std::map<body::BodyId, int> cut;
     const auto note = [this](int steps, const PairState& pair) {
       if (steps <= report_.longest_cut) return;
       report_.longest_cut = steps;
@@ -728,15 +729,14 @@ class Guard {
       note(memory.stuck_steps, memory);
       if (!is_cut) continue;
       for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) {
-        if (is_body_cut[at(i)] != 0 || !bodies_[at(i)].is_dynamic()) continue;
-        is_body_cut[at(i)] = 1;
-        note(state_.bodies[at(i)].cut_steps + 1, memory);
+        if (!bodies_[at(i)].is_dynamic()) continue;
+        const auto before = state_.cut_steps.find(work_.ids[at(i)]);
+        const int steps = before != state_.cut_steps.end() ? before->second + 1 : 1;
+        cut[work_.ids[at(i)]] = steps;
+        note(steps, memory);
       }
     }
-    for (std::size_t i = 0; i < is_body_cut.size(); ++i) {
-      int& steps = state_.bodies[i].cut_steps;
-      steps = is_body_cut[i] != 0 ? steps + 1 : 0;
-    }
+    state_.cut_steps = std::move(cut);
   }
 
   const std::vector<body::Body>& bodies_;

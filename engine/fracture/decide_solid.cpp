@@ -41,7 +41,7 @@ class SolidDecider {
       : subject_(prepared(subject)),
         impact_(impact),
         settings_(settings),
-        cracked_material_(as_cracked(subject_)),
+        crack_cost_(crack_cost_of(subject_)),
         force_(subject_, impact, settings) {}
 
   SolidDecision decide() {
@@ -90,13 +90,13 @@ class SolidDecider {
     return subject;
   }
   const SolidModel& model() const { return *subject_.model; }
-  /// What cracks run in: beside the crack in what yields a neck as wide as the body is thick is drawn out to
-  /// the elongation, which takes the most of what a tear takes [CR77].
-  static material::Material as_cracked(const SolidSubject& subject) {
-    material::Material material = subject.material;
-    if (material.yield > 0.0 && subject.model)
-      material.fracture_energy += material.yield * material.elongation * subject.model->width;
-    return material;
+  /// J/m2. Beside a crack in what yields a neck as wide as the body is thick is drawn out to the elongation,
+  /// which takes the most of what a tear takes [CR77].
+  static double crack_cost_of(const SolidSubject& subject) {
+    const material::Material& material = subject.material;
+    const bool draws_neck = material.yield > 0.0 && subject.model;
+    return material.fracture_energy +
+           (draws_neck ? material.yield * material.elongation * subject.model->width : 0.0);
   }
 
   /// The least stress that an element bears, Pa: its weakest flaw's, or that of sound material.
@@ -242,9 +242,8 @@ class SolidDecider {
   void open_tears() {
     if (!(subject_.material.yield > 0.0)) return;
     if (decision_.part_count != count_parts(*subject_.complex) && !join_crumbs()) return;
-    complex_ = std::make_shared<geometry::SolidComplex>(*decision_.complex);
     const int generations = decision_.generations;
-    const bool is_known = is_answered_ && (is_solved_ || solve_again());
+    const bool is_known = is_answered_ && (is_solved_ || solve_again(*decision_.complex));
     decision_.generations = generations;
     if (!is_known) return;
     DentEnergy struck = force_.struck_energy();
@@ -264,7 +263,8 @@ class SolidDecider {
     if (!trees_) trees_.emplace(model().stiffness->vertex_rank.of(*model().mesh.elements));
     setup.guides.trees = &*trees_;
     setup.guides.strength = subject_.material.strength;
-    setup.material = &cracked_material_;
+    setup.material = &subject_.material;
+    setup.fracture_energy = crack_cost_;
     setup.grains = subject_.grains.get();
     for (const SolidPress& press : force_.presses())
       setup.centres.push_back({press.contact.point, press.contact.radius});
@@ -283,8 +283,8 @@ class SolidDecider {
   }
 
   /// The cracked complex. Where that has no answer, what it has cracked by then is the decision.
-  bool solve_again() {
-    is_answered_ = force_.settle_again(find_form(*complex_), origins_, decision_, decision_.verdict.reason);
+  bool solve_again(const geometry::SolidComplex& complex) {
+    is_answered_ = force_.settle_again(find_form(complex), origins_, decision_, decision_.verdict.reason);
     if (is_answered_) solve_stresses(false);
     return is_answered_;
   }
@@ -315,7 +315,7 @@ class SolidDecider {
   bool break_bridges() {
     if (!is_answered_) return false;
     const int generations = decision_.generations;
-    is_solved_ = is_solved_ || solve_again();
+    is_solved_ = is_solved_ || solve_again(*complex_);
     decision_.generations = generations;
     if (!is_solved_) return false;
     const double size = kToldSize * model().mean_edge_length;
@@ -328,7 +328,7 @@ class SolidDecider {
     if (!(area > 0.0)) return false;
     ++decision_.cracks;
     decision_.new_area += area;
-    decision_.fracture_energy += cracked_material_.fracture_energy * area;
+    decision_.fracture_energy += crack_cost_ * area;
     return true;
   }
 
@@ -337,8 +337,7 @@ class SolidDecider {
 
   /// Area that the energy left allows, m2.
   double most_area() const {
-    const double cost = cracked_material_.fracture_energy;
-    return settings_.has_energy_guard && cost > 0.0 ? energy_left() / cost : 1e300;
+    return settings_.has_energy_guard && crack_cost_ > 0.0 ? energy_left() / crack_cost_ : 1e300;
   }
 
   /// What is pressed by more than it bears is crushed, where the elements can tell of that. False if nothing
@@ -373,7 +372,7 @@ class SolidDecider {
     complex_ = std::make_shared<geometry::SolidComplex>(*subject_.complex);
     for (int generation = 0; generation < settings_.most_generations; ++generation) {
       if (generation > 0) {
-        if (!solve_again()) break;
+        if (!solve_again(*complex_)) break;
         candidates = find_candidates(*complex_, false);
       }
       if (!run_generation(std::move(candidates))) break;
@@ -397,7 +396,7 @@ class SolidDecider {
   const SolidSubject subject_;
   const Impact& impact_;
   const FractureSettings& settings_;
-  const material::Material cracked_material_;
+  const double crack_cost_;  // J/m2
   SolidForce force_;
   SolidDecision decision_;
   std::shared_ptr<const CrackTurns> turns_;

@@ -8,6 +8,7 @@
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/core/stop.h"
+#include "engine/fracture/copies.h"
 #include "engine/fracture/shell_subject.h"
 
 namespace shatterbox::fracture {
@@ -70,20 +71,6 @@ Mat2 find_sides(const geometry::ShellElements& elements, int element) {
     sides.col(i) = frame.leftCols<2>().transpose() *
                    (elements.mesh.positions[at(t[at(i + 1)])] - elements.mesh.positions[at(t[0])]);
   return sides;
-}
-
-/// Of each number in [0, count) the mean of the values of its copies.
-template <class T, class ValueOf>
-std::vector<T> mean_of_copies(const std::vector<int>& sources, Size count, T zero, const ValueOf& value_of) {
-  std::vector<T> means(count, zero);
-  std::vector<int> copies(count, 0);
-  for (Size i = 0; i < sources.size(); ++i) {
-    means[at(sources[i])] += value_of(static_cast<int>(i));
-    ++copies[at(sources[i])];
-  }
-  for (Size i = 0; i < count; ++i)
-    if (copies[i] > 1) means[i] /= copies[i];
-  return means;
 }
 
 class ShapeFinder {

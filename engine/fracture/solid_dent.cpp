@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/index.h"
+#include "engine/fracture/copies.h"
 #include "engine/fracture/dent_shape.h"
 #include "engine/fracture/torn_solid.h"
 #include "engine/geometry/crack_lips.h"
@@ -25,16 +26,9 @@ constexpr int kMostCrushSteps = 40;
 
 /// Moves of the elements' vertices; copies of one, on both sides of a standing crack, share their mean.
 std::vector<Vec3> moves_of(const geometry::SolidMesh& mesh, const VecX& displacement) {
-  const std::size_t count = mesh.elements->mesh.positions.size();
-  std::vector<Vec3> moves(count, Vec3::Zero());
-  std::vector<int> copies(count, 0);
-  for (std::size_t v = 0; v < mesh.vertex_source.size(); ++v) {
-    moves[at(mesh.vertex_source[v])] += displacement.segment<3>(static_cast<Eigen::Index>(3 * v));
-    ++copies[at(mesh.vertex_source[v])];
-  }
-  for (std::size_t v = 0; v < count; ++v)
-    if (copies[v] > 1) moves[v] /= copies[v];
-  return moves;
+  return mean_of_copies(
+      mesh.vertex_source, mesh.elements->mesh.positions.size(), Vec3(Vec3::Zero()),
+      [&](int v) { return Vec3(displacement.segment<3>(3 * static_cast<Eigen::Index>(v))); });
 }
 
 bool is_sound(const geometry::SolidComplex& complex, const std::vector<Vec3>& moves) {

@@ -56,7 +56,7 @@ SolidTracer::SolidTracer(geometry::SolidComplex& complex, SolidTracerSetup setup
       origin_(complex.cells.size()),
       entered_(complex.cells.size(), 0) {
   std::iota(origin_.begin(), origin_.end(), 0);
-  toughness_ = core::sqrt(setup_.material->young * setup_.material->fracture_energy);
+  toughness_ = core::sqrt(setup_.material->young * setup_.fracture_energy);
 }
 
 /// Whether an older crack is so near beside the present one in a settled cell that nothing could be told of
@@ -91,7 +91,7 @@ double SolidTracer::weakness_at(int element) const {
 }
 
 bool SolidTracer::pay(double area, double weakness) {
-  const double cost = weakness * setup_.material->fracture_energy * area;
+  const double cost = weakness * setup_.fracture_energy * area;
   if (setup_.energy_budget >= 0.0 && energy_ + cost > setup_.energy_budget) {
     is_out_of_energy_ = true;
     return false;

@@ -48,6 +48,7 @@ struct SolidTracerSetup {
   SolidGuideSetup guides;  // stresses and pieces are those of the cells at the generation's beginning
   SolvedOpening solved;
   const material::Material* material = nullptr;
+  double fracture_energy = 0.0;         // J/m2, of what is no boundary between grains
   const SpaceGrains* grains = nullptr;  // null: none
   std::vector<SolidLoadCentre> centres;
   double least_size = 0.0;     // m, of a crack, and of what is between two: what the elements can tell

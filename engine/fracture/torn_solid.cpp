@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/index.h"
+#include "engine/fracture/copies.h"
 #include "engine/fracture/solid_tracer.h"
 
 namespace shatterbox::fracture {
@@ -97,17 +98,8 @@ VecX carry(const TornSolid& torn, const VecX& displacement) {
 }
 
 std::vector<Vec3> as_of_sources(const TornSolid& torn, const std::vector<Vec3>& moves) {
-  const Size count = torn.source->elements->mesh.positions.size();
-  std::vector<Vec3> sums(count, Vec3::Zero());
-  std::vector<int> copies(count, 0);
-  for (Size v = 0; v < moves.size(); ++v) {
-    const Size source = at(torn.copied.vertex_sources[v]);
-    sums[source] += moves[v];
-    ++copies[source];
-  }
-  for (Size v = 0; v < count; ++v)
-    if (copies[v] > 1) sums[v] /= copies[v];
-  return sums;
+  return mean_of_copies(torn.copied.vertex_sources, torn.source->elements->mesh.positions.size(),
+                        Vec3(Vec3::Zero()), [&](int v) { return moves[at(v)]; });
 }
 
 std::vector<Vec3> as_of_copies(const TornSolid& torn, const std::vector<Vec3>& moves) {

@@ -8,7 +8,7 @@
 namespace shatterbox::geometry {
 
 /// Where moves of the copies' vertices (m) would put the sides of a crack into each other, those meet halfway
-/// and hold; the moves about change as little as that takes.
+/// and hold; what is about goes along, ever less.
 void part_lips(const CopiedSolid& copied, std::vector<Vec3>& moves);
 
 }  // namespace shatterbox::geometry

@@ -403,6 +403,7 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   SolidTracerSetup setup;
   setup.guides = {&stresses, &pieces, &turns, &trees, glass.strength};
   setup.material = &glass;
+  setup.fracture_energy = glass.fracture_energy;
   setup.solved = {&mesh, &displacement};
   setup.centres = {{Vec3(0.0, 0.0, 0.5), 0.1}};
   setup.energy_budget = budget;

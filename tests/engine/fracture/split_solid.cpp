@@ -225,6 +225,15 @@ TEST_CASE("split solid: 1e6 random cuts", "[.][long]") {
 
 namespace {
 
+SolidComplex make_complex(const TriangleMesh& surface, double element_size) {
+  TetrahedraOptions options;
+  options.element_size = element_size;
+  const EmbeddedSolid solid = tetrahedralise(surface, options).value();
+  SolidComplex complex = build_solid_complex(solid.elements, solid.embedded.material);
+  settle(complex);
+  return complex;
+}
+
 /// Our own figure, 1 m high, its material divided among coarse tetrahedra; what is inside x < 0.6 is most of
 /// it, as of the cube.
 SolidComplex make_figure_complex() {
@@ -232,12 +241,7 @@ SolidComplex make_figure_complex() {
   meshing.edge_length = 0.05;
   TriangleMesh surface = make_figure(1.0, meshing).value();
   for (Vec3& p : surface.positions) p.x() += 0.4;
-  TetrahedraOptions options;
-  options.element_size = 0.08;
-  const EmbeddedSolid solid = tetrahedralise(surface, options).value();
-  SolidComplex complex = build_solid_complex(solid.elements, solid.embedded.material);
-  settle(complex);
-  return complex;
+  return make_complex(surface, 0.08);
 }
 
 /// The greatest Euler characteristic of a connected part of a surface, and whether each is even: 2 of what is
@@ -320,12 +324,7 @@ SolidComplex make_bunny_complex() {
     }
   }
   weld_equal_positions(surface);
-  TetrahedraOptions options;
-  options.element_size = 0.12;
-  const EmbeddedSolid solid = tetrahedralise(surface, options).value();
-  SolidComplex complex = build_solid_complex(solid.elements, solid.embedded.material);
-  settle(complex);
-  return complex;
+  return make_complex(surface, 0.12);
 }
 
 void cut_solid(const SolidComplex& whole, int most) {

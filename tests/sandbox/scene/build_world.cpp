@@ -226,17 +226,13 @@ TEST_CASE("size stretches to a box, up = z turns") {
 }
 
 TEST_CASE("bricks are a wall on the middle of its foot, each a body") {
-  const Reading reading = read(
+  const BuiltScene built = build(
       "[[body]]\nname = \"brick\"\nkind = \"solid\"\nshape = \"bricks\"\nsize = [1, 0.5, 0.12]\nmaterial = "
       "\"brick\"\nelement_size = 0.1\nposition = [3, 1, 2]\n");
-  REQUIRE(reading.scene.has_value());
-  Problems problems;
-  const auto built = build_world(*reading.scene, problems);
-  REQUIRE(built.has_value());
-  REQUIRE(built->world.bodies().size() == 4 * 7);
+  REQUIRE(built.world.bodies().size() == 4 * 7);
   geometry::TriangleMesh wall;
   double mass = 0.0;
-  for (const body::Body& brick : built->world.bodies()) {
+  for (const body::Body& brick : built.world.bodies()) {
     mass += brick.shape->mass;
     for (const Vec3& p : brick.shape->surface.positions) wall.positions.push_back(brick.pose.apply(p));
   }
@@ -245,7 +241,7 @@ TEST_CASE("bricks are a wall on the middle of its foot, each a body") {
   const double half = 0.5 * ((4.0 + 1.0 / 3.0) * 0.241 - 0.001);
   CHECK((least - Vec3(3 - half, 1.0001, 2 - 0.0575)).norm() < 1e-9);
   CHECK((most - Vec3(3 + half, 1 + 7 * 0.0711, 2 + 0.0575)).norm() < 1e-9);
-  CHECK(mass == Approx(28 * built->world.bodies()[0].shape->mass));
+  CHECK(mass == Approx(28 * built.world.bodies()[0].shape->mass));
 }
 
 TEST_CASE("a file's mesh stands where it is asked to, wherever its own frame begins") {
