@@ -25,6 +25,7 @@ std::uint64_t hash_of(const PairState& pair) {
   hash.add(static_cast<std::uint64_t>(pair.has_parted));
   hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
   hash.add(static_cast<std::uint64_t>(pair.is_exempt));
+  if (pair.is_hooked) hash.add(std::uint64_t{1});
   for (const RememberedContact& c : pair.contacts) {
     hash.add(c.feature_key).add(c.normal_impulse).add(c.friction_impulse).add(c.creep).add(c.arrival_speed);
     hash.add(static_cast<std::uint64_t>(c.was_loaded));

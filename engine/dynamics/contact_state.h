@@ -42,6 +42,7 @@ struct PairState {
   bool has_parted = false;       // pressed a step ago, and touches no longer
   int trouble_age = kNoTrouble;  // steps since the continuous pass last had to act here
   int stuck_steps = 0;           // steps in a row in which the pair had to be cut short
+  bool is_hooked = false;    // cut short in a part as short as there is, and ever since: shorter is no help
   bool is_exempt = false;    // crossed when it was first seen, and still does: passes until it has come apart
   bool is_reported = false;  // as exempt
   std::vector<RememberedContact> contacts;

@@ -125,6 +125,7 @@ class Guard {
       if (round < kMostZoneRounds && zones_->has_wholes()) has_hits = open_zones_in_rounds(has_hits);
     }
     if (zones_) settle_zones();
+    note_hooked();
     note_stuck();
     report_.test_bytes = kept_bytes();
   }
@@ -711,6 +712,18 @@ class Guard {
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       if (was_hit_[p]) state_.pairs[at(work_.pairs[p].state)].trouble_age = -1;
     }
+  }
+
+  // Who is hooked to whom, and how many are cut short for others: shorter parts may help those.
+  void note_hooked() {
+    std::vector<char> is_new(work_.bodies.size(), 0);
+    for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
+      PairState& memory = state_.pairs[at(work_.pairs[p].state)];
+      if (in_zone_[p] && !memory.is_hooked)
+        for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) is_new[at(i)] = was_cut_[at(i)];
+      memory.is_hooked = in_zone_[p] && (memory.is_hooked || work_.is_shortest);
+    }
+    report_.newly_cut = static_cast<int>(std::count(is_new.begin(), is_new.end(), 1));
   }
 
   /// Pairs, and those that can move, whoever each of them meets.

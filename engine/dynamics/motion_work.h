@@ -254,6 +254,7 @@ class MotionWork {
   bool has_scripted = false;     // ones that move
   bool is_solved_again = false;  // islands are, with what met on its way
   bool is_trial = false;         // ways that are not free are left so
+  bool is_shortest = false;      // no part is shorter than this one
   double substep = 0.0;          // s
   double warm_scale = 1.0;       // of remembered impulses: this step's substep over the last one's
 

@@ -23,7 +23,7 @@ using core::at;
 
 // A step with newborn pieces is taken in at least so many parts, none longer than this. It is divided as far
 // as that, but no further than it takes, after one in which, of so many bodies that are near others, more
-// than one turns far and, of so many, more than one pair was hit.
+// than one turns far and, of so many, more than one pair was hit in which one does.
 constexpr int kLeastParts = 4;
 constexpr double kPartTime = 1.0 / 960.0;  // s
 constexpr double kMostParts = 512.0;
@@ -328,16 +328,25 @@ int finer_substeps(double substep, double swing) {
   return turn > kSwingTurn ? static_cast<int>(std::ceil(std::min(turn / kSwingTurn, kMostFiner))) : 1;
 }
 
-void count_near(const ContactSettings& settings, const MotionWork& work, ContactReport& report) {
+void count_near(const ContactSettings& settings, const ContactState& state, const MotionWork& work,
+                ContactReport& report) {
+  const auto turn_of = [&](const WorkBody& w) {
+    return w.shape->kind != body::ShapeKind::sphere ? w.spin.norm() * settings.time_step : 0.0;
+  };
   std::vector<char> is_near(work.bodies.size(), 0);
   for (const WorkPair& pair : work.pairs)
     if (!pair.is_apart) is_near[at(pair.a)] = is_near[at(pair.b)] = 1;
+  for (const WorkPair& pair : work.pairs) {
+    if (state.pairs[at(pair.state)].trouble_age > 0) continue;  // not hit in this part
+    const double turn = std::max(turn_of(work.bodies[at(pair.a)]), turn_of(work.bodies[at(pair.b)]));
+    report.turning_hits += turn > kStraightTurn ? 1 : 0;
+  }
   std::vector<double> turns;
   for (std::size_t i = 0; i < work.bodies.size(); ++i) {
     const WorkBody& w = work.bodies[i];
     if (!is_near[i] || !w.is_active || w.inverse_mass == 0.0) continue;
     ++report.near_bodies;
-    if (w.shape->kind != body::ShapeKind::sphere) turns.push_back(w.spin.norm() * settings.time_step);
+    if (w.shape->kind != body::ShapeKind::sphere) turns.push_back(turn_of(w));
   }
   const std::size_t few = at(report.near_bodies / kManySpin);
   if (few >= turns.size()) return;
@@ -348,7 +357,7 @@ void count_near(const ContactSettings& settings, const MotionWork& work, Contact
 
 // Who was cut stood still for the whole part: short parts cost less of the motion.
 bool were_many_cut(const ContactSettings& settings, const ContactReport& report) {
-  return kManyCut * report.failsafe_steps > report.near_bodies && settings.time_step > kPartTime;
+  return kManyCut * report.newly_cut > report.near_bodies && settings.time_step > kPartTime;
 }
 
 // So that what turns so far in the step, rad, turns little in each.
@@ -361,8 +370,8 @@ int count_turn_parts(const ContactSettings& settings, double turn) {
 
 // What is hit on its way did not see it coming: over shorter ways more does.
 int find_next_parts(const ContactSettings& settings, const ContactReport& report, int parts, double swing) {
-  const int near = report.near_bodies, hits = report.hits;
-  const int spin_parts = kManyHits * hits > near ? count_turn_parts(settings, report.crowd_turn) : 1;
+  const bool are_many_hit = kManyHits * report.turning_hits > report.near_bodies;
+  const int spin_parts = are_many_hit ? count_turn_parts(settings, report.crowd_turn) : 1;
   // What is opened in position tears chains.
   const int swing_parts = report.torn > kTorn ? count_turn_parts(settings, swing * settings.time_step) : 1;
   const int most = lively_parts(settings);
@@ -459,6 +468,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
     else
       state.shelf->pairs.clear();
     work.is_trial = part.is_trial;
+    work.is_shortest = settings.time_step <= kPartTime || finer_parts(settings, part) < 2;
     solve_motion(bodies, own, work);
     ContactReport guarded = report;
     guard_motion(bodies, own, slept, state, work, guarded);
@@ -472,7 +482,7 @@ ContactReport move_part(std::vector<Body>& bodies, const ContactSettings& settin
   }
   const std::size_t first = log.size();
   finish_motion(bodies, state, work, log, report);
-  count_near(settings, work, report);
+  count_near(settings, state, work, report);
   for (std::size_t i = first; i < log.size(); ++i) log[i].time += part.number * own.time_step;
   if (own.has_ways) report.ways = find_ways(work, part, moved);
   if (state.shelf->keeps_part) end_part(work, state.shelf->part);
@@ -486,10 +496,12 @@ void add_part(const StepPart& part, ContactReport&& moved, ContactReport& step) 
   step.solver_contacts = std::max(step.solver_contacts, moved.solver_contacts);
   step.least_gap = std::min(step.least_gap, moved.least_gap);
   step.hits += moved.hits;
+  step.turning_hits += moved.turning_hits;
   step.rounds += moved.rounds;
   step.ways_tested += moved.ways_tested;
   step.test_bytes = std::max(step.test_bytes, moved.test_bytes);
   step.failsafe_steps += moved.failsafe_steps;
+  step.newly_cut += moved.newly_cut;
   if (moved.longest_cut > step.longest_cut) {
     step.longest_cut = moved.longest_cut;
     step.longest_cut_pair = moved.longest_cut_pair;

@@ -26,10 +26,12 @@ struct ContactReport {
   double least_gap =
       1e300;             // m, over all pairs that do not cross, at the step's start; 1e300 without any near
   int hits = 0;          // pairs in which the continuous pass had to act
+  int turning_hits = 0;  // of them: with one that turns far in a whole step
   int rounds = 0;        // rounds of the continuous pass
   long ways_tested = 0;  // pairs of bodies whose ways it tested, in all of them
   double test_bytes = 0.0;  // that it kept for that, hits apart
   int failsafe_steps = 0;   // bodies whose step was cut short
+  int newly_cut = 0;        // of them: by others than those they are hooked to
   int longest_cut = 0;      // steps in a row, of what was cut longest; and, at last, by this pair:
   std::pair<body::BodyId, body::BodyId> longest_cut_pair{};
   int crossing_pairs = 0;  // crossed when they were first seen, and still do

@@ -2,6 +2,7 @@
 // only what cuts their ways short keeps them from crossing.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "engine/dynamics/motion_work.h"
 #include "tests/engine/dynamics/piles.h"
@@ -10,13 +11,14 @@
 namespace shatterbox {
 namespace {
 
-void step_by_failsafe(test::Scene& scene) {
+void step_by_failsafe(test::Scene& scene, bool is_shortest = false) {
   auto settings = scene.settings;
   settings.continuous_rounds = 0;
   scene.log.clear();
   scene.report = {};
   dynamics::MotionWork work;
   dynamics::find_candidate_pairs(scene.bodies, settings, scene.state, work);
+  work.is_shortest = is_shortest;
   work.contacts.clear();
   work.islands.clear();
   for (auto& body : work.bodies) body.is_free = true;
@@ -75,6 +77,29 @@ TEST_CASE("what two that go as one come upon, and what that pushes on, gives way
     CHECK(scene.bodies[i].pose.translation.y() > start[i].pose.translation.y() + 1e-4);
   for (std::size_t i = 1; i < start.size(); ++i)
     CHECK(scene.bodies[i].pose.translation.y() > scene.bodies[i - 1].pose.translation.y());
+}
+
+TEST_CASE("who is cut in the shortest parts too is hooked until he goes free, and asks for no shorter ones") {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  for (const double height : {0.0, 0.02}) {
+    body::Body sheet = test::make_shell(test::square_mesh(0.1, 2));
+    sheet.pose.translation.y() = height;
+    scene.add(sheet);
+  }
+  const auto cut_at = [&](double speed, bool is_shortest) {
+    scene.bodies[0].velocity = Vec3(0, speed, 0);
+    scene.bodies[1].velocity.setZero();
+    step_by_failsafe(scene, is_shortest);
+    return std::vector{scene.report.failsafe_steps, scene.report.newly_cut};
+  };
+  CHECK(cut_at(7.2, false) == std::vector{2, 2});
+  CHECK(cut_at(7.2, false) == std::vector{2, 2});
+  CHECK(cut_at(7.2, true) == std::vector{2, 2});
+  CHECK(cut_at(7.2, true) == std::vector{2, 0});
+  CHECK(cut_at(7.2, false) == std::vector{2, 0});
+  CHECK(cut_at(-7.2, false) == std::vector{0, 0});
+  CHECK(cut_at(15.0, true) == std::vector{2, 2});
 }
 
 TEST_CASE("free fall does not know of the failsafe until something is hit") {

@@ -1,5 +1,6 @@
 // The promise: no pair crosses that did not cross at its start, and none is cut short for more than a few
 // steps.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -165,7 +166,9 @@ TEST_CASE("a step in which many were cut goes on in shorter parts, from the part
   dynamics::ContactReport moved;
   moved.near_bodies = 300;
   CHECK(!dynamics::divide_where_cut(settings, {1, 2}, moved));
-  moved.failsafe_steps = 5;
+  moved.failsafe_steps = 5;  // all of those hooked to each other
+  CHECK(!dynamics::divide_where_cut(settings, {1, 2}, moved));
+  moved.newly_cut = 5;
   const auto finer = dynamics::divide_where_cut(settings, {1, 2}, moved);
   REQUIRE(finer);
   CHECK(finer->number == 4);
@@ -202,12 +205,12 @@ TEST_CASE(
     "a crowd that spins and collides takes its next step in as many parts as it takes, one that is cut too") {
   test::Scene scene;
   constexpr double kHalf = 0.5, kMore = 0.501;  // rad
-  const auto parts_after = [&](int hits, double crowd_turn, int failsafe_steps = 0, int parts = 1) {
+  const auto parts_after = [&](int turning_hits, double crowd_turn, int newly_cut = 0, int parts = 1) {
     dynamics::ContactReport step;
     step.near_bodies = 300;
     step.crowd_turn = crowd_turn;
-    step.failsafe_steps = failsafe_steps;
-    step.hits = hits;
+    step.newly_cut = newly_cut;
+    step.turning_hits = turning_hits;
     dynamics::end_step(scene.settings, step, parts, scene.state);
     scene.state.bodies.resize(1);  // no world that only begins
     return dynamics::count_parts({}, scene.settings, scene.state);
@@ -231,6 +234,38 @@ TEST_CASE(
   CHECK(parts_after(0, 0.0, 2) == 4);
   CHECK(parts_after(0, 0.0, 2, 2) == 8);
   CHECK(parts_after(0, 0.0, 2, 8) == 16);
+}
+
+TEST_CASE("of hits those count for the parts of a step in which somebody turns far") {
+  test::Scene scene;
+  scene.settings.gravity.setZero();
+  for (int k = 0; k < 12; ++k) {
+    const double turn = 2.0 * core::kPi * k / 12.0;
+    const Vec3 out(core::cos(turn), 0.2 * (k % 3), core::sin(turn));
+    body::Body sheet = test::make_shell(test::square_mesh(0.1, 2));
+    sheet.pose.translation = 0.4 * out;
+    sheet.velocity = -15.0 * out;
+    sheet.angular_velocity = (k % 2 == 0 ? 200.0 : 100.0) * Vec3(out.z(), 0.5, -out.x());
+    scene.add(sheet);
+  }
+  int hits = 0, turning = 0, slow = 0;
+  for (int step = 0; step < 48; ++step) {
+    double fastest = 0.0;
+    scene.step();
+    for (const auto& b : scene.bodies) fastest = std::max(fastest, b.angular_velocity.norm());
+    hits += scene.report.hits;
+    turning += scene.report.turning_hits;
+    CHECK(scene.report.turning_hits <= scene.report.hits);
+    if (fastest * scene.settings.time_step <= dynamics::kStraightTurn) {
+      slow += scene.report.hits;
+      CHECK(scene.report.turning_hits == 0);
+    }
+    if (step == 24)
+      for (auto& b : scene.bodies) b.angular_velocity *= 0.05;
+  }
+  WARN(hits << " hits, of " << turning << " that turn, " << slow << " where nobody does");
+  CHECK(turning > 0);
+  CHECK(slow > 0);
 }
 
 TEST_CASE("of those who count for the parts of a step each is near another, spheres do not spin") {
