@@ -73,7 +73,7 @@ class SolidDecider {
       return std::move(decision_);
     }
     tell_yield();
-    if (!force_.complete(decision_, verdict.reason)) return std::move(decision_);
+    force_.book_energy(decision_);
     if (subject_.material.yield > 0.0)
       decision_.elastic_energy = std::min(decision_.elastic_energy, kTornShare * force_.struck_energy().most);
     run_generations(std::move(candidates));

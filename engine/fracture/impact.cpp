@@ -20,16 +20,19 @@ double LoadBound::stress_at(double strength, double per_newton, double per_root_
   return borne_ratio_ * strength + per_newton * contact_force_ + hits;
 }
 
-double rigid_mobility(const geometry::MassProperties& mass, const ImpactLoad& load) {
-  const Vec3 arm = (load.point_material - mass.centre).cross(load.direction);
+double rigid_mobility(const geometry::MassProperties& mass, const Vec3& impulse, const Vec3& moment_about) {
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);
   double turning = 0.0;
   for (int i = 0; i < 3; ++i) {
     const double moment = axes.eigenvalues()[i];
-    const double a = axes.eigenvectors().col(i).dot(arm);
+    const double a = axes.eigenvectors().col(i).dot(moment_about);
     if (moment > 1e-12 * mass.mass * axes.eigenvalues()[2]) turning += a * a / moment;
   }
-  return 1.0 / mass.mass + turning;
+  return impulse.squaredNorm() / mass.mass + turning;
+}
+
+double rigid_mobility(const geometry::MassProperties& mass, const ImpactLoad& load) {
+  return rigid_mobility(mass, load.direction, (load.point_material - mass.centre).cross(load.direction));
 }
 
 }  // namespace shatterbox::fracture

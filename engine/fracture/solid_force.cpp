@@ -43,17 +43,20 @@ PressGroups find_solid_groups(const geometry::SolidMesh& mesh, const stress::Sol
 
 }  // namespace
 
-int SolidStage::part_of(Size press, Size group) const {
-  const VecX& force = groups[press].forces[group];
-  for (Size v = 0; v < system->part_of_vertex().size(); ++v)
-    if (force.segment<3>(static_cast<Eigen::Index>(3 * v)) != Vec3::Zero())
-      return system->part_of_vertex()[v];
-  return -1;
+const VecX* SolidStage::heaviest_force(Size press) const {
+  const std::vector<double>& weights = groups[press].weights;
+  if (weights.empty()) return nullptr;
+  return &groups[press]
+              .forces[static_cast<Size>(std::max_element(weights.begin(), weights.end()) - weights.begin())];
 }
 
-Size SolidStage::heaviest_group(Size press) const {
-  const std::vector<double>& weights = groups[press].weights;
-  return static_cast<Size>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+int SolidStage::part_of(Size press) const {
+  const VecX* force = heaviest_force(press);
+  if (!force) return -1;
+  for (Size v = 0; v < system->part_of_vertex().size(); ++v)
+    if (force->segment<3>(static_cast<Eigen::Index>(3 * v)) != Vec3::Zero())
+      return system->part_of_vertex()[v];
+  return -1;
 }
 
 SolidForce::SolidForce(const SolidSubject& subject, const Impact& impact, const FractureSettings& settings)
@@ -85,6 +88,7 @@ bool SolidForce::prepare(std::string& problem) {
     press.contact.radius =
         settings_.patch_radius > 0.0 ? settings_.patch_radius : std::max(least_radius, load.hertz_radius);
     if (presses_.empty() || load.impulse > hardest().load->impulse) hardest_ = presses_.size();
+    if (is_resting(press)) resting_.push_back(presses_.size());
     presses_.push_back(std::move(press));
   }
   if (presses_.empty()) problem = "no load";
@@ -138,10 +142,10 @@ bool SolidForce::note(const stress::SolidSolution& solution, SolidDecision& deci
   return solution.is_evaluated();
 }
 
-/// What a unit force of each of these loads meets, as the pieces under it share it; and, if asked, what the
-/// rest does.
+/// What a unit force of each of these loads meets, as the pieces under it share it; and, if asked, what
+/// resting contact and the spin do to this mesh.
 bool SolidForce::answer(const SolidStage& stage, const std::vector<Size>& wanted, SolidDecision& decision,
-                        std::string& problem, bool wants_rest) {
+                        std::string& problem, bool wants_whole) {
   const auto start = core::Clock::now();
   std::vector<VecX> forces, begins;
   for (const Size i : wanted) {
@@ -151,23 +155,31 @@ bool SolidForce::answer(const SolidStage& stage, const std::vector<Size>& wanted
     // Of pieces that share a force none moves as they do together.
     if (own.size() == 1 && !stage.begins.empty()) begins.back() = stage.begins[i];
   }
-  if (wants_rest) {
-    rest_displacement_ = VecX();
-    VecX rest = find_rest();
-    wants_rest = rest.size() > 0;
-    if (wants_rest) {
-      forces.push_back(std::move(rest));
-      begins.push_back(stage.begins.empty() ? VecX() : stage.begins.back());
-    }
+  std::vector<WholeLoad*> whole;
+  const auto add_whole = [&](VecX force, Size begin, WholeLoad& load) {
+    load = {};
+    if (force.size() == 0) return;
+    forces.push_back(std::move(force));
+    begins.push_back(stage.begins.empty() ? VecX() : stage.begins[begin]);
+    whole.push_back(&load);
+  };
+  if (wants_whole) {
+    add_whole(resting_force(stage, resting_), presses_.size(), rest_);
+    add_whole(is_spinning() ? stress::centrifugal_load(*subject_.model->stiffness, *stage.mesh,
+                                                       impact_.spin_material, subject_.model->mass.centre)
+                            : VecX(),
+              presses_.size() + 1, spin_);
   }
   stress::SolidSolveSettings solving;
   solving.screening = stage.screening;
   solving.tolerance = settings_.solve_residual;
   const std::vector<stress::SolidSolution> all = stage.system->solve(forces, solving, begins);
   decision.solve_ms += core::milliseconds_since(start);
-  if (wants_rest) {
-    if (!note(all.back(), decision, problem)) return false;
-    rest_displacement_ = all.back().displacement;
+  for (Size k = 0; k < whole.size(); ++k) {
+    const stress::SolidSolution& solution = all[all.size() - whole.size() + k];
+    if (!note(solution, decision, problem)) return false;
+    *whole[k] = {solution.displacement, solution.rigid_displacement, solution.compliance,
+                 solution.elastic_compliance};
   }
   auto next = all.begin();
   for (const Size i : wanted) {
@@ -180,7 +192,6 @@ bool SolidForce::answer(const SolidStage& stage, const std::vector<Size>& wanted
       if (!note(solution, decision, problem)) return false;
     const Eigen::MatrixXd flexibility = stress::compliance_matrix(groups.forces, own);
     const Eigen::VectorXd shares = share_force(groups, flexibility);
-    press.shares.assign(shares.data(), shares.data() + shares.size());
     press.displacement = VecX::Zero(stage.system->dof_count());
     for (Eigen::Index g = 0; g < shares.size(); ++g)
       if (shares[g] != 0.0) press.displacement += shares[g] * own[static_cast<Size>(g)].displacement;
@@ -218,7 +229,7 @@ bool SolidForce::settle_lead(Size lead, SolidDecision& decision, std::string& pr
   if (!(duration_ < 0.5 * now_.system->trial_period(motion))) return true;
   // A higher screening never makes the duration longer: the search climbs.
   std::vector<int> tried;
-  now_.begins.resize(presses_.size() + 1);
+  now_.begins.resize(presses_.size() + 2);
   while (static_cast<int>(tried.size()) < kMostSolidScreenings &&
          std::find(tried.begin(), tried.end(), exponent_) == tried.end()) {
     tried.push_back(exponent_);
@@ -243,53 +254,16 @@ bool SolidForce::settle(SolidDecision& decision, std::string& problem) {
   }
   if (lead && !settle_lead(*lead, decision, problem)) return false;
   if (lead) settle_force(presses_[*lead]);
-  choose_minor();
-  put_together();
+  for (const Size i : resting_) settle_force(presses_[i]);
   std::vector<Size> others;
   for (Size i = 0; i < presses_.size(); ++i)
-    if (i != lead && !presses_[i].is_minor) others.push_back(i);
+    if (i != lead && !is_resting(presses_[i])) others.push_back(i);
   if (!answer(now_, others, decision, problem, true)) return false;
   for (SolidPress& press : presses_) settle_force(press);
   now_.begins.clear();
   first_ = now_;
   sum_up();
   return true;
-}
-
-/// Resting contact presses with a force that no solve has to tell. The least of it, of many pieces that lie
-/// on a body while it is hit, is not worth one solve each.
-void SolidForce::choose_minor() {
-  if (impact_.given_duration) return;
-  double greatest = 0.0;
-  std::vector<std::pair<double, Size>> resting;
-  for (Size i = 0; i < presses_.size(); ++i) {
-    SolidPress& press = presses_[i];
-    if (!is_collision(*press.load)) {
-      settle_force(press);
-      if (press.load->is_resting) resting.push_back({press.first_force, i});
-    }
-    greatest = std::max(greatest, press.first_force);
-  }
-  std::sort(resting.begin(), resting.end());
-  double sum = 0.0;
-  for (const auto& [force, i] : resting) {
-    sum += force;
-    if (sum > kMinorForce * greatest) break;
-    presses_[i].is_minor = true;
-  }
-}
-
-/// Whether the body holds is told by the sum of what rests on it. How the pieces of a cracked body share a
-/// load is told by a solve.
-void SolidForce::put_together() {
-  if (impact_.given_duration) return;
-  for (Size i = 0; i < presses_.size(); ++i) {
-    SolidPress& press = presses_[i];
-    if (press.is_minor || !press.load->is_resting || is_collision(*press.load)) continue;
-    if (now_.groups[i].forces.size() != 1) continue;
-    press.is_minor = true;
-    together_.push_back(i);
-  }
 }
 
 void SolidForce::settle_force(SolidPress& press) {
@@ -323,42 +297,27 @@ DentEnergy SolidForce::struck_energy() const {
   return sum;
 }
 
-bool SolidForce::complete(SolidDecision& decision, std::string& problem) {
-  for (const Size i : together_) presses_[i].is_minor = false;
-  if (!together_.empty() && !answer(now_, together_, decision, problem, true)) return false;
-  together_.clear();
+void SolidForce::book_energy(SolidDecision& decision) {
   for (SolidPress& press : presses_) {
-    if (press.is_minor) continue;
+    if (is_resting(press)) continue;
     press.first_compliance = press.compliance;
     const double elastic =
         0.5 * press.force * press.force * (press.contact.hertz_compliance + press.elastic_compliance);
     if (press.energy == 0.0) press.energy = elastic;
     decision.elastic_energy += std::min(elastic, press.energy);
   }
-  return true;
+  if (rest_.displacement.size() == 0) return;
+  first_rest_ = {{}, {}, rest_.compliance, rest_.elastic};
+  decision.elastic_energy += make_resting_part(resting_, first_rest_).energy;
 }
 
-/// What presses beside the loads that are solved for, N: the spin, and minor loads on the heaviest of their
-/// pieces. Empty: nothing does.
-VecX SolidForce::find_rest() const {
-  VecX rest;
-  if (is_spinning())
-    rest = stress::centrifugal_load(*subject_.model->stiffness, *now_.mesh, impact_.spin_material,
-                                    subject_.model->mass.centre);
-  for (Size i = 0; i < presses_.size(); ++i) {
-    if (!presses_[i].is_minor || now_.groups[i].forces.empty()) continue;
-    if (rest.size() == 0) rest = VecX::Zero(now_.system->dof_count());
-    rest += presses_[i].force * now_.groups[i].forces[now_.heaviest_group(i)];
-  }
-  return rest;
-}
-
-/// The displacement under all forces, the spin and minor loads at once: the answer is linear.
+/// The displacement under all forces and the spin at once: the answer is linear.
 void SolidForce::sum_up() {
   displacement_ = VecX::Zero(now_.system->dof_count());
-  if (rest_displacement_.size() > 0) displacement_ += rest_displacement_;
   for (const SolidPress& press : presses_)
-    if (!press.is_minor && press.force > 0.0) displacement_ += press.force * press.displacement;
+    if (press.displacement.size() > 0 && press.force > 0.0) displacement_ += press.force * press.displacement;
+  if (spin_.displacement.size() > 0) displacement_ += spin_.displacement;
+  if (rest_.displacement.size() > 0) add_resting();
 }
 
 }  // namespace shatterbox::fracture

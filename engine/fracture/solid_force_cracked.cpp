@@ -1,5 +1,4 @@
-// The forces on a solid that has cracked: what its new compliance and the energy left allow, and which
-// resting contact is not next to nothing any more.
+// The forces on a solid that has cracked: what its new compliance and the energy left allow.
 #include <algorithm>
 #include <utility>
 
@@ -16,11 +15,20 @@ using core::at;
 
 }  // namespace
 
-/// m/N that the own inertia of a free body, as one rigid whole, adds to the compliance of the intact body, if
-/// that was solved without.
-double SolidForce::first_inertia(const SolidPress& press) const {
+/// J that the own inertia of a free body, as one rigid whole, adds to what this force (N) and its moment
+/// about the centre of mass (N m) do to the intact body, if that was solved without; m/N of a unit force.
+double SolidForce::first_inertia(const Vec3& force, const Vec3& moment) const {
   if (first_.screening > 0.0 || !subject_.clamped_vertices.empty()) return 0.0;
-  return rigid_mobility(subject_.model->mass, *press.load) / (now_.screening * now_.screening);
+  return rigid_mobility(subject_.model->mass, force, moment) / (now_.screening * now_.screening);
+}
+
+/// s, of the motion that resting contact excites on the intact body; where there is none, of its first one.
+double SolidForce::excited_period() const {
+  if (rest_.displacement.size() == 0) return first_.system->first_period();
+  stress::SolidSolution motion;
+  motion.displacement = rest_.displacement;
+  motion.elastic_compliance = rest_.elastic;
+  return first_.system->trial_period(motion);
 }
 
 /// Later generations are screened. Below the first frequency that adds the body's own inertia, as one rigid
@@ -28,55 +36,14 @@ double SolidForce::first_inertia(const SolidPress& press) const {
 void SolidForce::prepare_cracked() {
   if (is_cracked_) return;
   is_cracked_ = true;
-  if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / first_.system->first_period());
+  if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / excited_period());
   now_.screening = stress::screening_of(exponent_);
-  for (SolidPress& press : presses_) press.first_compliance += first_inertia(press);
-}
-
-/// The greatest force of a load that was solved for, by connected part, N.
-std::vector<double> SolidForce::part_forces() const {
-  std::vector<double> forces(at(now_.system->part_count()), 0.0);
-  for (Size i = 0; i < presses_.size(); ++i) {
-    if (presses_[i].is_minor) continue;
-    std::vector<double> own(forces.size(), 0.0);
-    for (Size g = 0; g < presses_[i].shares.size(); ++g)
-      if (const int part = now_.part_of(i, g); part >= 0)
-        own[at(part)] += presses_[i].force * presses_[i].shares[g];
-    for (Size p = 0; p < own.size(); ++p) forces[p] = std::max(forces[p], own[p]);
-  }
-  return forces;
-}
-
-/// Where the force of the others has fallen, or a part came off with resting contact alone, that counts: from
-/// now on it is solved for.
-bool SolidForce::promote_minor(SolidDecision& decision, std::string& problem) {
-  std::vector<std::pair<double, Size>> minor;
-  for (Size i = 0; i < presses_.size(); ++i)
-    if (presses_[i].is_minor) minor.push_back({presses_[i].first_force, i});
-  if (minor.empty()) return true;
-  std::sort(minor.begin(), minor.end());
-  const std::vector<double> greatest = part_forces();
-  std::vector<double> sums(greatest.size(), 0.0);
-  std::vector<Size> promoted;
-  for (const auto& [force, i] : minor) {
-    const int part = now_.groups[i].forces.empty() ? -1 : now_.part_of(i, now_.heaviest_group(i));
-    if (part < 0) continue;
-    sums[at(part)] += force;
-    if (sums[at(part)] > kMinorForce * greatest[at(part)]) promoted.push_back(i);
-  }
-  if (promoted.empty()) return true;
-  if (!answer(first_, promoted, decision, problem)) return false;
-  for (const Size i : promoted) {
-    SolidPress& press = presses_[i];
-    press.is_minor = false;
-    press.energy =
-        0.5 * press.force * press.force * (press.contact.hertz_compliance + press.elastic_compliance);
-    press.first_compliance = press.compliance + first_inertia(press);
-  }
-  drop_spent(promoted, decision);
-  if (!answer(now_, promoted, decision, problem, true)) return false;
-  for (const Size i : promoted) settle_cracked_force(presses_[i], decision);
-  return true;
+  const auto moment_of = [&](const ImpactLoad& load) {
+    return Vec3((load.point_material - subject_.model->mass.centre).cross(load.direction));
+  };
+  for (SolidPress& press : presses_)
+    if (!is_resting(press))
+      press.first_compliance += first_inertia(press.load->direction, moment_of(*press.load));
 }
 
 /// Leaves out the loads that the cracks have left no energy: they press no more, whatever they would meet.
@@ -86,7 +53,6 @@ void SolidForce::drop_spent(std::vector<Size>& wanted, const SolidDecision& deci
     if (share_left(press.energy, decision.fracture_energy) > 0.0) return false;
     press.force = 0.0;
     press.displacement = VecX();
-    press.shares.clear();
     return true;
   });
 }
@@ -113,11 +79,11 @@ void SolidForce::carry_over(const geometry::SolidMesh& mesh, const std::vector<i
       if (source[v] >= 0) now.segment<3>(static_cast<Eigen::Index>(3 * v)) = before.segment<3>(3 * source[v]);
     return now;
   };
-  now_.begins.assign(presses_.size() + 1, {});
+  now_.begins.assign(presses_.size() + 2, {});
   for (Size i = 0; i < presses_.size(); ++i)
-    if (!presses_[i].is_minor && presses_[i].displacement.size() > 0)
-      now_.begins[i] = carried(presses_[i].displacement);
-  if (rest_displacement_.size() > 0) now_.begins.back() = carried(rest_displacement_);
+    if (presses_[i].displacement.size() > 0) now_.begins[i] = carried(presses_[i].displacement);
+  if (rest_.displacement.size() > 0) now_.begins[presses_.size()] = carried(rest_.displacement);
+  if (spin_.displacement.size() > 0) now_.begins[presses_.size() + 1] = carried(spin_.displacement);
 }
 
 bool SolidForce::settle_again(SolidForm form, const std::vector<int>& origins, SolidDecision& decision,
@@ -140,11 +106,11 @@ bool SolidForce::settle_again(SolidForm form, const std::vector<int>& origins, S
   now_.system = system.value();
   std::vector<Size> wanted;
   for (Size i = 0; i < presses_.size(); ++i)
-    if (!presses_[i].is_minor) wanted.push_back(i);
+    if (!is_resting(presses_[i])) wanted.push_back(i);
   drop_spent(wanted, decision);
   if (!answer(now_, wanted, decision, problem, true)) return false;
   for (const Size i : wanted) settle_cracked_force(presses_[i], decision);
-  if (!promote_minor(decision, problem)) return false;
+  if (!settle_resting(decision, problem)) return false;
   sum_up();
   return true;
 }

@@ -125,7 +125,7 @@ TEST_CASE("decide solid: what is known to be borne at rest leaves a tap alone to
   CHECK(!decide_solid(subject, impact).needed_no_solve());
 }
 
-TEST_CASE("decide solid: what rests on a body is solved for together, and by itself where the body breaks") {
+TEST_CASE("decide solid: what rests on a body is one load, and breaks it as each force by itself would") {
   const SolidSubject subject = box(Vec3(0.2, 0.02, 0.02), test::kIsSanitized ? 0.014 : 0.01, "ceramic");
   const auto decide = [&](double force, bool is_resting) {
     Impact impact;
@@ -153,7 +153,9 @@ TEST_CASE("decide solid: what rests on a body is solved for together, and by its
   for (const double times : {0.999, 1.0, 1.001}) {
     const SolidDecision broken = decide(times * enough, true), by_itself = decide(times * enough, false);
     REQUIRE(broken.verdict.outcome == Outcome::broke);
-    CHECK(broken.elastic_energy == Approx(by_itself.elastic_energy).epsilon(1e-6));
+    // Forces that bend it together hold more than the sum of what each does.
+    CHECK(broken.elastic_energy > 1.2 * by_itself.elastic_energy);
+    CHECK(2 * broken.iterations < by_itself.iterations);
     parts += broken.part_count;
     parts_apart += by_itself.part_count;
     area += broken.new_area;

@@ -1,11 +1,13 @@
-// Resting contact beside an impact: next to nothing is one load, and what counts is a load of its own.
+// Resting contact beside an impact is one load; what is left of it on a cracked body, part by part.
 #include "engine/fracture/solid_force.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "engine/core/index.h"
+#include "engine/fracture/solid_model.h"
 #include "engine/geometry/box_tets.h"
+#include "engine/geometry/solid_cutter.h"
+#include "tests/engine/geometry/solids.h"
 
 using namespace shatterbox;
 using namespace shatterbox::fracture;
@@ -55,8 +57,7 @@ Impact hit_among(const std::vector<double>& resting) {
 
 struct Settled {
   VecX displacement, struck;
-  std::vector<bool> is_minor;  // when the body breaks
-  double hardest = 0.0;
+  double hardest = 0.0, elastic_energy = 0.0;
   int iterations = 0;
 };
 Settled settled(const SolidSubject& subject, const Impact& impact) {
@@ -67,53 +68,127 @@ Settled settled(const SolidSubject& subject, const Impact& impact) {
   SolidDecision decision;
   REQUIRE(force.prepare(problem));
   REQUIRE(force.settle(decision, problem));
-  Settled out{force.displacement(), {}, {}, force.presses().front().force, decision.iterations};
-  out.struck = force.struck_displacement();
-  REQUIRE(force.complete(decision, problem));
-  for (const SolidPress& press : force.presses()) out.is_minor.push_back(press.is_minor);
+  Settled out{force.displacement(), force.struck_displacement(), force.presses().front().force, 0.0,
+              decision.iterations};
+  force.book_energy(decision);
+  out.elastic_energy = decision.elastic_energy;
   return out;
+}
+
+ImpactLoad resting(const Vec3& point, const Vec3& direction, double force) {
+  ImpactLoad load;
+  load.point_material = point;
+  load.direction = direction;
+  load.impulse = force / 60.0;
+  load.is_resting = true;
+  return load;
+}
+
+Impact rest_of(std::vector<ImpactLoad> loads) {
+  Impact impact;
+  impact.contact_average = 1.0 / 60.0;
+  impact.loads = std::move(loads);
+  return impact;
+}
+
+/// The forces, N, that are left of an impact once the block is cut across at x, of so much fracture energy
+/// (J).
+std::vector<double> left_after_cut(const SolidSubject& subject, const Impact& impact, double x,
+                                   double fracture_energy = 0.0) {
+  FractureSettings settings;
+  settings.solve_residual = 1e-8;
+  SolidForce force(subject, impact, settings);
+  std::string problem;
+  SolidDecision decision;
+  REQUIRE(force.prepare(problem));
+  REQUIRE(force.settle(decision, problem));
+  force.book_energy(decision);
+  geometry::SolidComplex complex = *subject.complex;
+  geometry::SolidCutter cutter(complex, 1e-9);
+  cutter.cut(test::plane_cut(complex, Vec3::UnitX(), x));
+  settle(complex);
+  std::vector<int> origins;
+  for (const geometry::SolidPart& cell : complex.cells)
+    for (size_t c = 0; c < subject.complex->cells.size(); ++c)
+      if (subject.complex->cells[c].element == cell.element) origins.push_back(static_cast<int>(c));
+  REQUIRE(origins.size() == complex.cells.size());
+  decision.fracture_energy = fracture_energy;
+  REQUIRE(force.settle_again(find_form(complex), origins, decision, problem));
+  std::vector<double> forces;
+  for (const SolidPress& press : force.presses()) forces.push_back(press.force);
+  return forces;
 }
 
 }  // namespace
 
-TEST_CASE(
-    "resting contact of a thousandth of the impact is solved for together, with the answer of each alone") {
+TEST_CASE("all resting contact beside an impact is one solve, with the answer of each alone") {
   const SolidSubject subject = pressed_block();
   const double hardest = settled(subject, hit_among({})).hardest;
   REQUIRE(hardest > 0.0);
-  // Ten that are 0.9 % together, and one that is 5 %: it has the last place.
   std::vector<double> resting;
   for (int i = 0; i < 10; ++i) resting.push_back((0.5 + 0.1 * i) * 9e-4 * hardest);
-  resting.push_back(0.05 * hardest);
+  resting.push_back(0.5 * hardest);
   const Settled all = settled(subject, hit_among(resting));
-  for (size_t i = 1; i <= 10; ++i) CHECK(all.is_minor[i]);
-  CHECK_FALSE(all.is_minor[0]);
-  CHECK_FALSE(all.is_minor[11]);
   CHECK(all.hardest == hardest);
-
-  // Each by itself, as a load that is too much to be minor, scaled: the answer is linear.
   VecX sum = settled(subject, hit_among({})).displacement;
   int iterations = 0;
   for (size_t i = 0; i < resting.size(); ++i) {
     std::vector<double> one(resting.size(), 0.0);
-    one[i] = 0.05 * hardest;
+    one[i] = resting[i];
     const Settled own = settled(subject, hit_among(one));
     iterations += own.iterations;
-    sum += (resting[i] / one[i]) * (own.displacement - settled(subject, hit_among({})).displacement);
+    sum += own.displacement - settled(subject, hit_among({})).displacement;
   }
   CHECK((all.displacement - sum).norm() < 1e-5 * sum.norm());
   CHECK(2 * all.iterations < iterations);
 }
 
-TEST_CASE("resting contact counts where it is not next to nothing, and all of it without an impact") {
+TEST_CASE("resting contact has the energy of all its forces together") {
   const SolidSubject subject = pressed_block();
-  const double hardest = settled(subject, hit_among({})).hardest;
-  const Settled heavy = settled(subject, hit_among({0.006 * hardest, 0.007 * hardest}));
-  CHECK(heavy.is_minor[1]);  // the lighter one still fits into a hundredth
-  CHECK_FALSE(heavy.is_minor[2]);
-  Impact rest = hit_among({100.0, 100.0, 100.0});
-  rest.loads.erase(rest.loads.begin());
-  for (const bool is_minor : settled(subject, rest).is_minor) CHECK_FALSE(is_minor);
+  const ImpactLoad down = resting(Vec3(0, 0, 0.05), -Vec3::UnitZ(), 1000.0);
+  const ImpactLoad up = resting(Vec3(0, 0, -0.05), Vec3::UnitZ(), 1000.0);
+  const Settled both = settled(subject, rest_of({down, up}));
+  const VecX stiff = apply_stiffness(*subject.model->stiffness, subject.model->mesh, both.displacement);
+  CHECK(both.elastic_energy == Approx(0.5 * both.displacement.dot(stiff)).epsilon(1e-6));
+  // Twice the forces, four times the energy; and what pulls where it pressed presses on nothing.
+  const Settled twice = settled(subject, rest_of({resting(down.point_material, down.direction, 2000.0),
+                                                  resting(up.point_material, up.direction, 2000.0)}));
+  CHECK(twice.elastic_energy == Approx(4.0 * both.elastic_energy).epsilon(1e-5));
+  const Settled none =
+      settled(subject, rest_of({down, resting(down.point_material, -down.direction, 1000.0)}));
+  CHECK(none.elastic_energy < 1e-9 * both.elastic_energy);
+}
+
+TEST_CASE("a crack takes its share of resting contact from the part that hung by it, and from no other") {
+  const SolidSubject subject = pressed_block();
+  const Vec3 down = -Vec3::UnitZ(), up = Vec3::UnitZ();
+  // Squeezed on the left, where the cut is far off: nothing changes.
+  const std::vector<ImpactLoad> squeeze{resting(Vec3(-0.12, 0, 0.05), down, 1000.0),
+                                        resting(Vec3(-0.12, 0, -0.05), up, 1000.0)};
+  const std::vector<double> far = left_after_cut(subject, rest_of(squeeze), 0.11);
+  CHECK(far[0] > 950.0);
+  CHECK(far[0] == far[1]);
+  // Bent over two edges, and cut through under the load: nothing is bent any more, and a half gives way
+  // alone.
+  std::vector<ImpactLoad> bent{resting(Vec3(0.03, 0, 0.05), down, 1000.0),
+                               resting(Vec3(-0.18, 0, -0.05), up, 430.0),
+                               resting(Vec3(0.18, 0, -0.05), up, 570.0)};
+  const std::vector<double> through = left_after_cut(subject, rest_of(bent), 0.0);
+  CHECK(through[0] < 250.0);
+  CHECK(through[2] < 140.0);
+  CHECK(through[0] / through[2] == Approx(1000.0 / 570.0));
+  CHECK(through[1] < 400.0);
+  // Both sides squeezed, and cut between: what cracks took leaves nothing of the weak one, and most of the
+  // other.
+  std::vector<ImpactLoad> both = squeeze;
+  both.push_back(resting(Vec3(0.14, 0, 0.05), down, 100.0));
+  both.push_back(resting(Vec3(0.14, 0, -0.05), up, 100.0));
+  const double weak = settled(subject, rest_of({both[2], both[3]})).elastic_energy;
+  const std::vector<double> shares = left_after_cut(subject, rest_of(both), 0.03, 1.1 * weak);
+  CHECK(shares[0] == shares[1]);
+  CHECK(shares[0] > 950.0);
+  CHECK(shares[2] == 0.0);
+  CHECK(shares[3] == 0.0);
 }
 
 TEST_CASE("a hit that is no collision is solved for however light it is") {
@@ -124,7 +199,6 @@ TEST_CASE("a hit that is no collision is solved for however light it is") {
   impact.loads.back().is_resting = false;
   REQUIRE_FALSE(is_collision(impact.loads.back()));
   const Settled both = settled(subject, impact);
-  CHECK_FALSE(both.is_minor[1]);
   const VecX added = both.struck - one.struck;
   CHECK(added.norm() > 1e-6 * one.struck.norm());
   CHECK((added - (both.displacement - one.displacement)).norm() < 1e-6 * added.norm());
