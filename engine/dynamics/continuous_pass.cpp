@@ -714,14 +714,17 @@ class Guard {
     }
   }
 
-  // Who is hooked to whom, and how many are cut short for others: shorter parts may help those.
+  // Who is hooked to whom, and goes on with him as one; and how many are cut short for others, or held up:
+  // shorter parts may help those.
   void note_hooked() {
     std::vector<char> is_new(work_.bodies.size(), 0);
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       PairState& memory = state_.pairs[at(work_.pairs[p].state)];
-      if (in_zone_[p] && !memory.is_hooked)
-        for (const int i : {work_.pairs[p].a, work_.pairs[p].b}) is_new[at(i)] = was_cut_[at(i)];
-      memory.is_hooked = in_zone_[p] && (memory.is_hooked || work_.is_shortest);
+      const int a = work_.pairs[p].a, b = work_.pairs[p].b;
+      const bool goes_on = in_zone_[p] && zones_->share(a) == 1.0 && zones_->share(b) == 1.0;
+      if (in_zone_[p] && !(goes_on && memory.is_hooked))
+        for (const int i : {a, b}) is_new[at(i)] = was_cut_[at(i)];
+      memory.is_hooked = goes_on && (memory.is_hooked || work_.is_shortest);
     }
     report_.newly_cut = static_cast<int>(std::count(is_new.begin(), is_new.end(), 1));
   }

@@ -104,10 +104,13 @@ bool SolidForce::settle_resting(SolidDecision& decision, std::string& problem) {
       compliance += presses_[i].first_force * now_.heaviest_force(i)->dot(moved);
     const double others = part.inertia / (now_.screening * now_.screening);
     const double left = share_left(part.energy, decision.fracture_energy);
-    const double share = cracked_force(1.0, part.contact, part.first_compliance, compliance, others, left);
+    part.share = 1.0;
+    // What gives way nowhere, forces on what is held, does no work and stays.
+    if (part.contact + compliance + others > 0.0)
+      part.share = cracked_force(1.0, part.contact, part.first_compliance, compliance, others, left);
     // The springs cannot hold more than the energy that is left.
     const double springs = part.contact + elastic[at(now_.part_of(part.presses.front()))];
-    part.share = springs > 0.0 ? std::min(share, force_of_energy(part.energy * left, springs)) : share;
+    if (springs > 0.0) part.share = std::min(part.share, force_of_energy(part.energy * left, springs));
     for (const Size i : part.presses) presses_[i].force = part.share * presses_[i].first_force;
   }
   return true;
