@@ -42,10 +42,12 @@ struct Axis {
 
 constexpr double kNoOverlap = 1e-6;  // of the size: boxes that touch may do so by rounding
 
-// The axis of greatest separation. An edge pair must be better by a little, so that faces that lie on each
-// other are not taken for edges; but what one axis tells apart does not overlap.
-Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const Vec3& way) {
-  const double size = std::min(a.half_extent.minCoeff(), b.half_extent.minCoeff());
+// The axis of greatest separation. Where contacts are wanted (`prefers_faces`) an edge pair must be better by
+// a little, so that faces that lie on each other are not taken for edges; but what one axis tells apart does
+// not overlap.
+Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const Vec3& way,
+               bool prefers_faces) {
+  const double size = prefers_faces ? std::min(a.half_extent.minCoeff(), b.half_extent.minCoeff()) : 0.0;
   Axis best{Vec3::UnitY(), -1e300, -1};
   const auto try_axis = [&](const Vec3& direction, int number, double handicap) {
     const double side = direction.dot(way) < 0.0 ? -1.0 : 1.0;
@@ -61,8 +63,8 @@ Axis best_axis(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, c
     for (int j = 0; j < 3; ++j) {
       const Vec3 cross = ra.col(i).cross(rb.col(j));
       const double length = cross.norm();
-      const bool is_overlap = best.gap < -kNoOverlap * size;
-      if (length > (is_overlap ? 1e-7 : 1e-3)) try_axis(cross / length, 6 + 3 * i + j, 5e-3 * size);
+      const bool may_overlap = !prefers_faces || best.gap < -kNoOverlap * size;
+      if (length > (may_overlap ? 1e-7 : 1e-3)) try_axis(cross / length, 6 + 3 * i + j, 5e-3 * size);
     }
   }
   return best;
@@ -164,7 +166,7 @@ void add_box_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose&
                  std::vector<Contact>& out) {
   const PlacedBox box_a{a, pose_a.rotation.toRotationMatrix(), pose_a.translation};
   const PlacedBox box_b{b, pose_b.rotation.toRotationMatrix(), pose_b.translation};
-  const Axis axis = best_axis(a, box_a.axes, b, box_b.axes, pose_a.translation - pose_b.translation);
+  const Axis axis = best_axis(a, box_a.axes, b, box_b.axes, pose_a.translation - pose_b.translation, true);
   if (axis.gap > margin) return;
   const std::size_t first = out.size();
   if (axis.number < 3) {
@@ -242,13 +244,21 @@ void find_analytic_contacts(const Shape& a, const Pose& pose_a, const Shape& b, 
 double analytic_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Vec3& normal) {
   if (a.kind == ShapeKind::box && b.kind == ShapeKind::box) {
     const Axis axis = best_axis(a, pose_a.rotation.toRotationMatrix(), b, pose_b.rotation.toRotationMatrix(),
-                                pose_a.translation - pose_b.translation);
+                                pose_a.translation - pose_b.translation, false);
     normal = axis.normal;
     return axis.gap;
   }
   const Contact c = find_ball_contact(a, pose_a, b, pose_b);
   normal = c.normal;
   return c.gap;
+}
+
+double contact_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+  if (a.kind == ShapeKind::box && b.kind == ShapeKind::box)
+    return best_axis(a, pose_a.rotation.toRotationMatrix(), b, pose_b.rotation.toRotationMatrix(),
+                     pose_a.translation - pose_b.translation, true)
+        .gap;
+  return find_ball_contact(a, pose_a, b, pose_b).gap;
 }
 
 }  // namespace shatterbox::collision

@@ -27,9 +27,13 @@ void find_analytic_contacts(const body::Shape& a, const Pose& pose_a, const body
 /// The one contact of a sphere with a sphere or a box, however far apart.
 Contact find_ball_contact(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b);
 
-/// A lower bound of the distance of such a pair, negative when they overlap; `normal` gets its direction (b
-/// to a).
+/// A lower bound of the distance of such a pair, positive if they are apart by however little, negative when
+/// they overlap; `normal` gets its direction (b to a).
 double analytic_gap(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b,
                     Vec3& normal);
+
+/// The gap along the axis of which `find_analytic_contacts` tells the contacts: of boxes it may be less, for
+/// faces go before edges.
+double contact_gap(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b);
 
 }  // namespace shatterbox::collision

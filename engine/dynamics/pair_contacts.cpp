@@ -242,8 +242,8 @@ void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPa
   const WorkBody &a = work.bodies[at(pair.a)], &b = work.bodies[at(pair.b)];
   const double usual_gap = settings.kept_gap * pair.size;
   Vec3 normal;
-  const double gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
-  pair.least_gap = gap;
+  pair.least_gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
+  const double gap = collision::contact_gap(*a.shape, a.start, *b.shape, b.start);
   if (gap <= pair.margin) {
     // Once the direction is fixed, all of a face's corners that the motion may bring down belong to the
     // contact.

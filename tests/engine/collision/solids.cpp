@@ -1,6 +1,8 @@
 // Broad phase, spheres, boxes and planes.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "engine/collision/analytic_contact.h"
 #include "engine/collision/broad_phase.h"
@@ -90,6 +92,51 @@ TEST_CASE("crossed edges of two boxes touch with their edges") {
   REQUIRE(contacts.size() == 1);
   CHECK(contacts[0].gap == Approx(0.1).epsilon(1e-4));
   CHECK((contacts[0].normal - Vec3(0, 1, 0)).norm() < 1e-4);
+}
+
+TEST_CASE("boxes that an axis tells apart by however little have a gap") {
+  core::Random random(7);
+  const auto direction = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+  int by_edges = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const auto any = [&] { return random.uniform(0.01, 0.1); };
+    const body::Shape a = box(Vec3(any(), any(), any())), b = box(Vec3(any(), any(), any()));
+    Pose pose_a, pose_b;
+    for (Pose* pose : {&pose_a, &pose_b})
+      pose->rotation = Quat(Eigen::AngleAxisd(random.uniform(0.0, 3.0), direction().normalized()));
+    const Mat3 ra = pose_a.rotation.toRotationMatrix(), rb = pose_b.rotation.toRotationMatrix();
+    const auto gap_along = [&](const Vec3& axis, const Vec3& way) {
+      return std::abs(axis.dot(way)) - (ra.transpose() * axis).cwiseAbs().dot(a.half_extent) -
+             (rb.transpose() * axis).cwiseAbs().dot(b.half_extent);
+    };
+    const auto gaps = [&](const Vec3& way) {
+      double faces = -1e300, all = -1e300;
+      for (int i = 0; i < 3; ++i)
+        faces = std::max({faces, gap_along(ra.col(i), way), gap_along(rb.col(i), way)});
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const Vec3 cross = ra.col(i).cross(rb.col(j));
+          if (cross.norm() > 1e-3) all = std::max(all, gap_along(cross.normalized(), way));
+        }
+      return std::pair(faces, std::max(all, faces));
+    };
+    // Out along a line until no face has them in each other by more than 1e-8.
+    const Vec3 line = direction().normalized();
+    double near = 0.0, far = 1.0;
+    for (int k = 0; k < 80; ++k) {
+      const double middle = 0.5 * (near + far);
+      (gaps(middle * line).first < -1e-8 ? near : far) = middle;
+    }
+    pose_a.translation = far * line;
+    Vec3 normal;
+    const double gap = analytic_gap(a, pose_a, b, pose_b, normal);
+    const auto [faces, all] = gaps(pose_a.translation);
+    CHECK(std::abs(gap - all) < 1e-14);
+    CHECK(std::abs(normal.norm() - 1.0) < 1e-12);
+    CHECK(std::abs(gap_along(normal, pose_a.translation) - gap) < 1e-14);
+    by_edges += faces < 0.0 && all > 1e-8 ? 1 : 0;
+  }
+  CHECK(by_edges > 100);
 }
 
 }  // namespace shatterbox::collision
