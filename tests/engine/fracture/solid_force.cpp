@@ -55,19 +55,28 @@ Impact hit_among(const std::vector<double>& resting) {
   return impact;
 }
 
+FractureSettings exact() {
+  FractureSettings settings;
+  settings.solve_residual = 1e-8;
+  return settings;
+}
+
+void find_forces(SolidForce& force, SolidDecision& decision) {
+  std::string problem;
+  REQUIRE(force.prepare(problem));
+  REQUIRE(force.settle(decision, problem));
+}
+
 struct Settled {
   VecX displacement, struck;
   double hardest = 0.0, elastic_energy = 0.0;
   int iterations = 0;
 };
 Settled settled(const SolidSubject& subject, const Impact& impact) {
-  FractureSettings settings;
-  settings.solve_residual = 1e-8;
+  const FractureSettings settings = exact();
   SolidForce force(subject, impact, settings);
-  std::string problem;
   SolidDecision decision;
-  REQUIRE(force.prepare(problem));
-  REQUIRE(force.settle(decision, problem));
+  find_forces(force, decision);
   Settled out{force.displacement(), force.struck_displacement(), force.presses().front().force, 0.0,
               decision.iterations};
   force.book_energy(decision);
@@ -95,13 +104,10 @@ Impact rest_of(std::vector<ImpactLoad> loads) {
 /// (J).
 std::vector<double> left_after_cut(const SolidSubject& subject, const Impact& impact, double x,
                                    double fracture_energy = 0.0) {
-  FractureSettings settings;
-  settings.solve_residual = 1e-8;
+  const FractureSettings settings = exact();
   SolidForce force(subject, impact, settings);
-  std::string problem;
   SolidDecision decision;
-  REQUIRE(force.prepare(problem));
-  REQUIRE(force.settle(decision, problem));
+  find_forces(force, decision);
   force.book_energy(decision);
   geometry::SolidComplex complex = *subject.complex;
   geometry::SolidCutter cutter(complex, 1e-9);
@@ -113,6 +119,7 @@ std::vector<double> left_after_cut(const SolidSubject& subject, const Impact& im
       if (subject.complex->cells[c].element == cell.element) origins.push_back(static_cast<int>(c));
   REQUIRE(origins.size() == complex.cells.size());
   decision.fracture_energy = fracture_energy;
+  std::string problem;
   REQUIRE(force.settle_again(find_form(complex), origins, decision, problem));
   std::vector<double> forces;
   for (const SolidPress& press : force.presses()) forces.push_back(press.force);
