@@ -717,7 +717,7 @@ class Guard {
   // Who is hooked to whom, and goes on with him as one; and how many are cut short for others, or held up:
   // shorter parts may help those.
   void note_hooked() {
-    std::vector<char> is_new(work_.bodies.size(), 0);
+    std::vector<char> is_new(zones_ ? work_.bodies.size() : 0, 0);
     for (std::size_t p = 0; p < work_.pairs.size(); ++p) {
       PairState& memory = state_.pairs[at(work_.pairs[p].state)];
       const int a = work_.pairs[p].a, b = work_.pairs[p].b;
