@@ -20,6 +20,10 @@ double LoadBound::stress_at(double strength, double per_newton, double per_root_
   return borne_ratio_ * strength + per_newton * contact_force_ + hits;
 }
 
+Vec3 arm_of(const geometry::MassProperties& mass, const ImpactLoad& load) {
+  return (load.point_material - mass.centre).cross(load.direction);
+}
+
 double rigid_mobility(const geometry::MassProperties& mass, const Vec3& impulse, const Vec3& moment_about) {
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);
   double turning = 0.0;
@@ -32,7 +36,7 @@ double rigid_mobility(const geometry::MassProperties& mass, const Vec3& impulse,
 }
 
 double rigid_mobility(const geometry::MassProperties& mass, const ImpactLoad& load) {
-  return rigid_mobility(mass, load.direction, (load.point_material - mass.centre).cross(load.direction));
+  return rigid_mobility(mass, load.direction, arm_of(mass, load));
 }
 
 }  // namespace shatterbox::fracture

@@ -162,6 +162,8 @@ inline double force_of_energy(double energy, double compliance) {
   return core::sqrt(2.0 * energy / compliance);
 }
 
+/// m, the moment about the centre of mass of a unit force along a load.
+Vec3 arm_of(const geometry::MassProperties& mass, const ImpactLoad& load);
 /// J, twice what a free body has from that impulse (N s) and its moment about the centre of mass (N m s).
 double rigid_mobility(const geometry::MassProperties& mass, const Vec3& impulse, const Vec3& moment);
 /// Inverse mass of a free body at a load along its direction, 1/kg.

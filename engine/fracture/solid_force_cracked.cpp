@@ -38,12 +38,10 @@ void SolidForce::prepare_cracked() {
   is_cracked_ = true;
   if (!has_lead_) exponent_ = stress::quantise_screening(2.0 / excited_period());
   now_.screening = stress::screening_of(exponent_);
-  const auto moment_of = [&](const ImpactLoad& load) {
-    return Vec3((load.point_material - subject_.model->mass.centre).cross(load.direction));
-  };
   for (SolidPress& press : presses_)
     if (!is_resting(press))
-      press.first_compliance += first_inertia(press.load->direction, moment_of(*press.load));
+      press.first_compliance +=
+          first_inertia(press.load->direction, arm_of(subject_.model->mass, *press.load));
 }
 
 /// Leaves out the loads that the cracks have left no energy: they press no more, whatever they would meet.

@@ -42,7 +42,7 @@ RestingPart SolidForce::make_resting_part(std::vector<Size> presses, const Whole
     part.contact += newtons * newtons * presses_[i].contact.hertz_compliance;
     part.inertia += newtons * newtons * load.other_inverse_mass;
     force += newtons * load.direction;
-    moment += newtons * (load.point_material - subject_.model->mass.centre).cross(load.direction);
+    moment += newtons * arm_of(subject_.model->mass, load);
   }
   part.energy = 0.5 * (part.contact + answer.elastic);
   part.first_compliance = answer.compliance + (is_cracked_ ? first_inertia(force, moment) : 0.0);
