@@ -176,7 +176,7 @@ void ImpactForce::answer(const IsWanted& is_wanted, Decision& decision) {
   decision.solve_ms += milliseconds_since(start);
 }
 
-/// All loads but the lead, whose answer is the only one there is.
+/// All loads, but for the lead where its answer is the only one there is.
 void ImpactForce::answer_others(Size lead, Decision& decision) {
   std::vector<ContactAnswer> all(groups_.size());
   if (has_lead_) all[lead] = std::move(answers_.front());
@@ -198,11 +198,16 @@ void ImpactForce::complete(Decision& decision) {
   }
 }
 
+/// The lead's displacement is that under all forces.
+bool ImpactForce::is_alone() const {
+  return presses_.size() == 1 && !is_spinning();
+}
+
 /// The displacement under all forces and the spin at once.
 bool ImpactForce::solve_together(const geometry::ShellMesh& mesh, Decision& decision, std::string& problem) {
   const auto start = Clock::now();
   bool is_solved = true;
-  if (!is_cracked_ && has_lead_ && presses_.size() == 1 && !is_spinning()) {
+  if (!is_cracked_ && has_lead_ && is_alone()) {
     displacement_ = presses_.front().force * lead_.displacement;
   } else {
     VecX load = VecX::Zero(mesh.degree_of_freedom_count());
@@ -341,11 +346,13 @@ bool ImpactForce::is_plainly_short(Size lead, Decision& decision, std::string& p
 /// Whether what the unscreened system answers is enough: most often it is pressed for longer than in the one
 /// that is sought, and not as hard, but bends more. The duration is that of a hit far from all rims: nobody
 /// knows it as long as no screening is sought, and hits must not be counted together for longer than they
-/// are.
+/// are. The lead's displacement by itself is of no use among others.
 bool ImpactForce::ends_search(Size lead, Decision& decision) {
   std::string problem;
-  if (!is_enough_ || !use_unscreened(decision, problem) || !answer_lead(lead, decision, problem))
-    return false;
+  if (!is_enough_ || !use_unscreened(decision, problem)) return false;
+  has_lead_ = is_alone();
+  residual_ = 0.0;
+  if (has_lead_ && !answer_lead(lead, decision, problem)) return false;
   answer_others(lead, decision);
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);
   is_estimate_ = solve_together(*subject_.mesh, decision, problem) && is_enough_();
@@ -356,8 +363,8 @@ bool ImpactForce::ends_search(Size lead, Decision& decision) {
 
 /// The lead's duration, in the system that it is long enough, or too short, for.
 bool ImpactForce::settle_lead(Size lead, Decision& decision, std::string& problem) {
-  has_lead_ = true;
   if (ends_search(lead, decision)) return true;
+  has_lead_ = true;
   is_screened_ = is_plainly_short(lead, decision, problem);
   if (is_screened_) return true;
   problem.clear();

@@ -71,6 +71,7 @@ class ImpactForce {
   double spin_stress() const;
   double borne_by(std::size_t cell) const;
   bool is_spinning() const;
+  bool is_alone() const;
   bool does_spin_crack() const;
   geometry::ShellMesh pressed_parts(const geometry::ShellMesh& mesh) const;
   std::optional<std::size_t> find_lead() const;
