@@ -253,12 +253,10 @@ double analytic_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
   return c.gap;
 }
 
-double contact_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-  if (a.kind == ShapeKind::box && b.kind == ShapeKind::box)
-    return best_axis(a, pose_a.rotation.toRotationMatrix(), b, pose_b.rotation.toRotationMatrix(),
-                     pose_a.translation - pose_b.translation, true)
-        .gap;
-  return find_ball_contact(a, pose_a, b, pose_b).gap;
+double box_contact_gap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+  return best_axis(a, pose_a.rotation.toRotationMatrix(), b, pose_b.rotation.toRotationMatrix(),
+                   pose_a.translation - pose_b.translation, true)
+      .gap;
 }
 
 }  // namespace shatterbox::collision

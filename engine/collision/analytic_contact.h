@@ -32,8 +32,8 @@ Contact find_ball_contact(const body::Shape& a, const Pose& pose_a, const body::
 double analytic_gap(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b,
                     Vec3& normal);
 
-/// The gap along the axis of which `find_analytic_contacts` tells the contacts: of boxes it may be less, for
-/// faces go before edges.
-double contact_gap(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b);
+/// Of two boxes: the gap along the axis of which `find_analytic_contacts` tells the contacts. It may be less
+/// than theirs, for faces go before edges.
+double box_contact_gap(const body::Shape& a, const Pose& pose_a, const body::Shape& b, const Pose& pose_b);
 
 }  // namespace shatterbox::collision

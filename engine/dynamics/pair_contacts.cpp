@@ -243,7 +243,9 @@ void meet_solids(const ContactSettings& settings, const MotionWork& work, WorkPa
   const double usual_gap = settings.kept_gap * pair.size;
   Vec3 normal;
   pair.least_gap = collision::analytic_gap(*a.shape, a.start, *b.shape, b.start, normal);
-  const double gap = collision::contact_gap(*a.shape, a.start, *b.shape, b.start);
+  const bool are_boxes = a.shape->kind == body::ShapeKind::box && b.shape->kind == body::ShapeKind::box;
+  const double gap =
+      are_boxes ? collision::box_contact_gap(*a.shape, a.start, *b.shape, b.start) : pair.least_gap;
   if (gap <= pair.margin) {
     // Once the direction is fixed, all of a face's corners that the motion may bring down belong to the
     // contact.

@@ -351,7 +351,6 @@ bool ImpactForce::ends_search(Size lead, Decision& decision) {
   std::string problem;
   if (!is_enough_ || !use_unscreened(decision, problem)) return false;
   has_lead_ = is_alone();
-  residual_ = 0.0;
   if (has_lead_ && !answer_lead(lead, decision, problem)) return false;
   answer_others(lead, decision);
   for (Size i = 0; i < presses_.size(); ++i) settle_force(presses_[i], answers_[i]);

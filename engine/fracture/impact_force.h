@@ -112,7 +112,7 @@ class ImpactForce {
   std::size_t hardest_ = 0;
   double duration_ = 0.0;  // s, of the lead; contact_average without one
   IsEnough is_enough_;     // empty: not to be asked
-  bool has_lead_ = false;
+  bool has_lead_ = false;  // one whose duration counts, with its displacement in `lead_`
   bool is_estimate_ = false;
   bool is_screened_ = false;
   bool is_cracked_ = false;
