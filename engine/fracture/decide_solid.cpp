@@ -144,7 +144,7 @@ class SolidDecider {
         verdict.strength = strength;
         verdict.place = place;
       }
-      if (overload > 1.0) found.push_back({static_cast<int>(cell), place, overload, number});
+      if (overload > 1.0) found.push_back({static_cast<int>(cell), place, strength, overload, number});
     };
     for (Size c = 0; c < tensions_.size(); ++c) {
       const geometry::SolidPart& part = complex.cells[c];

@@ -19,6 +19,8 @@ constexpr double kLeastArea = 0.25;  // of a crack, in squares of the least size
 
 constexpr Size kMostAhead = 8;  // fields that are found at once
 
+constexpr double kNeedsToughness = 1e300;  // Pa: no stress lets a crack run below K_Ic
+
 constexpr double kBesideCosine = 0.7;  // between two cracks that run beside each other
 constexpr double kBesideShare = 0.4;   // of the least size, at most, are they then apart
 
@@ -133,7 +135,10 @@ void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
 /// From front to front, the most driven first. What drives a crack is K = tension sqrt(pi / 2 length), of the
 /// tension at its front or of the mean across all of it, whichever is more: the mean takes the crack of a
 /// bent bar on into the half that is pressed, and falls, as it should, as the radius^-3/2 of a crack that a
-/// force opens in its middle.
+/// force opens in its middle. A crack that starts may run through what is pulled by more than its flaw bears
+/// while it is too small for K to reach K_Ic, if what drives it has paid for all of it at last: the coupled
+/// criterion of strength and toughness [Leg02]. Else what a crack needs to start would be told by the size of
+/// the element that it starts in.
 void SolidTracer::grow() {
   while (!fronts_.empty()) {
     core::stop_if_asked();
@@ -155,13 +160,38 @@ void SolidTracer::grow() {
         std::max(std::max({0.0, mean, tension}) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
                  solved * falling(solved_area_ / area));
     const double weakness = weakness_at(element);
-    if (intensity < core::sqrt(weakness) * toughness_ || !pay(cap.area, weakness)) {
+    const double excess = intensity * intensity - weakness * toughness_ * toughness_;
+    if ((excess < 0.0 && !(tension > strength_)) || !pay(cap.area, weakness)) {
       rests_.push_back(element);
-      if (is_out_of_energy_) return;
+      if (is_out_of_energy_) break;
       continue;
     }
     enter(cell, cap, solved);
+    balance_ += cap.area * excess;
+    if (balance_ >= 0.0) bear_out();
   }
+  fall_back();
+}
+
+void SolidTracer::bear_out() {
+  balance_ = 0.0;
+  borne_out_ = {active_.size(), crack_area_, new_area_, new_grain_area_, new_energy_, crack_force_};
+}
+
+/// To where the present crack was paid for.
+void SolidTracer::fall_back() {
+  for (Size i = borne_out_.cells; i < active_.size(); ++i) {
+    entered_[at(active_[i])] = 0;
+    rests_.push_back(complex_.cells[at(active_[i])].element);
+  }
+  active_.resize(borne_out_.cells);
+  middles_.resize(borne_out_.cells);
+  energy_ += borne_out_.new_energy - new_energy_;
+  crack_area_ = borne_out_.area;
+  new_area_ = borne_out_.new_area;
+  new_grain_area_ = borne_out_.new_grain_area;
+  new_energy_ = borne_out_.new_energy;
+  crack_force_ = borne_out_.force;
 }
 
 /// After it has grown: cuts along the present crack, unless it is so small that the elements cannot tell of
@@ -184,7 +214,7 @@ bool SolidTracer::take() {
   return true;
 }
 
-void SolidTracer::begin(int id, double area) {
+void SolidTracer::begin(int id, double area, double strength) {
   active_.clear();
   middles_.clear();
   fronts_.clear();
@@ -193,6 +223,8 @@ void SolidTracer::begin(int id, double area) {
   present_id_ = id;
   crack_area_ = solved_area_ = area;
   new_area_ = new_grain_area_ = new_energy_ = crack_force_ = 0.0;
+  strength_ = strength;
+  bear_out();
   if (lengths_.size() <= at(id)) lengths_.resize(at(id) + 1, 0.0);
 }
 
@@ -261,7 +293,7 @@ void SolidTracer::resume(std::vector<OpenCrack>& cracks) {
     if (is_out_of_energy_) return;
     std::sort(crack.rests.begin(), crack.rests.end());
     crack.rests.erase(std::unique(crack.rests.begin(), crack.rests.end()), crack.rests.end());
-    begin(crack.id, crack.area);
+    begin(crack.id, crack.area, kNeedsToughness);
     lengths_[at(crack.id)] = core::sqrt(crack.area);
     field_.take(crack.values);
     for (const int element : crack.rests)
@@ -319,7 +351,9 @@ bool SolidTracer::start(const SolidCandidate& candidate, CrackValues field, std:
     cell = *holder;
   }
   settle_cell(complex_, cell);
-  begin(setup_.first_id + crack_count_, 0.0);
+  // Where it yields, an elastic stress above the strength is none that is there.
+  begin(setup_.first_id + crack_count_, 0.0,
+        setup_.material->yield > 0.0 ? kNeedsToughness : candidate.strength);
   field_.take(std::move(field));
   const CrackCap cap = field_.cap(cell);
   if (!(cap.area > 0.0)) {
@@ -328,6 +362,7 @@ bool SolidTracer::start(const SolidCandidate& candidate, CrackValues field, std:
   }
   if (!pay(cap.area, weakness_at(element))) return false;
   enter(cell, cap, 0.0);
+  bear_out();
   grow();
   if (!take()) {
     stillborn_.push_back(candidate);

@@ -20,6 +20,7 @@ namespace shatterbox::fracture {
 struct SolidCandidate {
   int cell = 0;
   Vec3 place = Vec3::Zero();  // m
+  double strength = 0.0;      // Pa
   double overload = 0.0;      // stress / strength, above 1
   int number = 0;             // breaks ties
 };
@@ -88,11 +89,18 @@ class SolidTracer {
       return drive != other.drive ? drive < other.drive : order > other.order;
     }
   };
+  /// How far the present crack has come.
+  struct Extent {
+    std::size_t cells = 0;
+    double area = 0.0, new_area = 0.0, new_grain_area = 0.0, new_energy = 0.0, force = 0.0;
+  };
   bool is_shielded(const SolidCandidate& candidate) const;
   void look_ahead(const std::vector<SolidCandidate>& candidates, std::size_t first, std::size_t most,
                   std::vector<CrackValues>& fields);
   bool start(const SolidCandidate& candidate, CrackValues field, std::vector<OpenCrack>& cracks);
-  void begin(int id, double area);
+  void begin(int id, double area, double strength);
+  void bear_out();
+  void fall_back();
   void enter(int cell, const CrackCap& cap, double intensity);
   double opening_of(const geometry::SolidFacet& facet) const;
   void grow();
@@ -127,6 +135,9 @@ class SolidTracer {
   double new_area_ = 0.0;        // m2, of that
   double new_grain_area_ = 0.0;  // m2 of that, along grain boundaries
   double new_energy_ = 0.0;      // J, for it
+  double strength_ = 0.0;        // Pa, of the flaw where the present crack starts
+  double balance_ = 0.0;         // Pa2 m3: K^2 - K_Ic^2 over what of its area is not borne out yet
+  Extent borne_out_;             // of it: as far as what drives it pays for all of it
   double area_ = 0.0, grain_area_ = 0.0, energy_ = 0.0, toughness_ = 0.0;
   bool is_out_of_energy_ = false;
 };

@@ -456,6 +456,8 @@ void remember(const EvaluatedImpact& impact, Candidate& candidate, ImpactMemory&
   if (const fracture::Perforation* asked = find_perforation(impact); asked && !asked->is_through())
     for (Load& load : memory.event) load.was_asked = true;
   keep_verdict(duration, tested_growth, memory);
+  // What has cracked is not what bore this load.
+  if (impact.is_cracked_only()) memory.tested_contact = 0.0;
 }
 
 }  // namespace

@@ -392,8 +392,7 @@ struct Trace {
 };
 Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
             const std::optional<Vec3>& place, int id, double budget, std::vector<OpenCrack>& cracks,
-            double least_size = 0.0) {
-  const material::Material glass;
+            double least_size = 0.0, const material::Material& material = {}) {
   const auto contacts = find_solid_contacts(complex);
   const geometry::SolidMesh mesh = make_solid_mesh(complex, contacts);
   const VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
@@ -403,9 +402,9 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   const std::vector<stress::SolidStress> stresses(complex.cells.size(), stress);
   const std::vector<int> pieces(complex.cells.size(), 0);
   SolidTracerSetup setup;
-  setup.guides = {&stresses, &pieces, &turns, &trees, glass.strength};
-  setup.material = &glass;
-  setup.fracture_energy = glass.fracture_energy;
+  setup.guides = {&stresses, &pieces, &turns, &trees, material.strength};
+  setup.material = &material;
+  setup.fracture_energy = material.fracture_energy;
   setup.solved = {&mesh, &displacement};
   setup.centres = {{Vec3(0.0, 0.0, 0.5), 0.1}};
   setup.energy_budget = budget;
@@ -416,7 +415,7 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   if (place) {
     int cell = 0;
     while (!cell_holds(complex, cell, *place)) ++cell;
-    tracer.nucleate({{cell, *place, 2.0, 0}}, cracks);
+    tracer.nucleate({{cell, *place, material.strength, 2.0, 0}}, cracks);
   }
   settle(complex);
   return {tracer.area(), tracer.energy(), tracer.is_out_of_energy(), tracer.stillborn()};
@@ -452,6 +451,34 @@ TEST_CASE("a solid's crack that stays too small to tell is none and its place is
     CHECK(traced.stillborn[0].place == place);
     CHECK(traced.stillborn[0].overload == 2.0);
     CHECK(split_solid(complex).pieces.size() == 1);
+  }
+}
+
+TEST_CASE("a solid's crack starts by strength and toughness together, whatever the elements") {
+  // Across a cube of 1 m under an even pull the mean of K^2 over the whole crack is pi / 3 pull^2, and much
+  // less over its first element.
+  const double tension = 1e7, mean = core::kPi / 3.0 * tension * tension;
+  material::Material material;
+  const auto cracked = [&](double element_size, double toughness_share, double strength) {
+    const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), element_size, "glass");
+    geometry::SolidComplex complex = *subject.complex;
+    material.fracture_energy = toughness_share * mean / material.young;
+    material.strength = strength;
+    std::vector<OpenCrack> cracks;
+    const Trace traced =
+        trace(complex, pull(2, tension), Vec3(0.03, 0.02, 0.11), 0, -1.0, cracks, element_size, material);
+    CHECK(traced.energy == Approx(material.fracture_energy * traced.area));
+    CHECK(traced.stillborn.empty() == (traced.area > 0.0));
+    CHECK(cracks.size() == (traced.area > 0.0 ? 1 : 0));
+    settle(complex);
+    return split_solid(complex).pieces.size() == 2;
+  };
+  for (const double element_size : {0.2, 0.1, 0.07}) {
+    if (test::kIsSanitized && element_size < 0.1) continue;
+    CAPTURE(element_size);
+    CHECK(cracked(element_size, 0.8, 0.7 * tension));
+    CHECK_FALSE(cracked(element_size, 1.1, 0.7 * tension));  // though K is K_Ic when it is across
+    CHECK_FALSE(cracked(element_size, 0.8, 1.1 * tension));  // the flaw bears it, and one element has no K
   }
 }
 

@@ -1,8 +1,10 @@
 // What rests on a breakable thing breaks it, or not, whatever the step: contact is an average over a time.
 #include <catch2/catch.hpp>
 
+#include "engine/geometry/generators.h"
 #include "engine/world/world.h"
 #include "tests/engine/world/held_pane.h"
+#include "tests/support/sanitized.h"
 
 using namespace shatterbox;
 
@@ -43,7 +45,53 @@ Rest rest_on_pane(int steps_per_second, double density) {
   return rest;
 }
 
+/// Whether a beam of concrete of 1 m on two supports comes apart in .15 s under so many kg on its middle.
+bool breaks_beam(int steps_per_second, double element_size, double mass) {
+  world::WorldSettings settings;
+  settings.steps_per_second = steps_per_second;
+  world::World w(settings);
+  const int concrete = w.add_material(*material::find_preset("concrete")).value();
+  const int steel = w.add_material(*material::find_preset("steel")).value();
+  for (const double x : {-0.45, 0.45}) {
+    world::BodyDescription support;
+    support.form = world::BoxDescription{Vec3(0.025, 0.1, 0.1)};
+    support.material = steel;
+    support.motion = body::Motion::fixed;
+    support.pose.translation = Vec3(x, 0.1, 0.0);
+    REQUIRE(w.add_body(support).ok());
+  }
+  world::SolidDescription solid;
+  solid.mesh = geometry::make_box_surface(Vec3(0.5, 0.05, 0.05));
+  solid.is_breakable = true;
+  solid.element_size = element_size;
+  world::BodyDescription beam;
+  beam.name = "beam";
+  beam.form = solid;
+  beam.material = concrete;
+  beam.pose.translation = Vec3(0.0, 0.25 + 1e-5, 0.0);
+  REQUIRE(w.add_body(beam).ok());
+  world::BodyDescription weight;
+  weight.form = world::BoxDescription{Vec3(0.03, 0.03, 0.03)};
+  weight.material = steel;
+  weight.density = mass / (0.06 * 0.06 * 0.06);
+  weight.pose.translation = Vec3(0.0, 0.33 + 2e-5, 0.0);
+  REQUIRE(w.add_body(weight).ok());
+  const std::size_t count = w.bodies().size();
+  while (w.time() < 0.15 && w.bodies().size() == count) w.step();
+  return w.bodies().size() > count;
+}
+
 }  // namespace
+
+TEST_CASE("a beam breaks under the same weight whatever its elements and the step") {
+  const std::vector<double> sizes = test::kIsSanitized ? std::vector{0.05} : std::vector{0.05, 0.04, 0.025};
+  for (const double size : sizes)
+    for (const int rate : {60, 240}) {
+      CAPTURE(size, rate);
+      CHECK_FALSE(breaks_beam(rate, size, 700.0));
+      CHECK(breaks_beam(rate, size, 1300.0));
+    }
+}
 
 TEST_CASE("what rests on a pane breaks it or not whatever the step") {
   const double density = 30000.0, ratio = rest_on_pane(60, density).ratio;
