@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/body/polyhedron.h"
+#include "engine/core/elementary.h"
 #include "engine/geometry/bvh.h"
 #include "engine/material/tempering.h"
 #include "engine/world/forms.h"
@@ -529,6 +530,11 @@ void doubt_throws(const scene::SceneDescription& scene, const scene::BuiltScene&
   }
 }
 
+/// m, root of the area of a half-disc at a surface that an even stress (Pa) drives on.
+double crack_length(const material::Material& material, double stress) {
+  return 2.0 / core::kPi * material.young * material.fracture_energy / (stress * stress);
+}
+
 void doubt_coarse_solids(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                          scene::Problems& doubts) {
   std::map<int, const world::ImpactRow*> held;  // by entry
@@ -549,13 +555,26 @@ void doubt_coarse_solids(const scene::SceneDescription& scene, const scene::Buil
     const auto* solid = std::get_if<world::SolidDescription>(&built.plan.bodies[number].description.form);
     if (solid == nullptr) continue;
     const double size = world::element_size_of(*solid);
+    const scene::BodyEntry& body = scene.bodies[number];
+    const material::Material& material = scene.materials[static_cast<std::size_t>(body.material)].material;
+    const double length = crack_length(material, row->stress);
+    if (length > size) {
+      scene::book(
+          doubts, body.place,
+          fmt::format(
+              "\"{}\" held, stressed to {:.2g} of its strength: {} is so tough that a crack needs {:.2g} m "
+              "of such stress to start",
+              row->body, row->ratio, material.name, length),
+          "smaller elements change nothing in that: it takes more load, or a material of less "
+          "fracture_energy");
+      continue;
+    }
     scene::book(
-        doubts, scene.bodies[number].place,
+        doubts, body.place,
         fmt::format("\"{}\" held, stressed to {:.2g} of its strength: in elements of {:.2g} m no crack "
                     "could start",
                     row->body, row->ratio, size),
-        fmt::format("--set {}.element_size={:.2g} looks closer, and takes longer", scene.bodies[number].name,
-                    0.5 * size));
+        fmt::format("--set {}.element_size={:.2g} looks closer, and takes longer", body.name, 0.5 * size));
   }
 }
 

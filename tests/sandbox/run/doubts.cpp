@@ -285,6 +285,26 @@ TEST_CASE(
   CHECK(has(told, "--set vase.element_size=0.006 looks closer"));
 }
 
+TEST_CASE(
+    "after a run: a solid that held because its material is tough is not told to have smaller elements") {
+  const auto reading = scene::read(
+      "[[body]]\nname = \"left\"\nkind = \"box\"\nsize = [0.05, 0.2, 0.2]\nposition = [-0.45, 0.1, 0]\n"
+      "material = \"steel\"\nmotion = \"static\"\n"
+      "[[body]]\nname = \"right\"\nkind = \"box\"\nsize = [0.05, 0.2, 0.2]\nposition = [0.45, 0.1, 0]\n"
+      "material = \"steel\"\nmotion = \"static\"\n"
+      "[[body]]\nname = \"beam\"\nkind = \"solid\"\nshape = \"slab\"\nsize = [1, 0.1, 0.1]\n"
+      "material = \"concrete\"\nposition = [0, 0.25001, 0]\nelement_size = 0.04\n"
+      "[[body]]\nname = \"weight\"\nkind = \"box\"\nsize = [0.1, 0.1, 0.1]\nmaterial = \"steel\"\n"
+      "density = 600000\nposition = [0, 0.35002, 0]\n");
+  auto built = build(reading);
+  for (int step = 0; step < 8; ++step) built->world.step();
+  const std::string told = scene::describe(run::find_afterthoughts(*reading.scene, *built));
+  CAPTURE(told);
+  CHECK(has(told, "\"beam\" held, stressed to 2 of"));
+  CHECK(has(told, "concrete is so tough that a crack needs 0.0"));
+  CHECK_FALSE(has(told, "element_size"));
+}
+
 TEST_CASE("after a run: that all fell and met nothing is told, where something was met it is not") {
   const auto afterthoughts = [](const std::string& more) {
     const auto reading = scene::read(kCrate + more);
