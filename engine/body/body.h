@@ -57,6 +57,7 @@ struct Body {
   BodyId family = 0;       // the body of the scene that this one is, or was, a part of; 0: of none
   int material = 0;        // number in the world's list of materials
   bool may_break = false;  // somebody judges the hits on it
+  double bears = 0.0;      // N: under what rests on it, up to so much in all, it surely does not break
 
   Script script;  // of scripted bodies
 

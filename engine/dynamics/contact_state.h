@@ -40,6 +40,7 @@ struct PairState {
   double kept_gap = 0.0;         // m: min(usual, least gap seen so far): never pushes newborn pieces apart
   bool is_touching = false;      // a sleeper and what disturbs it, or holds it up
   bool has_parted = false;       // pressed a step ago, and touches no longer
+  double load = 0.0;             // N, that its contacts carry at rest; a sleeper's keep it
   int trouble_age = kNoTrouble;  // steps since the continuous pass last had to act here
   int stuck_steps = 0;           // steps in a row in which the pair had to be cut short
   bool is_hooked = false;    // cut short in a part as short as there is, and ever since: shorter is no help
@@ -71,9 +72,10 @@ struct BodyState {
   std::shared_ptr<const body::Shape> shape;
   std::shared_ptr<const collision::Collider> collider;  // of `shape`; shared between copies of the body
   PrincipalInertia inertia;
-  Pose rest_pose;          // the body has stayed about here for its quiet time
-  Pose last_pose;          // at the end of the last step: whoever moves a body by hand makes its lists void
-  double travelled = 0.0;  // m: no point of it has moved further, from step to step, since it is known
+  Pose rest_pose;            // the body has stayed about here for its quiet time
+  Pose last_pose;            // at the end of the last step: whoever moves a body by hand makes its lists void
+  double slept_under = 0.0;  // N, of all its pairs, when it fell asleep
+  double travelled = 0.0;    // m: no point of it has moved further, from step to step, since it is known
 };
 
 /// What the last step looked at, whatever became of it: a step that is taken again finds its colliders and

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/step_motion.h"
 
@@ -20,6 +21,7 @@ constexpr double kNoticed =
     10.0;  // times the least momentum: what gives a sleeper the speed of one who moves
 constexpr double kFallTimes = 1.57;  // of sqrt(size / g): half a second for a metre
 constexpr double kSmallFalls = 4.0;  // such times: half a second for 6 cm
+constexpr double kMoreLoad = 0.1;    // of what a sleeper slept under: somebody has lain down on it
 constexpr double kItAlone = std::numeric_limits<double>::min();  // kg m/s: wakes, and goes no further
 
 int find_number(const std::vector<Body>& bodies, BodyId id) {
@@ -28,7 +30,8 @@ int find_number(const std::vector<Body>& bodies, BodyId id) {
   return place != bodies.end() && place->id == id ? static_cast<int>(place - bodies.begin()) : -1;
 }
 
-BodyState* find_memory(ContactState& state, BodyId id) {
+template <class State>
+auto* find_memory(State& state, BodyId id) {
   const auto place = std::lower_bound(state.bodies.begin(), state.bodies.end(), id,
                                       [](const BodyState& s, BodyId i) { return s.id < i; });
   return place != state.bodies.end() && place->id == id ? &*place : nullptr;
@@ -107,6 +110,11 @@ void mark_joined(const std::vector<Body>& bodies, const ContactState& state, std
   }
 }
 
+double slept_under(const ContactState& state, BodyId id) {
+  const BodyState* memory = find_memory(state, id);
+  return memory != nullptr ? memory->slept_under : 0.0;
+}
+
 // Wakes the sleepers that a disturbance reaches: those it begins with, and from neighbour to neighbour, the
 // nearest first, as many as its momentum (kg m/s; 0: is not disturbed) could move noticeably all together.
 // Who moves in truth wakes others in the next step.
@@ -141,6 +149,17 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
   }
 }
 
+// N, what presses on each body at rest.
+std::vector<double> find_loads(const std::vector<Body>& bodies, const ContactState& state) {
+  std::vector<double> loads(bodies.size(), 0.0);
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_touching) continue;
+    for (const BodyId id : {pair.body_a, pair.body_b})
+      if (const int i = find_number(bodies, id); i >= 0) loads[static_cast<std::size_t>(i)] += pair.load;
+  }
+  return loads;
+}
+
 // Both ways round: one of the two, and the other, by their numbers. Nothing if one is not there.
 template <class Two, class Visit>
 void each_of_two(const std::vector<Body>& bodies, const Two& two, const Visit& visit) {
@@ -148,6 +167,56 @@ void each_of_two(const std::vector<Body>& bodies, const Two& two, const Visit& v
   if (a < 0 || b < 0) return;
   visit(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
   visit(static_cast<std::size_t>(b), static_cast<std::size_t>(a));
+}
+
+// Whether what lies on the first body may, by way of others, press on the second one: as far as the balls
+// about them tell, and loads spread by no more than they go down.
+bool may_bear(const Body& above, const Body& below, const Vec3& up) {
+  const double reach = above.shape->bounding_radius + below.shape->bounding_radius;
+  const Vec3 way = above.pose.translation - below.pose.translation;
+  const double height = way.dot(up);
+  return height >= -reach && (way - height * up).norm() <= reach + std::max(0.0, height);
+}
+
+// Sleepers pass nothing on. Where somebody has lain down on one, and what lies below it may break by all that
+// came there since they fell asleep, that has to feel it, and so wakes with all that it may bear.
+void wake_overloaded(const std::vector<Body>& bodies, const Vec3& gravity, const ContactState& state,
+                     std::vector<double>& momentum) {
+  const Vec3 up = -gravity.normalized();
+  if (std::none_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.may_break; })) return;
+  const std::vector<double> loads = find_loads(bodies, state);
+  std::vector<double> more(bodies.size(), 0.0);  // N, on a sleeper
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].sleeps()) more[i] = std::max(0.0, loads[i] - slept_under(state, bodies[i].id));
+  core::DisjointSets heaps(bodies.size());
+  std::vector<std::size_t> pressed;
+  const auto lies = [](const Body& b) { return b.sleeps() || (!b.is_dynamic() && b.may_break); };
+  for (const PairState& pair : state.pairs) {
+    if (!pair.is_touching) continue;
+    each_of_two(bodies, pair, [&](std::size_t one, std::size_t other) {
+      const Body &sleeper = bodies[one], &mover = bodies[other];
+      if (lies(sleeper) && lies(mover)) heaps.unite(static_cast<int>(one), static_cast<int>(other));
+      const bool is_laden = sleeper.sleeps() && mover.is_dynamic() && mover.is_awake;
+      if (is_laden && more[one] > kMoreLoad * (loads[one] - more[one])) pressed.push_back(one);
+    });
+  }
+  const auto heap_of = [&](std::size_t i) { return heaps.find(static_cast<int>(i)); };
+  const auto lies_on = [&](std::size_t i, std::size_t below) {
+    return heap_of(i) == heap_of(below) && may_bear(bodies[i], bodies[below], up);
+  };
+  for (std::size_t below = 0; below < bodies.size() && !pressed.empty(); ++below) {
+    const Body& b = bodies[below];
+    if (!b.may_break || !lies(b)) continue;
+    if (std::none_of(pressed.begin(), pressed.end(), [&](std::size_t i) { return lies_on(i, below); }))
+      continue;
+    double came = 0.0;  // N
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (more[i] > 0.0 && lies_on(i, below)) came += more[i];
+    // What presses from above does from below.
+    if (loads[below] + 2.0 * came <= b.bears) continue;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (bodies[i].sleeps() && lies_on(i, below)) momentum[i] = std::max(momentum[i], kItAlone);
+  }
 }
 
 // Those that are being brought out of another, which leaves them no speed.
@@ -285,6 +354,7 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
       if (moves) given = kAll;
     }
   }
+  wake_overloaded(bodies, settings.gravity, state, momentum);
   // Who was woken alone, by a joint that opened or because what bore him is gone, wakes all that hang on him,
   // and so does a support that begins to move.
   for (const Joint& joint : state.joints) {
@@ -346,10 +416,12 @@ void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, con
 void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
   if (!settings.has_sleep || !count_quiet_times(bodies, settings, state)) return;
   const std::vector<char> is_kept_up = find_kept_up(bodies, settings, state);
+  const std::vector<double> loads = find_loads(bodies, state);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake || is_kept_up[i]) continue;
     b.is_awake = false;
+    if (BodyState* memory = find_memory(state, b.id)) memory->slept_under = loads[i];
     b.velocity.setZero();
     b.angular_velocity.setZero();
   }

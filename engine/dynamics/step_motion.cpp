@@ -105,6 +105,12 @@ void remember_contact(const SolverContact& c, PairState& memory) {
                              crept - c.normal.dot(crept) * c.normal, c.arrival_speed, is_loaded, c.hit_left});
 }
 
+double load_of(const PairState& pair, double substep) {
+  double impulse = 0.0;
+  for (const RememberedContact& c : pair.contacts) impulse += c.normal_impulse;
+  return impulse / substep;
+}
+
 void remember_contacts(const MotionWork& work, ContactState& state) {
   state.substep = work.substep;
   const core::Buckets contacts(work.pairs.size(), work.contacts.size(),
@@ -123,6 +129,7 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
         memory.is_touching = memory.is_touching || c.gap <= 2.0 * pair.kept_gap;
     }
     for (const int i : contacts.of(p)) remember_contact(work.contacts[at(i)], memory);
+    if (a.inverse_mass > 0.0 || b.inverse_mass > 0.0) memory.load = load_of(memory, work.substep);
     memory.has_parted = memory.has_parted && !memory.is_touching;
     // What was found on the way came last.
     const auto by_key = [](const RememberedContact& x, const RememberedContact& y) {

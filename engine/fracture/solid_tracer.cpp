@@ -180,6 +180,7 @@ void SolidTracer::bear_out() {
 
 /// To where the present crack was paid for.
 void SolidTracer::fall_back() {
+  if (active_.size() > borne_out_.cells) is_out_of_energy_ = false;  // what is given back others may spend
   for (Size i = borne_out_.cells; i < active_.size(); ++i) {
     entered_[at(active_[i])] = 0;
     rests_.push_back(complex_.cells[at(active_[i])].element);

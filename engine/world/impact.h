@@ -69,7 +69,8 @@ struct ImpactMemory {
   bool keeps_dents = true;        // false of a piece of what cracked, which tears
   int generation = 0;             // breaks since the event began from which this piece comes
 
-  /// s, when a break made this piece: what presses on it is known on average only contact_average later.
+  /// s, when a break made this piece, or cracks what it is by now: what presses on that is known on average
+  /// only contact_average later.
   double born = -1e9;
 
   // The impact that made this piece was charged with its whole impulse when it was judged. Until it is over,

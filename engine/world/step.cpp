@@ -133,6 +133,18 @@ void book_scripted(const std::vector<body::Body>& bodies, std::vector<ScriptedRo
   }
 }
 
+/// Who may break is woken, where he sleeps, before he has to bear more.
+void note_what_bodies_bear(MovingState& moving) {
+  for (body::Body& body : moving.bodies) {
+    if (!body.may_break) continue;
+    const auto fragile = moving.fragiles.find(body.id);
+    const auto memory = moving.memories.find(body.id);
+    if (fragile == moving.fragiles.end()) continue;
+    body.bears = borne_at_rest(body, *fragile->second,
+                               memory != moving.memories.end() ? memory->second : ImpactMemory{});
+  }
+}
+
 }  // namespace
 
 dynamics::ContactReport World::move_bodies(const dynamics::StepPart& part, body::ImpulseLog& log) {
@@ -315,8 +327,10 @@ void World::finish_parts(int count, const MovingState& snapshot, dynamics::Conta
   if (may_yield) tell_watcher("dents", {count - 1, count}, 0);
   if (s.settings.contact == ContactScheme::standard) {
     dynamics::end_step(s.contact_settings, contact, count, s.moving.contact);
-    s.report.stages.time(
-        "sleep", [&] { dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact); });
+    s.report.stages.time("sleep", [&] {
+      if (s.contact_settings.has_sleep) note_what_bodies_bear(s.moving);
+      dynamics::put_to_sleep(s.moving.bodies, s.contact_settings, s.moving.contact);
+    });
   } else {
     s.moving.contact.shelf->newborn.clear();  // the paper's surfaces are others: nobody takes these from it
   }
@@ -366,6 +380,11 @@ std::vector<const EvaluatedImpact*> World::book_verdicts(std::span<const Evaluat
       const auto& decision = std::get<fracture::SolidDecision>(impact.decision);
       const auto fragile = cracked(*s.moving.fragiles.at(impact.id), decision);
       s.moving.fragiles[impact.id] = snapshot.fragiles[impact.id] = fragile;
+      // It is not what bore its load until now.
+      for (ImpactMemory* own : {&memory, &snapshot.memories[impact.id]}) {
+        own->tested_contact = 0.0;
+        own->born = time();
+      }
       // What tears as a piece of what has just broken keeps no dent that would open it.
       const bool is_torn = memory.has_open_dent;
       if (fragile->material().yield > 0.0)

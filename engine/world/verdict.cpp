@@ -456,11 +456,14 @@ void remember(const EvaluatedImpact& impact, Candidate& candidate, ImpactMemory&
   if (const fracture::Perforation* asked = find_perforation(impact); asked && !asked->is_through())
     for (Load& load : memory.event) load.was_asked = true;
   keep_verdict(duration, tested_growth, memory);
-  // What has cracked is not what bore this load.
-  if (impact.is_cracked_only()) memory.tested_contact = 0.0;
 }
 
 }  // namespace
+
+double borne_at_rest(const body::Body& body, const Fragile& fragile, const ImpactMemory& memory) {
+  const double harmless = material::borne_tension(fragile.material()) / bending_bound(body, 1.0);
+  return std::max(harmless, memory.tested_growth * memory.tested_contact);
+}
 
 std::vector<EvaluatedImpact> evaluate_stress(const std::vector<body::Body>& bodies,
                                              const body::ImpulseLog& log, const Fragiles& fragiles,

@@ -51,6 +51,9 @@ struct BorneImpact {
 };
 using BorneImpacts = std::map<body::BodyId, BorneImpact>;
 
+/// N: under what rests on it, up to so much in all, the body surely does not break, as far as is known.
+double borne_at_rest(const body::Body& body, const Fragile& fragile, const ImpactMemory& memory);
+
 /// Reads the log of a part of the step that begins at `time` (s); writes event sums to `memories`; returns
 /// the impacts that were evaluated, ascending by body. An impact like one that the body has `borne` in an
 /// earlier pass of the step is not solved again. Bodies are evaluated in parallel; the answer does not depend

@@ -539,11 +539,12 @@ void doubt_coarse_solids(const scene::SceneDescription& scene, const scene::Buil
                          scene::Problems& doubts) {
   std::map<int, const world::ImpactRow*> held;  // by entry
   const world::WorldReport& report = built.world.report();
+  std::set<int> cracked;  // the same
   for (const world::ImpactRow& row : report.impacts) {
     const auto origin = built.origins.find(row.id);  // none: a piece
-    if (origin == built.origins.end() || row.ratio < 1.0 ||
-        row.verdict.find("no crack could start") == std::string::npos)
-      continue;
+    if (origin == built.origins.end()) continue;
+    if (row.verdict.starts_with("cracked")) cracked.insert(origin->second.entry);
+    if (row.ratio < 1.0 || row.verdict.find("no crack could start") == std::string::npos) continue;
     const world::ImpactRow*& hardest = held[origin->second.entry];
     if (hardest == nullptr || row.ratio > hardest->ratio) hardest = &row;
   }
@@ -551,6 +552,7 @@ void doubt_coarse_solids(const scene::SceneDescription& scene, const scene::Buil
     if (const auto origin = built.origins.find(row.id); origin != built.origins.end())
       held.erase(origin->second.entry);
   for (const auto& [entry, row] : held) {
+    if (cracked.count(entry) > 0) continue;
     const auto number = static_cast<std::size_t>(entry);
     const auto* solid = std::get_if<world::SolidDescription>(&built.plan.bodies[number].description.form);
     if (solid == nullptr) continue;
@@ -565,8 +567,7 @@ void doubt_coarse_solids(const scene::SceneDescription& scene, const scene::Buil
               "\"{}\" held, stressed to {:.2g} of its strength: {} is so tough that a crack needs {:.2g} m "
               "of such stress to start",
               row->body, row->ratio, material.name, length),
-          "smaller elements change nothing in that: it takes more load, or a material of less "
-          "fracture_energy");
+          "it takes more load, or a material of less fracture_energy");
       continue;
     }
     scene::book(

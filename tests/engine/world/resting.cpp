@@ -81,7 +81,56 @@ bool breaks_beam(int steps_per_second, double element_size, double mass) {
   return w.bodies().size() > count;
 }
 
+/// Blocks of 8 kg are laid one upon the other onto the middle of a board of plaster on two supports, each
+/// when the one before has long been at rest: how many when it comes apart; 0: it bears them all.
+int lay_blocks(bool has_sleep, int most) {
+  world::WorldSettings settings;
+  settings.steps_per_second = 60;
+  settings.has_sleep = has_sleep;
+  world::World w(settings);
+  const int plaster = w.add_material(*material::find_preset("plaster")).value();
+  const int brick = w.add_material(*material::find_preset("brick")).value();
+  for (const double x : {-0.45, 0.45}) {
+    world::BodyDescription support;
+    support.form = world::BoxDescription{Vec3(0.06, 0.1, 0.12)};
+    support.material = brick;
+    support.motion = body::Motion::fixed;
+    support.pose.translation = Vec3(x, 0.1, 0.0);
+    REQUIRE(w.add_body(support).ok());
+  }
+  world::SolidDescription solid;
+  solid.mesh = geometry::make_box_surface(Vec3(0.55, 0.01, 0.1));
+  solid.is_breakable = true;
+  solid.element_size = 0.02;
+  world::BodyDescription board;
+  board.name = "board";
+  board.form = solid;
+  board.material = plaster;
+  board.pose.translation = Vec3(0.0, 0.21 + 1e-5, 0.0);
+  REQUIRE(w.add_body(board).ok());
+  for (int count = 1; count <= most; ++count) {
+    world::BodyDescription block;
+    block.form = world::BoxDescription{Vec3(0.1, 0.03, 0.05)};
+    block.material = brick;
+    block.density = 8.0 / (0.2 * 0.06 * 0.1);
+    block.pose.translation = Vec3(0.0, 0.22 + 0.06 * (count - 0.5) + 2e-4 * count, 0.0);
+    REQUIRE(w.add_body(block).ok());
+    for (int step = 0; step < 60; ++step) {
+      w.step();
+      if (!w.report().breaks.empty()) return count;
+    }
+    CHECK(w.bodies()[2].sleeps() == has_sleep);
+  }
+  return 0;
+}
+
 }  // namespace
+
+TEST_CASE("what is laid on a heap that sleeps is felt by what may break under it") {
+  const int awake = lay_blocks(false, 12);
+  CHECK(awake >= 3);
+  CHECK(lay_blocks(true, 12) == awake);
+}
 
 TEST_CASE("a beam breaks under the same weight whatever its elements and the step") {
   const std::vector<double> sizes = test::kIsSanitized ? std::vector{0.05} : std::vector{0.05, 0.04, 0.025};
