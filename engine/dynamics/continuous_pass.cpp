@@ -18,6 +18,7 @@
 #include "engine/dynamics/motion_work.h"
 #include "engine/dynamics/opening.h"
 #include "engine/dynamics/path_test.h"
+#include "engine/dynamics/rest.h"
 #include "engine/dynamics/scripted_motion.h"
 #include "engine/dynamics/step_motion.h"
 
@@ -40,6 +41,7 @@ constexpr double kElsewhere = 1e300;  // m: a way that has nothing to do with th
 constexpr int kMostSolves = 8;        // of islands that got contacts on their ways
 constexpr int kPatience = 2;          // rounds without fewer hits
 constexpr double kTurned = 0.01;      // rad: a normal that lies otherwise is that of another meeting
+constexpr double kWedged = 4.0;       // times what it could take to move all that is there
 constexpr int kMostZoneRounds = 8;    // before whole steps are taken back
 constexpr int kZoneOpenings = 12;     // after bodies were united, before more are
 constexpr int kZonePatience = 4;      // of these, without fewer hits
@@ -94,7 +96,7 @@ class Guard {
     bool has_hits = test();
     // One who is hit may hit the next: that is followed where hits are taken one by one.
     const int solves = settings_.continuous_rounds > 0 ? kMostSolves : 0;
-    if (wakes_sleepers() || strikes_held()) return;
+    if (wakes_sleepers() || strikes_held() || strikes_jammed()) return;
     for (int solve = 0; has_hits && solve < solves && solve_again(solve == 0); ++solve) {
       has_hits = test();
       if (wakes_sleepers() || strikes_held()) return;
@@ -244,6 +246,7 @@ class Guard {
   }
 
   bool strikes_held() { return work_.has_scripted && strike(find_held(), 0.0); }
+  bool strikes_jammed() { return work_.has_scripted && strike(find_jammed(), 1.0); }
   bool strikes_pressed() { return work_.has_scripted && strike(find_pressed(), 1.0); }
 
   // Flags: scripted ones, and what stands still, that meet.
@@ -255,6 +258,32 @@ class Guard {
         is_held[at(a)] = is_held[at(b)] = 1;
     }
     return is_held;
+  }
+
+  // Flags: scripted ones, and what they gave more than would bring all that lies together there to their
+  // speed, and stop it and send it back, several times over: it is wedged, against what cannot give way, and
+  // nothing bounds what a body without an end of mass gives it.
+  std::vector<char> find_jammed() const {
+    std::vector<char> is_jammed(work_.bodies.size(), 0);
+    for (const Island& island : work_.islands) {
+      double mass = 0.0, speed = 0.0;
+      for (const int i : island.bodies) {
+        const WorkBody& w = work_.bodies[at(i)];
+        mass += 1.0 / w.inverse_mass;
+        speed = std::max(speed, greatest_speed(w.velocity_start, w.spin_start, w.reach) +
+                                    w.gravity.norm() * settings_.time_step);
+      }
+      for (const int k : island.contacts) {
+        const SolverContact& c = work_.contacts[at(k)];
+        for (const auto& [one, other] : {std::pair(c.a, c.b), std::pair(c.b, c.a)}) {
+          const WorkBody& w = work_.bodies[at(one)];
+          if (!w.is_scripted || !w.is_active) continue;
+          const double usual = mass * (speed + greatest_speed(w.velocity, w.spin, w.reach));
+          if (c.total.norm() > kWedged * usual) is_jammed[at(one)] = is_jammed[at(other)] = 1;
+        }
+      }
+    }
+    return is_jammed;
   }
 
   // Scripted bodies that press on what finds no room stop where they first met it, or before, and all is

@@ -81,6 +81,12 @@ TEST_CASE("lintel: snaps across the edge of steel and mostly round its grains") 
   CHECK(report["breaks"][0]["grain_share"].get<double>() > 0.5);
 }
 
+TEST_CASE("overload: bears five bricks, though they sleep, and breaks under the sixth") {
+  const auto report = play_audited("overload --seconds 0.97", {2, 10});
+  CHECK(report["breaks"][0]["body"] == "board");
+  CHECK(report["breaks"][0]["time"].get<double>() > 0.9);  // the sixth comes at 0.9 s
+}
+
 TEST_CASE("brick_wall: the ball breaks some of ninety bricks and takes others along") {
   const auto report = play_audited("brick_wall --seconds 0.5", {20, 150});
   CHECK(count_breaks_of(report, "ball") == 0);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "engine/core/elementary.h"
 #include "engine/core/parallel.h"
 #include "engine/geometry/generators.h"
 #include "tests/engine/world/audited.h"
@@ -365,6 +366,37 @@ TEST_CASE("a scripted ram breaks a held pane at any rate, and goes through it to
     if (!test::kIsSanitized) CHECK(w.report().scripted.at(0).behind < 1e-9);
     CHECK(w.report().conservation.momentum_error < 1e-9);
   }
+}
+
+TEST_CASE("what a scripted body wedges against the floor gets blows of a free body's, from the first on") {
+  // Friction above 1 holds a stick at 45 degrees between both.
+  world::World w{world::WorldSettings{}};
+  material::Material rough = *material::find_preset("plaster");
+  rough.friction = 1.5;
+  rough.restitution = 0.0;
+  REQUIRE(w.add_material(rough).ok());
+  world::BodyDescription floor, stick, wall;
+  floor.form = world::PlaneDescription{};
+  REQUIRE(w.add_body(floor).ok());
+  stick.name = "stick";
+  world::SolidDescription solid;
+  solid.mesh = geometry::make_box_surface(Vec3(0.15, 0.02, 0.02));
+  solid.is_breakable = true;
+  solid.element_size = 0.02;
+  stick.form = solid;
+  stick.pose.translation = Vec3(0.0, 0.1212, 0.0);
+  stick.pose.rotation = Quat(Eigen::AngleAxisd(-0.25 * core::kPi, Vec3::UnitZ()));
+  REQUIRE(w.add_body(stick).ok());
+  wall.name = "wall";
+  wall.form = world::BoxDescription{Vec3(0.02, 0.15, 0.15)};
+  wall.motion = body::Motion::scripted;
+  wall.path = world::PathDescription{
+      {{0.0, Vec3(-0.1432, 0.16, 0.0), Vec3::Zero()}, {0.6, Vec3(0.2, 0.16, 0.0), Vec3::Zero()}}};
+  REQUIRE(w.add_body(wall).ok());
+  while (w.time() < 0.04) w.step();
+  REQUIRE_FALSE(w.report().breaks.empty());
+  const double speed = 0.4, mass = 0.04 * 0.3 * 0.3 * rough.density;  // m/s, the wall's by then, at most
+  for (const world::ImpactRow& row : w.report().impacts) CHECK(row.impulse < 16.0 * mass * speed);
 }
 
 TEST_CASE("a mesh that was not mended is refused with what is wrong with it") {
