@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -98,7 +99,10 @@ std::string joint_line(const RunRecord& record) {
   for (const world::JointRow& joint : joints) {
     if (joint.opened >= 0.0) {
       ++opened;
-      if (first == nullptr || joint.opened < first->opened) first = &joint;
+      // Of those that opened together the one that bore the most: the others may be far from the hit.
+      if (first == nullptr ||
+          std::pair(joint.opened, -joint.most_ratio) < std::pair(first->opened, -first->most_ratio))
+        first = &joint;
     } else if (hardest == nullptr || joint.most_ratio > hardest->most_ratio) {
       hardest = &joint;
     }

@@ -197,6 +197,24 @@ TEST_CASE("the closing words tell verdicts, breaks and speed") {
   }
 }
 
+TEST_CASE("of joints that open together the closing words name the one that bore the most") {
+  RunRecord record = some_record();
+  const auto add = [&](const char* body, double opened, double ratio) {
+    world::JointRow row;
+    row.body_a = body;
+    row.body_b = "wall";
+    row.opened = opened;
+    row.most_ratio = ratio;
+    row.verdict = "opened";
+    record.world.joints.push_back(row);
+  };
+  add("corner", 0.5, 1.1);
+  add("middle", 0.5, 9.0);
+  add("top", 0.6, 20.0);
+  CHECK(make_summary(record).find("3 of them opened, the first at 0.500 s, middle to wall: opened") !=
+        std::string::npos);
+}
+
 TEST_CASE("exported boxes and spheres and capsules are closed and wound outwards") {
   CHECK(geometry::enclosed_volume(geometry::make_box_surface(Vec3(0.5, 1.0, 1.5))) ==
         Approx(6.0).epsilon(1e-14));
