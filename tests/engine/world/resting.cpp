@@ -45,76 +45,70 @@ Rest rest_on_pane(int steps_per_second, double density) {
   return rest;
 }
 
-/// Whether a beam of concrete of 1 m on two supports comes apart in .15 s under so many kg on its middle.
-bool breaks_beam(int steps_per_second, double element_size, double mass) {
-  world::WorldSettings settings;
-  settings.steps_per_second = steps_per_second;
+/// What can break, on two supports 90 cm from each other; what is laid on it is of their material. Their tops
+/// are .2 m up.
+struct Bridge {
+  const char *material, *support;
+  Vec3 half_extent;     // m
+  double element_size;  // m
+  Vec3 support_half;    // m
+};
+world::World build_bridge(const Bridge& bridge, const world::WorldSettings& settings) {
   world::World w(settings);
-  const int concrete = w.add_material(*material::find_preset("concrete")).value();
-  const int steel = w.add_material(*material::find_preset("steel")).value();
+  const int material = w.add_material(*material::find_preset(bridge.material)).value();
+  const int below = w.add_material(*material::find_preset(bridge.support)).value();
   for (const double x : {-0.45, 0.45}) {
     world::BodyDescription support;
-    support.form = world::BoxDescription{Vec3(0.025, 0.1, 0.1)};
-    support.material = steel;
+    support.form = world::BoxDescription{bridge.support_half};
+    support.material = below;
     support.motion = body::Motion::fixed;
-    support.pose.translation = Vec3(x, 0.1, 0.0);
+    support.pose.translation = Vec3(x, 0.2 - bridge.support_half.y(), 0.0);
     REQUIRE(w.add_body(support).ok());
   }
   world::SolidDescription solid;
-  solid.mesh = geometry::make_box_surface(Vec3(0.5, 0.05, 0.05));
+  solid.mesh = geometry::make_box_surface(bridge.half_extent);
   solid.is_breakable = true;
-  solid.element_size = element_size;
-  world::BodyDescription beam;
-  beam.name = "beam";
-  beam.form = solid;
-  beam.material = concrete;
-  beam.pose.translation = Vec3(0.0, 0.25 + 1e-5, 0.0);
-  REQUIRE(w.add_body(beam).ok());
-  world::BodyDescription weight;
-  weight.form = world::BoxDescription{Vec3(0.03, 0.03, 0.03)};
-  weight.material = steel;
-  weight.density = mass / (0.06 * 0.06 * 0.06);
-  weight.pose.translation = Vec3(0.0, 0.33 + 2e-5, 0.0);
-  REQUIRE(w.add_body(weight).ok());
+  solid.element_size = bridge.element_size;
+  world::BodyDescription span;
+  span.form = solid;
+  span.material = material;
+  span.pose.translation = Vec3(0.0, 0.2 + bridge.half_extent.y() + 1e-5, 0.0);
+  REQUIRE(w.add_body(span).ok());
+  return w;
+}
+
+/// Lays a block of so many kg on its middle, its foot at that height (m).
+void lay_block(world::World& w, const Vec3& half_extent, double mass, double foot) {
+  world::BodyDescription block;
+  block.form = world::BoxDescription{half_extent};
+  block.material = 1;
+  block.density = mass / (8.0 * half_extent.prod());
+  block.pose.translation = Vec3(0.0, foot + half_extent.y(), 0.0);
+  REQUIRE(w.add_body(block).ok());
+}
+
+/// Whether a beam of concrete of 1 m comes apart in .15 s under so many kg.
+bool breaks_beam(int steps_per_second, double element_size, double mass) {
+  world::WorldSettings settings;
+  settings.steps_per_second = steps_per_second;
+  world::World w = build_bridge(
+      {"concrete", "steel", Vec3(0.5, 0.05, 0.05), element_size, Vec3(0.025, 0.1, 0.1)}, settings);
+  lay_block(w, Vec3(0.03, 0.03, 0.03), mass, 0.3 + 2e-5);
   const std::size_t count = w.bodies().size();
   while (w.time() < 0.15 && w.bodies().size() == count) w.step();
   return w.bodies().size() > count;
 }
 
-/// Blocks of 8 kg are laid one upon the other onto the middle of a board of plaster on two supports, each
-/// when the one before has long been at rest: how many when it comes apart; 0: it bears them all.
+/// Blocks of 8 kg are laid one upon the other on a board of plaster, each when the one before has long been
+/// at rest: how many when it comes apart; 0: it bears them all.
 int lay_blocks(bool has_sleep, int most) {
   world::WorldSettings settings;
   settings.steps_per_second = 60;
   settings.has_sleep = has_sleep;
-  world::World w(settings);
-  const int plaster = w.add_material(*material::find_preset("plaster")).value();
-  const int brick = w.add_material(*material::find_preset("brick")).value();
-  for (const double x : {-0.45, 0.45}) {
-    world::BodyDescription support;
-    support.form = world::BoxDescription{Vec3(0.06, 0.1, 0.12)};
-    support.material = brick;
-    support.motion = body::Motion::fixed;
-    support.pose.translation = Vec3(x, 0.1, 0.0);
-    REQUIRE(w.add_body(support).ok());
-  }
-  world::SolidDescription solid;
-  solid.mesh = geometry::make_box_surface(Vec3(0.55, 0.01, 0.1));
-  solid.is_breakable = true;
-  solid.element_size = 0.02;
-  world::BodyDescription board;
-  board.name = "board";
-  board.form = solid;
-  board.material = plaster;
-  board.pose.translation = Vec3(0.0, 0.21 + 1e-5, 0.0);
-  REQUIRE(w.add_body(board).ok());
+  world::World w =
+      build_bridge({"plaster", "brick", Vec3(0.55, 0.01, 0.1), 0.02, Vec3(0.06, 0.1, 0.12)}, settings);
   for (int count = 1; count <= most; ++count) {
-    world::BodyDescription block;
-    block.form = world::BoxDescription{Vec3(0.1, 0.03, 0.05)};
-    block.material = brick;
-    block.density = 8.0 / (0.2 * 0.06 * 0.1);
-    block.pose.translation = Vec3(0.0, 0.22 + 0.06 * (count - 0.5) + 2e-4 * count, 0.0);
-    REQUIRE(w.add_body(block).ok());
+    lay_block(w, Vec3(0.1, 0.03, 0.05), 8.0, 0.22 + 0.06 * (count - 1) + 2e-4 * count);
     for (int step = 0; step < 60; ++step) {
       w.step();
       if (!w.report().breaks.empty()) return count;
