@@ -22,7 +22,7 @@ std::uint64_t hash_of(const PairState& pair) {
   core::Hash hash;
   hash.add((static_cast<std::uint64_t>(pair.body_a) << 32) | pair.body_b);
   hash.add(pair.kept_gap).add(static_cast<std::uint64_t>(pair.is_touching));
-  hash.add(static_cast<std::uint64_t>(pair.has_parted)).add(pair.load);
+  hash.add(static_cast<std::uint64_t>(pair.has_parted));
   hash.add(static_cast<std::uint64_t>(pair.trouble_age)).add(static_cast<std::uint64_t>(pair.stuck_steps));
   hash.add(static_cast<std::uint64_t>(pair.is_exempt));
   if (pair.is_hooked) hash.add(std::uint64_t{1});
@@ -53,8 +53,7 @@ void add_to_hash(const ContactState& state, core::Hash& hash) {
   for (const BodyState& body : state.bodies) {
     hash.add(static_cast<std::uint64_t>(body.id))
         .add(body.rest_pose.translation)
-        .add(body.rest_pose.rotation)
-        .add(body.slept_under);
+        .add(body.rest_pose.rotation);
   }
   add_to_hash(state.joints, hash);
   if (state.swing > 0.0) hash.add(state.swing);

@@ -37,10 +37,10 @@ inline constexpr int kNoTrouble = 1000;
 /// One pair of bodies that were near each other in the last step.
 struct PairState {
   body::BodyId body_a = 0, body_b = 0;  // body_a < body_b
-  double kept_gap = 0.0;         // m: min(usual, least gap seen so far): never pushes newborn pieces apart
-  bool is_touching = false;      // a sleeper and what disturbs it, or holds it up
-  bool has_parted = false;       // pressed a step ago, and touches no longer
-  double load = 0.0;             // N, that its contacts carry at rest; a sleeper's keep it
+  double kept_gap = 0.0;     // m: min(usual, least gap seen so far): never pushes newborn pieces apart
+  bool is_touching = false;  // a sleeper and what disturbs it, or holds it up
+  bool has_parted = false;   // pressed a step ago, and touches no longer
+  double load = 0.0;         // N, that its contacts carry at rest, if anything may break; a sleeper's keep it
   int trouble_age = kNoTrouble;  // steps since the continuous pass last had to act here
   int stuck_steps = 0;           // steps in a row in which the pair had to be cut short
   bool is_hooked = false;    // cut short in a part as short as there is, and ever since: shorter is no help
@@ -110,7 +110,8 @@ struct ContactState {
 /// Makes what follows from the shape: collider and inertia.
 void know_shape(BodyState& body);
 
-/// Adds all that decides later steps to the hash; caches stay out.
+/// Adds all that decides later steps to the hash; caches stay out, and loads, which follow from the impulses
+/// of this step or an earlier one.
 void add_to_hash(const ContactState& state, core::Hash& hash);
 
 }  // namespace shatterbox::dynamics

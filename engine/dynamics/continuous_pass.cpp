@@ -266,6 +266,7 @@ class Guard {
   std::vector<char> find_jammed() const {
     std::vector<char> is_jammed(work_.bodies.size(), 0);
     for (const Island& island : work_.islands) {
+      if (!island.may_break) continue;
       double mass = 0.0, speed = 0.0;
       for (const int i : island.bodies) {
         const WorkBody& w = work_.bodies[at(i)];

@@ -149,6 +149,11 @@ void rouse(std::vector<Body>& bodies, const ContactSettings& settings, const Con
   }
 }
 
+// Where nothing may, nobody asks for loads.
+bool may_any_break(const std::vector<Body>& bodies) {
+  return std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.may_break; });
+}
+
 // N, what presses on each body at rest.
 std::vector<double> find_loads(const std::vector<Body>& bodies, const ContactState& state) {
   std::vector<double> loads(bodies.size(), 0.0);
@@ -183,7 +188,6 @@ bool may_bear(const Body& above, const Body& below, const Vec3& up) {
 void wake_overloaded(const std::vector<Body>& bodies, const Vec3& gravity, const ContactState& state,
                      std::vector<double>& momentum) {
   const Vec3 up = -gravity.normalized();
-  if (std::none_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.may_break; })) return;
   const std::vector<double> loads = find_loads(bodies, state);
   std::vector<double> more(bodies.size(), 0.0);  // N, on a sleeper
   for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -354,7 +358,7 @@ void wake_bodies(std::vector<Body>& bodies, const ContactSettings& settings, Con
       if (moves) given = kAll;
     }
   }
-  wake_overloaded(bodies, settings.gravity, state, momentum);
+  if (may_any_break(bodies)) wake_overloaded(bodies, settings.gravity, state, momentum);
   // Who was woken alone, by a joint that opened or because what bore him is gone, wakes all that hang on him,
   // and so does a support that begins to move.
   for (const Joint& joint : state.joints) {
@@ -416,12 +420,13 @@ void wake_struck(std::vector<Body>& bodies, const ContactSettings& settings, con
 void put_to_sleep(std::vector<Body>& bodies, const ContactSettings& settings, ContactState& state) {
   if (!settings.has_sleep || !count_quiet_times(bodies, settings, state)) return;
   const std::vector<char> is_kept_up = find_kept_up(bodies, settings, state);
-  const std::vector<double> loads = find_loads(bodies, state);
+  const std::vector<double> loads = may_any_break(bodies) ? find_loads(bodies, state) : std::vector<double>{};
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Body& b = bodies[i];
     if (!b.is_dynamic() || !b.is_awake || is_kept_up[i]) continue;
     b.is_awake = false;
-    if (BodyState* memory = find_memory(state, b.id)) memory->slept_under = loads[i];
+    if (BodyState* memory = find_memory(state, b.id); memory != nullptr && !loads.empty())
+      memory->slept_under = loads[i];
     b.velocity.setZero();
     b.angular_velocity.setZero();
   }

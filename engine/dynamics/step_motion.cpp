@@ -113,6 +113,8 @@ double load_of(const PairState& pair, double substep) {
 
 void remember_contacts(const MotionWork& work, ContactState& state) {
   state.substep = work.substep;
+  const bool may_break =
+      std::any_of(work.bodies.begin(), work.bodies.end(), [](const WorkBody& w) { return w.may_break; });
   const core::Buckets contacts(work.pairs.size(), work.contacts.size(),
                                [&](std::size_t i) { return work.contacts[i].pair; });
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
@@ -129,7 +131,8 @@ void remember_contacts(const MotionWork& work, ContactState& state) {
         memory.is_touching = memory.is_touching || c.gap <= 2.0 * pair.kept_gap;
     }
     for (const int i : contacts.of(p)) remember_contact(work.contacts[at(i)], memory);
-    if (a.inverse_mass > 0.0 || b.inverse_mass > 0.0) memory.load = load_of(memory, work.substep);
+    if (may_break && (a.inverse_mass > 0.0 || b.inverse_mass > 0.0))
+      memory.load = load_of(memory, work.substep);
     memory.has_parted = memory.has_parted && !memory.is_touching;
     // What was found on the way came last.
     const auto by_key = [](const RememberedContact& x, const RememberedContact& y) {

@@ -135,13 +135,14 @@ void book_scripted(const std::vector<body::Body>& bodies, std::vector<ScriptedRo
 
 /// Who may break is woken, where he sleeps, before he has to bear more.
 void note_what_bodies_bear(MovingState& moving) {
+  const ImpactMemory nothing;
   for (body::Body& body : moving.bodies) {
     if (!body.may_break) continue;
     const auto fragile = moving.fragiles.find(body.id);
     const auto memory = moving.memories.find(body.id);
     if (fragile == moving.fragiles.end()) continue;
-    body.bears = borne_at_rest(body, *fragile->second,
-                               memory != moving.memories.end() ? memory->second : ImpactMemory{});
+    body.bears =
+        borne_at_rest(body, *fragile->second, memory != moving.memories.end() ? memory->second : nothing);
   }
 }
 

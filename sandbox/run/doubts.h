@@ -13,7 +13,8 @@ namespace shatterbox::sandbox::run {
 scene::Problems find_doubts(const scene::SceneDescription& scene, const scene::BuiltScene& built);
 
 /// After a run: solids that were stressed beyond their strength and held because no crack could start in
-/// elements as large as theirs, or of a material as tough, of copies the hardest hit; and a scene in which all fell and met nothing.
+/// elements as large as theirs, or of a material as tough, of copies the hardest hit; and a scene in which
+/// all fell and met nothing.
 scene::Problems find_afterthoughts(const scene::SceneDescription& scene, const scene::BuiltScene& built);
 
 }  // namespace shatterbox::sandbox::run
