@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/collision/relative_way.h"
 #include "engine/core/index.h"
 #include "engine/core/parallel.h"
 #include "engine/geometry/bvh.h"
@@ -55,8 +56,8 @@ TightBox box_of_edge(const Collider& c, const FeatureBoxes& boxes, int edge) {
 class Descent {
  public:
   Descent(const Collider& a, const FeatureBoxes& boxes_a, const Collider& b, const FeatureBoxes& boxes_b,
-          const TightWay& way, double margin)
-      : a_(a), b_(b), boxes_a_(boxes_a), boxes_b_(boxes_b), way_(way) {
+          const RelativeWays& ways, double margin)
+      : a_(a), b_(b), boxes_a_(boxes_a), boxes_b_(boxes_b), ways_(ways) {
     const float m = round_up(margin), beyond = m * (1.0F + 1e-5F);
     reach_squared_ = m * m * (1.0F + 1e-5F);
     reach_ = BoxLanes{beyond, beyond, beyond, round_up(kDiagonal * beyond)};
@@ -89,7 +90,7 @@ class Descent {
     std::vector<NodePair> pairs;
     if (boxes_a_.nodes.empty() || boxes_b_.nodes.empty()) return pairs;
     stack_.clear();
-    push_if_near(0, boxes_a_.nodes[0], 0, stretched(boxes_b_.nodes[0], way_));
+    push_if_near(0, ways_.a.along(boxes_a_.nodes[0]), 0, ways_.b.along(boxes_b_.nodes[0]));
     pairs.swap(stack_);
     for (bool goes_on = true; goes_on && pairs.size() < least;) {
       std::vector<NodePair> below;
@@ -128,14 +129,14 @@ class Descent {
   // The last one comes first.
   void push_children(const NodePair& pair) {
     const auto [i, j] = pair;
-    const TightBox& box_a = boxes_a_.nodes[at(i)];
-    const TightBox box_b = stretched(boxes_b_.nodes[at(j)], way_);
+    const TightBox box_a = ways_.a.along(boxes_a_.nodes[at(i)]), box_b = ways_.b.along(boxes_b_.nodes[at(j)]);
     const Node &node_a = a_.tree.nodes[at(i)], &node_b = b_.tree.nodes[at(j)];
     if (node_b.count > 0 || (node_a.count == 0 && extent(box_a) >= extent(box_b))) {
-      for (const int child : {node_a.right, i + 1}) push_if_near(child, boxes_a_.nodes[at(child)], j, box_b);
+      for (const int child : {node_a.right, i + 1})
+        push_if_near(child, ways_.a.along(boxes_a_.nodes[at(child)]), j, box_b);
     } else {
       for (const int child : {node_b.right, j + 1})
-        push_if_near(i, box_a, child, stretched(boxes_b_.nodes[at(child)], way_));
+        push_if_near(i, box_a, child, ways_.b.along(boxes_b_.nodes[at(child)]));
     }
   }
 
@@ -144,8 +145,8 @@ class Descent {
     const auto [i, j] = pair;
     leaf_a_ = i;
     leaf_b_ = j;
-    visit_triangles(a_.tree.nodes[at(i)], boxes_a_.nodes[at(i)], b_.tree.nodes[at(j)],
-                    stretched(boxes_b_.nodes[at(j)], way_), visit);
+    visit_triangles(a_.tree.nodes[at(i)], ways_.a.along(boxes_a_.nodes[at(i)]), b_.tree.nodes[at(j)],
+                    ways_.b.along(boxes_b_.nodes[at(j)]), visit);
   }
 
   void push_if_near(int i, const TightBox& box_a, int j, const TightBox& box_b) {
@@ -158,12 +159,12 @@ class Descent {
     std::array<NearTriangle, geometry::kLeafSize> near;
     std::size_t count = 0;
     for (int k = 0; k < node_b.count; ++k) {
-      const TightBox box = stretched(boxes_b_.triangles[at(node_b.begin + k)], way_);
+      const TightBox box = ways_.b.along(boxes_b_.triangles[at(node_b.begin + k)]);
       if (is_near(box_a, box)) near[count++] = {b_.tree.order[at(node_b.begin + k)], k, box};
     }
     if (count == 0) return;
     for (int k = node_a.begin; k < node_a.begin + node_a.count; ++k) {
-      const TightBox& box = boxes_a_.triangles[at(k)];
+      const TightBox box = ways_.a.along(boxes_a_.triangles[at(k)]);
       if (!is_near(box, box_b)) continue;
       const int t = a_.tree.order[at(k)];
       for (const NearTriangle& other : std::span(near).first(count)) {
@@ -179,17 +180,17 @@ class Descent {
 
   const Collider &a_, &b_;
   const FeatureBoxes &boxes_a_, &boxes_b_;
-  const TightWay way_;
+  const RelativeWays& ways_;
   BoxLanes reach_ = {};  // m
   float reach_squared_ = 0.0F;
   int leaf_a_ = 0, leaf_b_ = 0;
   std::vector<NodePair> stack_;
 };
 
-// Where the vertices of a body are, or go from and to.
+// Where the vertices of a body are, and go to by themselves.
 struct Places {
-  const std::vector<Vec3>& from;
-  const std::vector<Vec3>* to;  // none: they stay
+  const std::vector<Vec3>& start;
+  const std::vector<Vec3>* end;  // none: they go as the body goes
 };
 
 // Whether triangles stay apart along the directions of their planes. Boxes about triangles that lie askew are
@@ -198,20 +199,21 @@ struct Places {
 class Planes {
  public:
   Planes(const Collider& a, const Places& places_a, const Collider& b, const Places& places_b,
-         const Vec3& way, double margin)
+         const RelativeWays& ways, double margin)
       : a_(a),
         b_(b),
         places_a_(places_a),
         places_b_(places_b),
-        way_(way),
+        ways_(ways),
+        stay_(!places_a.end && ways.a.stays() && ways.b.stays()),
         // What rounding may add is far below this share of the margin.
         apart_from_((margin + a.radius + b.radius) * (1.0 + 1e-5)) {}
 
   // `place` of the second triangle in its leaf: those of a leaf are asked for again and again.
   bool are_apart(int ta, int tb, int place) {
-    if (ta != first_.number) first_ = face(a_, places_a_, ta, Vec3::Zero());
+    if (ta != first_.number) first_ = face(a_, places_a_, ways_.a, ta);
     Face& second = seconds_[at(place)];
-    if (tb != second.number) second = face(b_, places_b_, tb, way_);
+    if (tb != second.number) second = face(b_, places_b_, ways_.b, tb);
     return separates(first_.normal, first_.start, second.start, first_.end, second.end) ||
            separates(second.normal, second.start, first_.start, second.end, first_.end);
   }
@@ -224,14 +226,16 @@ class Planes {
     Vec3 normal = Vec3::Zero();  // at the start; not of length one
   };
 
-  static Face face(const Collider& c, const Places& places, int triangle, const Vec3& way) {
+  Face face(const Collider& c, const Places& places, const SeenWay& way, int triangle) const {
     const auto& t = c.triangles[at(triangle)];
     Face f;
     f.number = triangle;
-    f.start = {places.from[at(t[0])], places.from[at(t[1])], places.from[at(t[2])]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& start = places.start[at(t[i])];
+      f.start[i] = way.begin_of(start);
+      if (!stay_) f.end[i] = places.end ? (*places.end)[at(t[i])] : way.end_of(start);
+    }
     f.normal = (f.start[1] - f.start[0]).cross(f.start[2] - f.start[0]);
-    if (places.to)
-      f.end = {(*places.to)[at(t[0])] + way, (*places.to)[at(t[1])] + way, (*places.to)[at(t[2])] + way};
     return f;
   }
 
@@ -245,7 +249,7 @@ class Planes {
     const double least = side * std::min({side * b0, side * normal.dot(other[1] - face[0]),
                                           side * normal.dot(other[2] - face[0])});
     if (side * least <= 0.0 || least * least <= needed_squared) return false;
-    if (!places_a_.to) return true;
+    if (stay_) return true;
     const double most = std::max({0.0, side * normal.dot(face_then[1] - face_then[0]),
                                   side * normal.dot(face_then[2] - face_then[0])});
     const double left = std::min({side * normal.dot(other_then[0] - face_then[0]),
@@ -257,7 +261,8 @@ class Planes {
 
   const Collider &a_, &b_;
   const Places &places_a_, &places_b_;
-  const Vec3 way_;
+  const RelativeWays& ways_;
+  const bool stay_;
   const double apart_from_;  // m
   Face first_;
   std::array<Face, geometry::kLeafSize> seconds_;  // by place in a leaf
@@ -278,8 +283,11 @@ struct FeatureQuery {
   const Collider& b;
   const FeatureBoxes& boxes_b;
   const Places places_b;
-  const Vec3 relative_way;
+  const RelativeWays& ways;
   const double margin;  // m
+
+  double radii() const { return a.radius + b.radius; }
+  double seen_margin() const { return ways.seen_margin(margin, radii()); }
 };
 
 // Features that near triangles own.
@@ -290,9 +298,10 @@ class Lister {
         b_(query.b),
         boxes_a_(query.boxes_a),
         boxes_b_(query.boxes_b),
-        way_(query.relative_way),
-        descent_(query.a, query.boxes_a, query.b, query.boxes_b, way_, query.margin),
-        planes_(query.a, query.places_a, query.b, query.places_b, query.relative_way, query.margin) {}
+        ways_(query.ways),
+        radii_(query.radii()),
+        descent_(a_, boxes_a_, b_, boxes_b_, ways_, query.seen_margin()),
+        planes_(a_, query.places_a, b_, query.places_b, ways_, query.seen_margin()) {}
 
   Descent& descent() { return descent_; }
 
@@ -305,7 +314,12 @@ class Lister {
       list_owned(ta, box_a, tb, box_b, out);
     });
     if (blocks && !blocks->empty() && at(blocks->back().begin) == out.size()) blocks->pop_back();
-    for (std::size_t i = first; i < out.size(); ++i) out[i].bound = std::sqrt(out[i].bound) * (1.0F - 1e-5F);
+    for (std::size_t i = first; i < out.size(); ++i) {
+      const float seen = std::sqrt(out[i].bound) * (1.0F - 1e-5F);
+      out[i].bound = ways_.least_length == 1.0 && ways_.bow == 0.0
+                         ? seen
+                         : round_down(ways_.apart_at_least(seen, radii_));
+    }
   }
 
  private:
@@ -326,19 +340,19 @@ class Lister {
     const bool a_has_faces = !a_.edges.empty(), b_has_faces = !b_.edges.empty();
     for (int k = a_.owned_vertex_begin[at(ta)]; b_has_faces && k < a_.owned_vertex_begin[at(ta) + 1]; ++k) {
       const int v = a_.owned_vertices[at(k)];
-      add(FeatureKind::vertex_triangle, v, boxes_a_.vertices[at(v)], tb, box_b);
+      add(FeatureKind::vertex_triangle, v, ways_.a.along(boxes_a_.vertices[at(v)]), tb, box_b);
     }
     for (int k = b_.owned_vertex_begin[at(tb)]; a_has_faces && k < b_.owned_vertex_begin[at(tb) + 1]; ++k) {
       const int v = b_.owned_vertices[at(k)];
-      add(FeatureKind::triangle_vertex, ta, box_a, v, stretched(boxes_b_.vertices[at(v)], way_));
+      add(FeatureKind::triangle_vertex, ta, box_a, v, ways_.b.along(boxes_b_.vertices[at(v)]));
     }
     const int first = a_.owned_edge_begin[at(ta)], last = a_.owned_edge_begin[at(ta) + 1];
     for (int k = first; edges_of_ != ta && k < last; ++k)
-      boxes_e_[at(k - first)] = box_of_edge(a_, boxes_a_, a_.owned_edges[at(k)]);
+      boxes_e_[at(k - first)] = ways_.a.along(box_of_edge(a_, boxes_a_, a_.owned_edges[at(k)]));
     edges_of_ = ta;
     for (int l = b_.owned_edge_begin[at(tb)]; first < last && l < b_.owned_edge_begin[at(tb) + 1]; ++l) {
       const int f = b_.owned_edges[at(l)];
-      const TightBox box_f = stretched(box_of_edge(b_, boxes_b_, f), way_);
+      const TightBox box_f = ways_.b.along(box_of_edge(b_, boxes_b_, f));
       for (int k = first; k < last; ++k)
         add(FeatureKind::edge_edge, a_.owned_edges[at(k)], boxes_e_[at(k - first)], f, box_f);
     }
@@ -346,7 +360,8 @@ class Lister {
 
   const Collider &a_, &b_;
   const FeatureBoxes &boxes_a_, &boxes_b_;
-  const TightWay way_;
+  const RelativeWays& ways_;
+  const double radii_;  // m
   Descent descent_;
   Planes planes_;
   int edges_of_ = -1;  // triangle of a, whose edges have these boxes
@@ -396,7 +411,8 @@ bool an_edge_pierces(const std::array<Vec3, 3>& edges, const std::array<Vec3, 3>
 // Radii do not count.
 bool any_edge_pierces(const PlacedCollider& a, const PlacedCollider& b) {
   bool result = false;
-  Descent(*a.collider, a.boxes, *b.collider, b.boxes, TightWay(), 0.0)
+  const RelativeWays stay;
+  Descent(*a.collider, a.boxes, *b.collider, b.boxes, stay, 0.0)
       .run([&](int ta, const TightBox&, int tb, const TightBox&, int) {
         if (result) return;
         const auto p = corners(a, ta), q = corners(b, tb);
@@ -423,9 +439,8 @@ PlacedCollider place_collider(const Collider& collider, const Pose& pose) {
 }
 
 void PlacedCollider::clear() {
-  for (FeatureBoxes* b : {&boxes, &swept})
-    for (std::vector<TightBox>* part : {&b->vertices, &b->triangles, &b->nodes}) part->clear();
-  for (std::vector<Vec3>* vertices : {&start, &swept_from, &swept_to}) vertices->clear();
+  for (std::vector<TightBox>* part : {&boxes.vertices, &boxes.triangles, &boxes.nodes}) part->clear();
+  start.clear();
 }
 
 void refit_boxes(PlacedCollider& placed) {
@@ -437,15 +452,12 @@ void refit_boxes(PlacedCollider& placed) {
   refit(*placed.collider, placed.boxes);
 }
 
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from, std::vector<Vec3> turned) {
-  const double radius = placed.collider->radius;
-  placed.swept.vertices.resize(from.size());
-  for (std::size_t v = 0; v < from.size(); ++v) {
-    placed.swept.vertices[v] = box_of_path(from[v], turned[v], radius);
-  }
-  refit(*placed.collider, placed.swept);
-  placed.swept_from = from;
-  placed.swept_to = std::move(turned);
+void refit_swept_boxes(SweptCollider& swept) {
+  const double radius = swept.collider->radius;
+  swept.boxes.vertices.resize(swept.start.size());
+  for (std::size_t v = 0; v < swept.start.size(); ++v)
+    swept.boxes.vertices[v] = box_of_path(swept.start[v], swept.end[v], radius);
+  refit(*swept.collider, swept.boxes);
 }
 
 Span leaf_span(const Collider& collider, int leaf, const std::vector<Vec3>& positions,
@@ -467,53 +479,55 @@ void sort_by_bound(FeatureList& features) {
 
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out) {
   out.clear();
-  list_features({*a.collider,
-                 a.boxes,
-                 {a.start, nullptr},
-                 *b.collider,
-                 b.boxes,
-                 {b.start, nullptr},
-                 Vec3::Zero(),
-                 margin},
-                out, nullptr);
+  const Places places_a{a.start, nullptr}, places_b{b.start, nullptr};
+  const RelativeWays stay;
+  list_features({*a.collider, a.boxes, places_a, *b.collider, b.boxes, places_b, stay, margin}, out, nullptr);
 }
 
-void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
-                         double margin, FeatureList& out, std::vector<FeatureBlock>* blocks) {
+void list_met_features(const PlacedCollider& a, const BodyWay& way_a, const PlacedCollider& b,
+                       const BodyWay& way_b, double margin, FeatureList& out,
+                       std::vector<FeatureBlock>* blocks) {
   out.clear();
   if (blocks) blocks->clear();
-  list_features({*a.collider,
-                 a.swept,
-                 {a.swept_from, &a.swept_to},
-                 *b.collider,
-                 b.swept,
-                 {b.swept_from, &b.swept_to},
-                 relative_way,
-                 margin},
-                out, blocks);
+  const Places places_a{a.start, nullptr}, places_b{b.start, nullptr};
+  const RelativeWays ways(way_a, a.collider->bounding_radius, way_b, b.collider->bounding_radius);
+  list_features({*a.collider, a.boxes, places_a, *b.collider, b.boxes, places_b, ways, margin}, out, blocks);
 }
 
-bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius, const Vec3& relative_way,
+void list_swept_features(const SweptCollider& a, const SweptCollider& b, double margin, FeatureList& out) {
+  out.clear();
+  const Places places_a{a.start, &a.end}, places_b{b.start, &b.end};
+  const RelativeWays stay;
+  list_features({*a.collider, a.boxes, places_a, *b.collider, b.boxes, places_b, stay, margin}, out, nullptr);
+}
+
+bool may_meet_ball(const PlacedCollider& body, const BodyWay& way, const BodyWay& ball, double radius,
                    double margin) {
-  const TightBox path = box_of_path(centre, centre + relative_way, 0.0);
-  const float reach = round_up(radius + margin), reach_squared = reach * reach * (1.0F + 1e-5F);
+  BodyWay centre = ball;  // all that is asked of the ball
+  centre.turned_from = centre.turned_to = Mat3::Identity();
+  centre.least_length = 0.0;
+  const RelativeWays ways(way, body.collider->bounding_radius, centre, 0.0);
+  const TightBox path = ways.b.along(box_of_point(ball.centre, 0.0));
+  const float reach = round_up(ways.seen_margin(margin, radius + body.collider->radius) + radius),
+              reach_squared = reach * reach * (1.0F + 1e-5F);
+  const auto is_near = [&](const TightBox& box) {
+    return distance_squared(ways.a.along(box), path) <= reach_squared;
+  };
   const auto& nodes = body.collider->tree.nodes;
   std::vector<int> stack;
   if (!nodes.empty()) stack.push_back(0);
   while (!stack.empty()) {
     const int i = stack.back();
     stack.pop_back();
-    if (distance_squared(body.swept.nodes[at(i)], path) > reach_squared) continue;
+    if (!is_near(body.boxes.nodes[at(i)])) continue;
     const Node& node = nodes[at(i)];
     if (node.count == 0) {
       stack.push_back(node.right);
       stack.push_back(i + 1);
       continue;
     }
-    for (int k = node.begin; k < node.begin + node.count; ++k) {
-      const TightBox& box = body.swept.triangles[at(k)];
-      if (distance_squared(box, path) <= reach_squared) return true;
-    }
+    for (int k = node.begin; k < node.begin + node.count; ++k)
+      if (is_near(body.boxes.triangles[at(k)])) return true;
   }
   return false;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/collision/collider.h"
+#include "engine/collision/relative_way.h"
 #include "engine/collision/tight_box.h"
 #include "engine/core/vec.h"
 
@@ -56,16 +57,21 @@ struct FeatureBoxes {
       nodes;  // |V|, |T| in the tree's order, |nodes|; empty until needed
 };
 
-/// A collider in the world: where its vertices are, and the boxes over that and over where they go.
+/// A collider in the world: where its vertices are, and the boxes over that.
 struct PlacedCollider {
   const Collider* collider = nullptr;
-  std::vector<Vec3> start;                 // |V| x 3, world, m
-  FeatureBoxes boxes;                      // over `start`, radius included
-  FeatureBoxes swept;                      // over straight paths less the centre's own way, radius included
-  std::vector<Vec3> swept_from, swept_to;  // |V| x 3, world, m: the ends of those paths
+  std::vector<Vec3> start;  // |V| x 3, world, m
+  FeatureBoxes boxes;       // over `start`, radius included
 
   /// Empty vectors, whose memory stays.
   void clear();
+};
+
+/// One whose vertices go straight, each by itself.
+struct SweptCollider {
+  const Collider* collider = nullptr;
+  std::vector<Vec3> start, end;  // |V| x 3, world, m
+  FeatureBoxes boxes;            // over the paths, radius included
 };
 
 /// Vertices (|V| x 3, world, m) at a pose.
@@ -77,9 +83,8 @@ PlacedCollider place_collider(const Collider& collider, const Pose& pose);
 /// Fills `placed.boxes` from `placed.start`.
 void refit_boxes(PlacedCollider& placed);
 
-/// Fills `placed.swept` for straight paths from `from` to `turned` (|V| x 3: end positions less the way of
-/// the body's centre).
-void refit_swept_boxes(PlacedCollider& placed, const std::vector<Vec3>& from, std::vector<Vec3> turned);
+/// Fills the boxes over the paths.
+void refit_swept_boxes(SweptCollider& swept);
 
 /// Nearest first; a total order.
 void sort_by_bound(FeatureList& features);
@@ -89,14 +94,17 @@ void sort_by_bound(FeatureList& features);
 /// Needs `boxes` of both.
 void list_near_features(const PlacedCollider& a, const PlacedCollider& b, double margin, FeatureList& out);
 
-/// All feature pairs whose straight paths may come within `margin`, when b moves by `relative_way` more than
-/// a. Needs `swept` of both. `blocks`, if asked for, are of the list in its order; none is empty.
-void list_swept_features(const PlacedCollider& a, const PlacedCollider& b, const Vec3& relative_way,
-                         double margin, FeatureList& out, std::vector<FeatureBlock>* blocks = nullptr);
+/// All feature pairs that may come within `margin` on the ways of their bodies (a superset; each pair once).
+/// `blocks`, if asked for, are of the list in its order; none is empty. Needs `boxes` of both.
+void list_met_features(const PlacedCollider& a, const BodyWay& way_a, const PlacedCollider& b,
+                       const BodyWay& way_b, double margin, FeatureList& out,
+                       std::vector<FeatureBlock>* blocks = nullptr);
 
-/// True if a ball that moves by `relative_way` more than the body may come within `margin` of one of its
-/// triangles. Needs `swept`.
-bool may_meet_ball(const PlacedCollider& body, const Vec3& centre, double radius, const Vec3& relative_way,
+/// The same of vertices that go each by itself. Needs the boxes of both.
+void list_swept_features(const SweptCollider& a, const SweptCollider& b, double margin, FeatureList& out);
+
+/// True if a ball may come within `margin` of a triangle of the body on their ways. Needs `boxes`.
+bool may_meet_ball(const PlacedCollider& body, const BodyWay& way, const BodyWay& ball, double radius,
                    double margin);
 
 /// True if a triangle of a surely crosses one of b at `start`. Needs `boxes` of both.

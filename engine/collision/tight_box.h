@@ -65,25 +65,6 @@ inline TightBox box_of_path(const Vec3& p, const Vec3& q, double radius) {
   return box;
 }
 
-/// A way along which boxes are stretched.
-struct TightWay {
-  BoxLanes low = {0.0F, 0.0F, 0.0F, 0.0F}, high = {0.0F, 0.0F, 0.0F, 0.0F};
-
-  TightWay() = default;
-  explicit TightWay(const Vec3& way) {
-    low = lesser(low,
-                 BoxLanes{round_down(way[0]), round_down(way[1]), round_down(way[2]), round_down(way.sum())});
-    high = greater(high, BoxLanes{round_up(way[0]), round_up(way[1]), round_up(way[2]), round_up(way.sum())});
-  }
-};
-
-inline TightBox stretched(const TightBox& box, const TightWay& way) {
-  TightBox result;
-  result.low = box.low + way.low;
-  result.high = box.high + way.high;
-  return result;
-}
-
 /// How far apart two boxes are along each axis, m, and in the sum of coordinates; negative where they
 /// overlap.
 inline BoxLanes apart(const TightBox& a, const TightBox& b) {

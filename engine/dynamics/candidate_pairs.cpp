@@ -376,7 +376,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
   match_pairs(bodies, find_pairs(bodies, work, is_active), work, state);
 
   struct Needs {
-    bool place = false, boxes = false, swept = false, predicted = false;
+    bool place = false, boxes = false, predicted = false;
   };
   std::vector<Needs> needs(bodies.size());
   core::parallel_for(work.pairs.size(), 64, [&](std::size_t p) {
@@ -391,9 +391,8 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     for (const int i : {pair.a, pair.b}) {
       Needs& n = needs[at(i)];
       n.place = true;
-      n.boxes = n.boxes || pair.needs_search || (pair.is_first_seen && !pair.is_analytic) ||
+      n.boxes = n.boxes || pair.needs_search || pair.is_fast || (pair.is_first_seen && !pair.is_analytic) ||
                 state.pairs[at(pair.state)].is_exempt;
-      n.swept = n.swept || pair.is_fast;
       n.predicted = n.predicted || pair.looks_ahead;
     }
   }
@@ -401,8 +400,7 @@ void find_candidate_pairs(const std::vector<Body>& bodies, const ContactSettings
     WorkBody& w = work.bodies[i];
     if (w.shape->kind == ShapeKind::plane) return;
     if (needs[i].place) place(w);
-    if (needs[i].boxes) collision::refit_boxes(w.placed);
-    if (needs[i].swept) sweep(w, w.predicted);
+    if (needs[i].boxes) place_in_boxes(w);
     if (needs[i].predicted) place_at(w, w.predicted, w.predicted_vertices);
   });
   core::parallel_for(work.pairs.size(), 4, [&](std::size_t p) {

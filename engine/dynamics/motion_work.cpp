@@ -57,6 +57,11 @@ void place(WorkBody& body) {
   body.is_placed = true;
 }
 
+void place_in_boxes(WorkBody& body) {
+  place(body);
+  if (body.placed.boxes.nodes.empty()) collision::refit_boxes(body.placed);
+}
+
 Vec3 direction_hint(const WorkBody& a, const WorkBody& b, const collision::FeaturePoints& points) {
   const Vec3& touch = points.points[0];
   if (!body::is_mesh(b.shape->kind)) return touch - b.start.translation;
@@ -165,14 +170,26 @@ void shorten(WorkBody& body, double share) {
   body.turn_angle *= share;
 }
 
-void sweep(WorkBody& body, const Pose& end) {
-  if (body.is_swept && is_same_pose(body.swept_end, end)) return;
-  place(body);
-  std::vector<Vec3> turned = std::move(body.placed.swept_to);
-  place_at(body, {end.rotation, body.start.translation}, turned);
-  collision::refit_swept_boxes(body.placed, body.placed.start, std::move(turned));
-  body.is_swept = true;
-  body.swept_end = end;
+collision::BodyWay straight_way(const WorkBody& body, const Pose& from, const Pose& to, double begin,
+                                double end) {
+  collision::BodyWay way;
+  way.centre = body.start.translation;
+  const auto between = [](double share, const auto& x, const auto& y) {
+    return (1.0 - share) * x + share * y;
+  };
+  const Vec3 way_from = from.translation - way.centre, way_to = to.translation - way.centre;
+  way.from = begin == 0.0 ? way_from : Vec3(between(begin, way_from, way_to));
+  way.to = end == 1.0 ? way_to : Vec3(between(end, way_from, way_to));
+  if (body.shape->kind == body::ShapeKind::sphere) return way;  // its one vertex does not turn
+  const auto turned = [&](const Quat& rotation) {
+    if (rotation.coeffs() == body.start.rotation.coeffs()) return Mat3(Mat3::Identity());
+    return (rotation * body.start.rotation.conjugate()).toRotationMatrix();
+  };
+  const Mat3 turned_from = turned(from.rotation), turned_to = turned(to.rotation);
+  way.turned_from = begin == 0.0 ? turned_from : Mat3(between(begin, turned_from, turned_to));
+  way.turned_to = end == 1.0 ? turned_to : Mat3(between(end, turned_from, turned_to));
+  way.least_length = std::min(1.0, std::abs(from.rotation.dot(to.rotation)));
+  return way;
 }
 
 double closest_approach(const Vec3& apart, const Vec3& way) {
@@ -189,9 +206,10 @@ double clearance_of_balls(const WorkBody& a, const Pose& end_a, const WorkBody& 
   const double between = closest_approach(apart, way) * (1.0 - 1e-9) - (a.reach + b.reach + bows);
   if (between > wanted || (turns_far(a) && turns_far(b))) return between;
   const WorkBody &ball = turns_far(a) ? a : b, &other = turns_far(a) ? b : a;
-  const Vec3 relative = turns_far(a) ? way : Vec3(-way);
+  const Pose &end_ball = turns_far(a) ? end_a : end_b, &end_other = turns_far(a) ? end_b : end_a;
   const bool may_meet =
-      collision::may_meet_ball(other.placed, ball.start.translation, ball.reach, relative, wanted + bows);
+      collision::may_meet_ball(other.placed, straight_way(other, other.start, end_other),
+                               straight_way(ball, ball.start, end_ball), ball.reach, wanted + bows);
   return may_meet ? between : std::nextafter(wanted, 1e300);
 }
 
@@ -210,9 +228,8 @@ std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose&
   search->start_b = b.start;
   search->end_a = end_a;
   search->end_b = end_b;
-  const Vec3 way_a = end_a.translation - a.start.translation, way_b = end_b.translation - b.start.translation;
-  collision::list_swept_features(a.placed, b.placed, way_b - way_a, margin, search->features,
-                                 &search->blocks);
+  collision::list_met_features(a.placed, straight_way(a, a.start, end_a), b.placed,
+                               straight_way(b, b.start, end_b), margin, search->features, &search->blocks);
   return search;
 }
 

@@ -56,8 +56,6 @@ struct alignas(64) WorkBody {
   bool is_placed = false;
   bool is_free = true;               // no contact: end is where it goes by itself
   collision::PlacedCollider placed;  // vertices at the start
-  bool is_swept = false;             // `placed.swept` is for the way to `swept_end`
-  Pose swept_end;
   // Everything that the body may meet is among the pairs if it ends within `reserve` of `looked_end`; one
   // that turns far, within the box.
   Pose looked_end;
@@ -279,6 +277,9 @@ void advance_turning(const WorkBody& body, double time, Quat& rotation, Vec3& sp
 /// Fills a body's vertices at the start of the step, once.
 void place(WorkBody& body);
 
+/// The same with the boxes over them.
+void place_in_boxes(WorkBody& body);
+
 /// Vertices (|V| x 3, world) at a pose.
 void place_at(const WorkBody& body, const Pose& pose, std::vector<Vec3>& out);
 
@@ -321,22 +322,24 @@ void shift_end(WorkBody& body, const Vec3& shift, const Vec3& turn);
 /// Lets the body go only this share of its way.
 void shorten(WorkBody& body, double share);
 
-/// Fills the boxes over the way to `end`, once.
-void sweep(WorkBody& body, const Pose& end);
+/// The straight way of a body's vertices from where they are at one pose to where they are at another, or
+/// between two shares of that.
+collision::BodyWay straight_way(const WorkBody& body, const Pose& from, const Pose& to, double begin = 0.0,
+                                double end = 1.0);
 
 /// Two that are `apart` and go straight, `way` against each other, come no closer than this, m.
 double closest_approach(const Vec3& apart, const Vec3& way);
 
 /// Two bodies, one of which turns far, surely stay so far apart, m: the one within a ball, and both, if that
-/// tells that they keep more than is `wanted`. Those that do not turn far must be swept to their ends.
+/// tells that they keep more than is `wanted`. Those that do not turn far must be placed in boxes.
 double clearance_of_balls(const WorkBody& a, const Pose& end_a, const WorkBody& b, const Pose& end_b,
                           double wanted);
 
 /// No point of the body moves further than this by its turn from start to `end`, m.
 double turn_bound(const WorkBody& body, const Pose& end);
 
-/// All features of a pair that come within `margin` on the way to these ends. Both bodies must be swept to
-/// them.
+/// All features of a pair that come within `margin` on the way to these ends. Both bodies must be placed in
+/// boxes.
 std::shared_ptr<const FeatureSearch> search_paths(const WorkBody& a, const Pose& end_a, const WorkBody& b,
                                                   const Pose& end_b, double margin);
 

@@ -92,22 +92,25 @@ class Soup {
 
   /// What the paths of the present velocities would bring together.
   std::vector<Meeting> find_hits() {
-    std::vector<std::vector<Vec3>> ends(bodies_.size());
+    std::vector<collision::SweptCollider> swept(bodies_.size());
     core::parallel_for(bodies_.size(), 4, [&](std::size_t i) {
-      ends[i].reserve(bodies_[i].positions.size());
+      swept[i].collider = bodies_[i].collider;
+      swept[i].start = bodies_[i].positions;
+      swept[i].end.reserve(bodies_[i].positions.size());
       for (std::size_t v = 0; v < bodies_[i].positions.size(); ++v)
-        ends[i].push_back(bodies_[i].positions[v] + time_step_ * bodies_[i].velocities[v]);
-      collision::refit_swept_boxes(placed_[i], placed_[i].start, ends[i]);
+        swept[i].end.push_back(bodies_[i].positions[v] + time_step_ * bodies_[i].velocities[v]);
+      collision::refit_swept_boxes(swept[i]);
     });
     return collect([&](std::size_t p, std::vector<Meeting>& out) {
       const SoupPair& pair = pairs_[p];
       const auto &a = bodies_[at(pair.a)], &b = bodies_[at(pair.b)];
       const double least = kLeastShare * pair.thickness;
       collision::FeatureList list;
-      collision::list_swept_features(placed_[at(pair.a)], placed_[at(pair.b)], Vec3::Zero(), least, list);
+      collision::list_swept_features(swept[at(pair.a)], swept[at(pair.b)], least, list);
       for (const FeaturePair& f : list) {
         const auto start = collision::gather(f, *a.collider, a.positions, *b.collider, b.positions);
-        const auto end = collision::gather(f, *a.collider, ends[at(pair.a)], *b.collider, ends[at(pair.b)]);
+        const auto end =
+            collision::gather(f, *a.collider, swept[at(pair.a)].end, *b.collider, swept[at(pair.b)].end);
         const double now = collision::measure(start, Vec3::UnitY()).gap;
         const auto path = collision::follow_paths(start, end, std::min(least, 0.5 * now), Vec3::UnitY());
         if (path.has_hit) out.push_back(describe(f, path.gap, static_cast<int>(p), pair, bodies_));

@@ -109,7 +109,7 @@ void PathTest::prepare(const std::vector<std::size_t>& due) {
   strays_.resize(work_.pairs.size());
   box_ways(due);
   core::parallel_for(due.size(), 16, [&](std::size_t k) { looks_[due[k]] = look_at(due[k]); });
-  std::vector<char> must_place(work_.bodies.size(), 0), must_sweep(work_.bodies.size(), 0);
+  std::vector<char> must_place(work_.bodies.size(), 0), must_box_in(work_.bodies.size(), 0);
   std::vector<std::size_t> to_search, turning;
   for (const std::size_t p : due) {
     if (looks_[p] == Look::apart) continue;
@@ -119,15 +119,14 @@ void PathTest::prepare(const std::vector<std::size_t>& due) {
     const bool is_turning = looks_[p] == Look::turning;
     (is_turning ? turning : to_search).push_back(p);
     if (is_turning && turning_.is_listed(pair)) continue;
-    for (const int i : {pair.a, pair.b})
-      if (!is_turning || !turns_far(work_.bodies[at(i)])) must_sweep[at(i)] = 1;
+    must_box_in[at(pair.a)] = must_box_in[at(pair.b)] = 1;
   }
   core::parallel_for(work_.bodies.size(), 8, [&](std::size_t i) {
     WorkBody& w = work_.bodies[i];
     if (!must_place[i] || w.shape->kind == ShapeKind::plane) return;
     place(w);
     place_at(w, w.end, w.end_vertices);
-    if (must_sweep[i]) sweep(w, w.end);
+    if (must_box_in[i]) place_in_boxes(w);
   });
   turning_.divide(turning);
   core::parallel_for(to_search.size(), 1, [&](std::size_t k) {

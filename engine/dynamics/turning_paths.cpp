@@ -121,16 +121,14 @@ void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
     const double wanted = kNear * pair.kept_gap;
     apart_[pairs[k]] = is_listed(pair) ? 0.0 : clearance_of_balls(a, a.end, b, b.end, wanted);
   });
-  enum class Need : char { nothing, ends, boxes };
-  std::vector<std::array<Need, kLevels>> needs(work_.bodies.size());
+  std::vector<std::array<char, kLevels>> needs(work_.bodies.size());
   std::vector<std::size_t> to_list;
   for (const std::size_t p : pairs) {
     if (!is_followed(p)) continue;
     WorkPair& pair = work_.pairs[p];
     const std::size_t level = level_of(pair);
-    const Need need = is_listed(pair) ? Need::ends : Need::boxes;
-    for (const int i : {pair.a, pair.b}) needs[at(i)][level] = std::max(needs[at(i)][level], need);
-    if (need != Need::boxes) continue;
+    needs[at(pair.a)][level] = needs[at(pair.b)][level] = 1;
+    if (is_listed(pair)) continue;
     const double slack = settings_.search_slack * pair.size;
     pair.known.searched =
         kNear * pair.kept_gap + std::max(kSlack * slack, std::min(kGrow * pair.known.searched, slack));
@@ -140,21 +138,19 @@ void TurningPaths::divide(const std::vector<std::size_t>& pairs) {
     to_list.push_back(p);
   }
   core::parallel_for(work_.bodies.size(), 1, [&](std::size_t i) {
-    for (std::size_t level = 0; level < kLevels; ++level) {
-      const Need need = needs[i][level];
-      if (need != Need::nothing) fill_parts(work_.bodies[i], level, need == Need::boxes, bodies_[i]);
-    }
+    for (std::size_t level = 0; level < kLevels; ++level)
+      if (needs[i][level]) fill_parts(work_.bodies[i], level, bodies_[i]);
   });
   core::parallel_for(to_list.size(), 1, [&](std::size_t k) { list_parts(work_.pairs[to_list[k]]); });
 }
 
 // A body has one way, whoever it meets: where it is divided further than it turns, vertices stay on the
 // straight lines between the ends of its own parts.
-void TurningPaths::fill_parts(const WorkBody& w, std::size_t level, bool has_boxes, Divided& divided) const {
+void TurningPaths::fill_parts(const WorkBody& w, std::size_t level, Divided& divided) const {
   const int count = 1 << level, halvings = count / w.straight_parts;
   std::vector<Part>& parts = divided[level];
   parts.assign(at(count), {});
-  Positions own_begin = w.placed.start, own_end, turned;
+  Positions own_begin = w.placed.start, own_end;
   Pose begin, end = w.start;
   for (int k = 0; k < count; ++k) {
     Part& part = parts[at(k)];
@@ -172,25 +168,24 @@ void TurningPaths::fill_parts(const WorkBody& w, std::size_t level, bool has_box
       for (std::size_t v = 0; v < part.to.size(); ++v)
         part.to[v] = own_begin[v] + share * (own_end[v] - own_begin[v]);
     }
-    part.way = (end.translation - begin.translation) / halvings;
-    part.centre = begin.translation + (done - 1) * part.way;
-    if (!has_boxes) continue;
-    turned = part.to;
-    for (Vec3& p : turned) p -= part.way;
-    part.placed.collider = w.collider;
-    collision::refit_swept_boxes(part.placed, k == 0 ? w.placed.start : parts[at(k - 1)].to, turned);
+    part.way = straight_way(w, begin, end, static_cast<double>(done - 1) / halvings,
+                            static_cast<double>(done) / halvings);
   }
 }
 
 void TurningPaths::list_parts(WorkPair& pair) const {
   const std::size_t level = level_of(pair);
-  const double reach = work_.bodies[at(pair.a)].reach + work_.bodies[at(pair.b)].reach;
+  const WorkBody &body_a = work_.bodies[at(pair.a)], &body_b = work_.bodies[at(pair.b)];
+  const double reach = body_a.reach + body_b.reach;
   for (std::size_t k = 0; k < pair.known.part_count; ++k) {
     const Part &a = bodies_[at(pair.a)][level][k], &b = bodies_[at(pair.b)][level][k];
-    if (closest_approach(a.centre - b.centre, a.way - b.way) > reach + pair.known.searched) continue;
+    const Vec3 apart = (a.way.centre + a.way.from) - (b.way.centre + b.way.from),
+               way = (a.way.to - a.way.from) - (b.way.to - b.way.from);
+    if (closest_approach(apart, way) > reach + pair.known.searched) continue;
     PathMemory::Part part;
     part.number = k;
-    collision::list_swept_features(a.placed, b.placed, b.way - a.way, pair.known.searched, part.features);
+    collision::list_met_features(body_a.placed, a.way, body_b.placed, b.way, pair.known.searched,
+                                 part.features);
     if (part.features.empty()) continue;
     part.free_until.assign(part.features.size(), -1.0);
     pair.known.parts.push_back(std::move(part));

@@ -22,8 +22,7 @@ class TurningPaths {
   bool is_listed(const WorkPair& pair) const;
 
   /// Divides the ways of the bodies in these pairs, and lists for those that are not listed the features that
-  /// may meet on them. All are placed at their starts; of those who do not turn far in pairs that are not
-  /// listed the way is swept.
+  /// may meet on them. All are placed at their starts; those in pairs that are not listed, in boxes.
   void divide(const std::vector<std::size_t>& pairs);
 
   /// Where one of these pairs meets, in any order that is always the same. Without a hit ways that stay
@@ -33,10 +32,8 @@ class TurningPaths {
  private:
   // One body in one straight part of its way.
   struct Part {
-    std::vector<Vec3> to;              // |V| x 3, at its end
-    Vec3 way = Vec3::Zero();           // of the centre, m
-    Vec3 centre = Vec3::Zero();        // where it begins
-    collision::PlacedCollider placed;  // its swept boxes, where they are needed
+    std::vector<Vec3> to;    // |V| x 3, at its end
+    collision::BodyWay way;  // of the whole body
   };
   // How finely a way is divided: its straight parts are halved as often as the other body asks for.
   static constexpr int kLevels = 7;
@@ -44,7 +41,7 @@ class TurningPaths {
 
   bool is_followed(std::size_t pair_number) const;
   std::size_t level_of(const WorkPair& pair) const;
-  void fill_parts(const WorkBody& body, std::size_t level, bool has_boxes, Divided& divided) const;
+  void fill_parts(const WorkBody& body, std::size_t level, Divided& divided) const;
   void list_parts(WorkPair& pair) const;
   std::vector<PathHit> follow_part(const WorkPair& pair, PathMemory::Part& known, double& spare) const;
 

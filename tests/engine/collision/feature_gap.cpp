@@ -8,37 +8,15 @@
 
 #include "engine/core/index.h"
 #include "engine/core/random.h"
+#include "tests/engine/collision/rough_sheet.h"
+#include "tests/engine/draw.h"
 
 namespace shatterbox::collision {
 namespace {
 
 using core::at;
-
-Vec3 draw(core::Random& random) {
-  const double x = random.uniform(-1, 1);
-  const double y = random.uniform(-1, 1);
-  const double z = random.uniform(-1, 1);
-  return {x, y, z};
-}
-
-body::Shape sheet(core::Random& random, int n) {
-  body::Shape shape;
-  shape.kind = body::ShapeKind::shell;
-  for (int i = 0; i <= n; ++i) {
-    for (int j = 0; j <= n; ++j) {
-      const double y = random.uniform(-0.1, 0.1);
-      shape.surface.positions.push_back(Vec3(2.0 * i / n - 1.0, y, 2.0 * j / n - 1.0));
-    }
-  }
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const int a = i * (n + 1) + j, b = a + 1, c = a + n + 1, d = c + 1;
-      shape.surface.triangles.push_back({a, b, d});
-      shape.surface.triangles.push_back({a, d, c});
-    }
-  }
-  return shape;
-}
+using test::draw_vector;
+using test::rough_sheet;
 
 // Two rough sheets that stay where they are, one away from the other.
 struct StillSheets {
@@ -46,12 +24,12 @@ struct StillSheets {
   PlacedCollider pa, pb;
 
   StillSheets(core::Random& random, int n, const Vec3& away)
-      : a(make_collider(sheet(random, n))), b(make_collider(sheet(random, n))) {
+      : a(make_collider(rough_sheet(random, n))), b(make_collider(rough_sheet(random, n))) {
     pa.collider = a.get();
     pb.collider = b.get();
     pa.start = pb.start = a->vertices;
     for (std::size_t v = 0; v < pb.start.size(); ++v) pb.start[v] = b->vertices[v] + away;
-    for (PlacedCollider* placed : {&pa, &pb}) refit_swept_boxes(*placed, placed->start, placed->start);
+    for (PlacedCollider* placed : {&pa, &pb}) refit_boxes(*placed);
   }
 };
 
@@ -69,9 +47,10 @@ std::pair<FeatureList, FeatureList> list_copies(const Collider& collider, const 
   list_near_features(a, b, margin, lists.first);
   b.start = a.start;
   for (Vec3& v : b.start) v += 2.0 * margin * direction;
-  refit_swept_boxes(a, a.start, a.start);
-  refit_swept_boxes(b, b.start, b.start);
-  list_swept_features(a, b, (share - 2.0) * margin * direction, margin, lists.second);
+  refit_boxes(b);
+  BodyWay way;
+  way.to = (share - 2.0) * margin * direction;
+  list_met_features(a, {}, b, way, margin, lists.second);
   return lists;
 }
 
@@ -80,12 +59,12 @@ std::pair<FeatureList, FeatureList> list_copies(const Collider& collider, const 
 TEST_CASE("a list holds every feature pair within the margin, each once") {
   core::Random random(11);
   for (int n = 0; n < 20; ++n) {
-    const auto a = make_collider(sheet(random, 5)), b = make_collider(sheet(random, 4));
+    const auto a = make_collider(rough_sheet(random, 5)), b = make_collider(rough_sheet(random, 4));
     PlacedCollider pa, pb;
     pa.collider = a.get();
     pb.collider = b.get();
     pa.start = a->vertices;
-    const Vec3 shift = 0.3 * draw(random) + Vec3(0, 0.3, 0);
+    const Vec3 shift = 0.3 * draw_vector(random) + Vec3(0, 0.3, 0);
     for (const Vec3& v : b->vertices) pb.start.push_back(v + shift);
     refit_boxes(pa);
     refit_boxes(pb);
@@ -115,7 +94,7 @@ TEST_CASE("of great bodies, looked through in parts, a list holds every near ver
   const auto& [a, b, pa, pb] = sheets;
   const double margin = 0.05;
   FeatureList list;
-  list_swept_features(pa, pb, Vec3::Zero(), margin, list);
+  list_met_features(pa, {}, pb, {}, margin, list);
   std::set<std::uint64_t> keys;
   bool is_doubled = false;
   for (const auto& f : list) is_doubled = !keys.insert(f.key()).second || is_doubled;
@@ -140,8 +119,8 @@ TEST_CASE("the blocks of a list follow each other, and their leaves hold what th
     const auto& [a, b, pa, pb] = sheets;
     FeatureList list, alone;
     std::vector<FeatureBlock> blocks;
-    list_swept_features(pa, pb, Vec3::Zero(), 0.05, list, &blocks);
-    list_swept_features(pa, pb, Vec3::Zero(), 0.05, alone);
+    list_met_features(pa, {}, pb, {}, 0.05, list, &blocks);
+    list_met_features(pa, {}, pb, {}, 0.05, alone);
     REQUIRE(list.size() == alone.size());
     REQUIRE(!blocks.empty());
     CHECK(blocks.front().begin == 0);
@@ -156,7 +135,7 @@ TEST_CASE("the blocks of a list follow each other, and their leaves hold what th
       const std::size_t begin = at(blocks[k].begin),
                         end = k + 1 < blocks.size() ? at(blocks[k + 1].begin) : list.size();
       CHECK(begin < end);
-      const Vec3 direction = draw(random).normalized();
+      const Vec3 direction = draw_vector(random).normalized();
       const double apart = leaf_span(*a, blocks[k].leaf_a, pa.start, direction).least -
                            leaf_span(*b, blocks[k].leaf_b, pb.start, direction).most;
       for (std::size_t i = begin; i < end; ++i) {
@@ -177,7 +156,7 @@ TEST_CASE("the blocks of a list follow each other, and their leaves hold what th
 
 TEST_CASE("a list reaches to its margin along every axis, and no further") {
   core::Random random(29);
-  body::Shape flat = sheet(random, 3);
+  body::Shape flat = rough_sheet(random, 3);
   for (Vec3& v : flat.surface.positions) v.y() = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     body::Shape turned = flat;  // across this axis: boxes are as far apart as what is in them
@@ -199,7 +178,7 @@ TEST_CASE("a list reaches to its margin along every axis, and no further") {
 
 TEST_CASE("a list reaches to its margin along diagonals, and hardly further") {
   core::Random random(31);
-  body::Shape flat = sheet(random, 1);
+  body::Shape flat = rough_sheet(random, 1);
   for (Vec3& v : flat.surface.positions) v = Vec3(0.01 * v.x(), 0.0, 0.01 * v.z());
   for (const Vec3& along : {Vec3(1, 1, 1), Vec3(1, 1, -1), Vec3(-1, 1, 1), Vec3(1, -1, 1)}) {
     const Vec3 normal = along.normalized();
@@ -220,24 +199,25 @@ TEST_CASE("a list along paths holds every feature pair that comes within the mar
   core::Random random(23);
   std::size_t listed = 0, met = 0;
   for (int n = 0; n < 12; ++n) {
-    const auto a = make_collider(sheet(random, 4)), b = make_collider(sheet(random, 3));
-    PlacedCollider pa, pb;
+    const auto a = make_collider(rough_sheet(random, 4)), b = make_collider(rough_sheet(random, 3));
+    SweptCollider pa, pb;
     pa.collider = a.get();
     pb.collider = b.get();
     pa.start = a->vertices;
-    const Vec3 shift = 0.3 * draw(random) + Vec3(0, 0.4, 0), way_b = 0.6 * draw(random) - Vec3(0, 0.3, 0);
+    const Vec3 shift = 0.3 * draw_vector(random) + Vec3(0, 0.4, 0),
+               way_b = 0.6 * draw_vector(random) - Vec3(0, 0.3, 0);
     for (const Vec3& v : b->vertices) pb.start.push_back(v + shift);
     // Both turn and bend a little, so that their planes do not stay what they were.
-    std::vector<Vec3> end_a = pa.start, turned_b = pb.start;
-    for (Vec3& v : end_a) v += 0.05 * draw(random);
-    for (Vec3& v : turned_b) v += 0.1 * (v - shift).cross(Vec3(0.4, 1.0, -0.7)) + 0.05 * draw(random);
-    refit_swept_boxes(pa, pa.start, end_a);
-    refit_swept_boxes(pb, pb.start, turned_b);
-    std::vector<Vec3> end_b = turned_b;
-    for (Vec3& v : end_b) v += way_b;
+    pa.end = pa.start;
+    pb.end = pb.start;
+    for (Vec3& v : pa.end) v += 0.05 * draw_vector(random);
+    for (Vec3& v : pb.end)
+      v += 0.1 * (v - shift).cross(Vec3(0.4, 1.0, -0.7)) + 0.05 * draw_vector(random) + way_b;
+    refit_swept_boxes(pa);
+    refit_swept_boxes(pb);
     const double margin = 0.05;
     FeatureList list;
-    list_swept_features(pa, pb, way_b, margin, list);
+    list_swept_features(pa, pb, margin, list);
     std::set<std::uint64_t> keys;
     for (const auto& f : list) CHECK(keys.insert(f.key()).second);
     listed += keys.size();
@@ -246,7 +226,7 @@ TEST_CASE("a list along paths holds every feature pair that comes within the mar
         for (int j = 0; j < static_cast<int>(count_b); ++j) {
           const FeaturePair pair{kind, 0.0F, i, j};
           const auto start = gather(pair, *a, pa.start, *b, pb.start),
-                     end = gather(pair, *a, end_a, *b, end_b);
+                     end = gather(pair, *a, pa.end, *b, pb.end);
           double least = 1e300;
           for (int k = 0; k <= 12; ++k) {
             FeaturePoints now = start;
@@ -277,9 +257,9 @@ TEST_CASE("features are no further apart along any direction than they are") {
       f.is_flipped = kind == FeatureKind::triangle_vertex;
       f.radius_a = random.uniform(0.0, 0.1);
       f.radius_b = random.uniform(0.0, 0.1);
-      for (Vec3& p : f.points) p = draw(random);
+      for (Vec3& p : f.points) p = draw_vector(random);
       const FeatureGap gap = measure(f, Vec3::UnitY());
-      CHECK(separation_along(f, draw(random).normalized()) <= gap.gap + 1e-14);
+      CHECK(separation_along(f, draw_vector(random).normalized()) <= gap.gap + 1e-14);
       // Along the direction of the closest points, it is the gap.
       CHECK(separation_along(f, gap.normal) == Approx(gap.gap).margin(1e-13));
     }
@@ -292,8 +272,8 @@ TEST_CASE("a path that is called free keeps its least separation") {
   for (int n = 0; n < 3000; ++n) {
     FeaturePoints start, end;
     start.is_edge_edge = end.is_edge_edge = n % 2 == 0;
-    for (std::size_t i = 0; i < 4; ++i) start.points[i] = draw(random);
-    for (std::size_t i = 0; i < 4; ++i) end.points[i] = start.points[i] + 0.7 * draw(random);
+    for (std::size_t i = 0; i < 4; ++i) start.points[i] = draw_vector(random);
+    for (std::size_t i = 0; i < 4; ++i) end.points[i] = start.points[i] + 0.7 * draw_vector(random);
     const double least = 1e-3;
     if (measure(start, Vec3::UnitY()).gap < 2e-3) continue;
     const PathResult path = follow_paths(start, end, least, Vec3::UnitY());
@@ -321,8 +301,8 @@ TEST_CASE("what turns together is free, however near it is to what it turns with
       start.points = {Vec3(-1, gap, 0), Vec3(1, gap, 0), Vec3(0, 0, -1), Vec3(0, 0, 1)};
     else
       start.points = {Vec3(0, gap, 0), Vec3(-1, 0, -1), Vec3(1, 0, -1), Vec3(0, 0, 2)};
-    const Quat turn(Eigen::AngleAxisd(random.uniform(0.05, 0.5), draw(random).normalized()));
-    const Vec3 way = draw(random);
+    const Quat turn(Eigen::AngleAxisd(random.uniform(0.05, 0.5), draw_vector(random).normalized()));
+    const Vec3 way = draw_vector(random);
     FeaturePoints end = start, closing = start;
     for (std::size_t i = 0; i < 4; ++i) end.points[i] = closing.points[i] = turn * start.points[i] + way;
     const PathResult path = follow_paths(start, end, least, Vec3::UnitY());

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "engine/collision/analytic_contact.h"
+#include "tests/engine/draw.h"
 #include "tests/engine/dynamics/bodies.h"
-#include "tests/engine/dynamics/draw.h"
 
 namespace shatterbox::dynamics {
 namespace {

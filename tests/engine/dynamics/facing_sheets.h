@@ -52,7 +52,7 @@ class FacingSheets {
   }
 
   void search(double margin) {
-    for (dynamics::WorkBody* w : {&a, &b}) sweep(*w, w->end);
+    for (dynamics::WorkBody* w : {&a, &b}) place_in_boxes(*w);
     pair.search = search_paths(a, a.end, b, b.end, margin);
     pair.known = dynamics::PathMemory();
   }

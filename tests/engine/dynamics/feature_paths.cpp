@@ -9,7 +9,7 @@
 
 #include "engine/collision/feature_gap.h"
 #include "engine/dynamics/motion_work.h"
-#include "tests/engine/dynamics/draw.h"
+#include "tests/engine/draw.h"
 #include "tests/engine/dynamics/facing_sheets.h"
 
 namespace shatterbox::dynamics {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/dynamics/motion_work.h"
-#include "tests/engine/dynamics/draw.h"
+#include "tests/engine/draw.h"
 
 namespace shatterbox::dynamics {
 namespace {

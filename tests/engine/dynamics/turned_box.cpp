@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "tests/engine/dynamics/draw.h"
+#include "tests/engine/draw.h"
 
 namespace shatterbox::dynamics {
 namespace {
