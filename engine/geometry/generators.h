@@ -1,6 +1,6 @@
-// Surfaces by their sizes: sphere, ornament, bowl, wine glass, pane, boat, vase, bottle, egg, and any surface
-// of revolution. Triangles are near-equilateral, of one size, and without directions that cracks could
-// follow; vertices lie on the exact surface, so that a finer mesh is the same shape. y is up. The same
+// Surfaces by their sizes: sphere, ornament, bowl, wine glass, pane, boat, vase, bottle, egg, lathe, and any
+// surface of revolution. Triangles are near-equilateral, of one size, and without directions that cracks
+// could follow; vertices lie on the exact surface, so that a finer mesh is the same shape. y is up. The same
 // numbers give the same mesh to the bit.
 #pragma once
 
@@ -122,6 +122,19 @@ struct EggSizes {
 };
 core::Result<TriangleMesh> make_egg(const EggSizes& sizes, const Meshing& meshing);
 
+/// What is turned on a lathe: a column, a plate, a cup, a ring. Closed, it is finer than twice its wall, as a
+/// vase.
+struct LatheSizes {
+  /// (radius, height), m: from one end to the other, either way round. Only the ends may be on the axis; the
+  /// last may be the first, which makes a ring.
+  std::vector<Vec2> profile;
+  bool is_smooth = false;  // the curve that rounds all corners: a quadratic B-spline of the points
+  bool is_closed = false;  // ends that are not on the axis are joined to it by discs; for solids
+};
+/// What is wrong with it, or nothing.
+std::optional<std::string> find_fault(const LatheSizes& sizes);
+core::Result<TriangleMesh> make_lathe(const LatheSizes& sizes, const Meshing& meshing);
+
 /// An upright animal in bands of armour: feet on y = 0, looking along z, 0.85 as wide as high. From an
 /// implicit surface; closed. Edges are at most an eightieth of its height; `Meshing::jitter` and `seed` do
 /// not apply.
@@ -150,8 +163,8 @@ struct ProfileSegment {
 };
 
 /// Turns a profile about the y axis. Segments follow each other; only the ends of the whole may touch the
-/// axis. The rings where segments meet are kept as edges. Faces look to the right of the profile's direction:
-/// a profile that goes up has its faces outside.
+/// axis, or, away from it, each other: a ring. The rings where segments meet are kept as edges. Faces look to
+/// the right of the profile's direction: a profile that goes up has its faces outside.
 core::Result<PartedMesh> make_surface_of_revolution(const std::vector<ProfileSegment>& profile,
                                                     const Meshing& meshing);
 

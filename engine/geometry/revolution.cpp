@@ -167,19 +167,25 @@ core::Result<PartedMesh> make_surface_of_revolution(const std::vector<ProfileSeg
   if (const auto fault = find_fault(meshing, extent)) return core::Error{*fault};
 
   const Profile profile(segments, meshing.edge_length);
-  const std::vector<Ring> rings = lay_rings(profile, meshing);
+  std::vector<Ring> rings = lay_rings(profile, meshing);
   // Too fine for anything: the same sentence as for an edge length that is too short for the extent.
   if (rings.empty()) return core::Error{*find_fault(meshing, std::numeric_limits<double>::max())};
   for (const Ring& ring : rings)
     if (!ring.is_end && profile.point(ring.segment, ring.s).x() <= 0.0)
       return core::Error{"segment " + std::to_string(ring.segment + 1) + " of the profile crosses the axis"};
 
+  const bool is_round = segments.front().from == segments.back().to && segments.front().from.x() > 0.0;
+  if (is_round) rings.pop_back();
   SurfaceWalk walk = make_walk(profile, rings);
   PartedMesh result;
   for (const Vec3& parameter : walk.parameters) result.mesh.positions.push_back(walk.position(parameter));
   for (std::size_t r = 1; r < rings.size(); ++r) {
     stitch(rings[r - 1], rings[r], result.mesh.triangles);
     result.parts.resize(result.mesh.triangles.size(), segments[rings[r].segment].part);
+  }
+  if (is_round) {
+    stitch(rings.back(), rings.front(), result.mesh.triangles);
+    result.parts.resize(result.mesh.triangles.size(), segments.back().part);
   }
   make_irregular(result.mesh, walk, meshing.jitter, meshing.seed);
   return result;

@@ -65,6 +65,9 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const geometry::WineGlassSizes& sizes) const {
     return with_parts(geometry::make_wine_glass(sizes, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const geometry::LatheSizes& sizes) const {
+    return with_parts(geometry::make_lathe(sizes, meshing));
+  }
   core::Result<geometry::PartedMesh> operator()(const FigureShape& figure) const {
     return with_parts(geometry::make_figure(figure.height, meshing));
   }
@@ -75,6 +78,12 @@ struct Generate {
     return core::Error{"not a generated shape"};
   }
 };
+
+double widest_radius(const geometry::LatheSizes& lathe) {
+  double widest = 0.0;
+  for (const Vec2& point : lathe.profile) widest = std::max(widest, point.x());
+  return widest;
+}
 
 /// A length that the shape is large against: the first, coarse mesh only tells its area.
 double coarse_edge(const MeshShape& shape) {
@@ -89,6 +98,7 @@ double coarse_edge(const MeshShape& shape) {
   if (const auto* figure = std::get_if<FigureShape>(&shape)) return figure->height / 40.0;
   if (const auto* glass = std::get_if<geometry::WineGlassSizes>(&shape)) return 0.2 * glass->radius;
   if (const auto* egg = std::get_if<geometry::EggSizes>(&shape)) return 0.2 * egg->radius;
+  if (const auto* lathe = std::get_if<geometry::LatheSizes>(&shape)) return 0.2 * widest_radius(*lathe);
   const auto& pane = std::get<PaneShape>(shape);
   return 0.1 * std::min(pane.width, pane.height);
 }

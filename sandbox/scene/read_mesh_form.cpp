@@ -18,9 +18,9 @@ struct Shapes {
   const char* kind;
   std::vector<std::string> known;
 };
-const Shapes kShellShapes{"shell",
-                          {"ornament", "sphere", "bowl", "wine_glass", "pane", "boat", "bottle", "egg"}};
-const Shapes kSolidShapes{"solid", {"sphere", "slab", "bricks", "vase", "bottle", "egg", "figure"}};
+const Shapes kShellShapes{
+    "shell", {"ornament", "sphere", "bowl", "wine_glass", "pane", "boat", "bottle", "egg", "lathe"}};
+const Shapes kSolidShapes{"solid", {"sphere", "slab", "bricks", "vase", "bottle", "egg", "figure", "lathe"}};
 /// What goes by another name here.
 struct OtherName {
   const char *name, *what, *hint;
@@ -32,6 +32,9 @@ constexpr const char* kGlass = "a drinking glass or cup is a high bowl, or a win
 constexpr const char* kTumbler =
     "write kind = \"shell\", shape = \"bowl\", radius = 0.037, foot_radius = 0.03, foot_height = 0, "
     "height = 0.1, thickness = 0.0015; or shape = \"wine_glass\"";
+constexpr const char* kTurned = "what is round about an axis is turned on a lathe";
+constexpr const char* kColumn =
+    "write shape = \"lathe\", profile = [[0.1, 0], [0.1, 1]]: a radius and a height in metres for each point";
 constexpr const char* kSheet = "a flat sheet is a pane";
 constexpr const char* kPane = "write kind = \"shell\", shape = \"pane\", width = 0.3, height = 0.2";
 constexpr OtherName kOtherNames[] = {
@@ -49,12 +52,21 @@ constexpr OtherName kOtherNames[] = {
     {"tumbler", kGlass, kTumbler},
     {"cup", kGlass, kTumbler},
     {"mug", kGlass, kTumbler},
+    {"cylinder", kTurned, kColumn},
+    {"column", kTurned, kColumn},
+    {"pillar", kTurned, kColumn},
+    {"cone", kTurned, kColumn},
+    {"tube", kTurned, kColumn},
+    {"pipe", kTurned, kColumn},
+    {"ring", kTurned, kColumn},
+    {"torus", kTurned, kColumn},
 };
-const std::vector<std::string> kShapeKeys{
-    "radius",      "neck_radius", "neck_height",  "cap",           "foot_radius", "foot_height",
-    "height",      "width",       "brick",        "edge_length",   "length",      "beam",
-    "depth",       "sheer",       "belly_radius", "rim_radius",    "wall",        "neck_length",
-    "stem_radius", "stem_length", "blunt_height", "pointed_height"};
+const std::vector<std::string> kShapeKeys{"radius",       "neck_radius",    "neck_height",  "cap",
+                                          "foot_radius",  "foot_height",    "height",       "width",
+                                          "brick",        "edge_length",    "length",       "beam",
+                                          "depth",        "sheer",          "belly_radius", "rim_radius",
+                                          "wall",         "neck_length",    "stem_radius",  "stem_length",
+                                          "blunt_height", "pointed_height", "profile",      "smooth"};
 
 /// Where a mesh file named in a scene lies: beside the scene, or, as one that is named at its call may, where
 /// the program runs.
@@ -221,6 +233,33 @@ geometry::EggSizes read_egg(TableReader& reader) {
   return sizes;
 }
 
+geometry::LatheSizes read_lathe(TableReader& reader, bool is_sheet) {
+  geometry::LatheSizes lathe;
+  lathe.is_closed = !is_sheet;
+  lathe.is_smooth = reader.truth("smooth").value_or(false);
+  const TomlValue* value = reader.value("profile");
+  const auto refuse = [&](const Place& place, std::string message) {
+    reader.add_problem(
+        place, std::move(message),
+        "write profile = [[0.1, 0], [0.1, 1]]: a radius and a height in metres for each point, "
+        "from one end to the other");
+    lathe.profile = {Vec2(0.1, 0.0), Vec2(0.1, 0.2)};
+    return lathe;
+  };
+  if (value == nullptr) return refuse(reader.table().place, fmt::format("{} has no profile", reader.what()));
+  if (!value->is_array()) return refuse(value->place, "profile must be a list of points");
+  for (const TomlValue& point : value->items) {
+    if (!point.is_array() || point.items.size() != 2)
+      return refuse(point.place, "a point of a profile is a radius and a height");
+    const auto radius = reader.as_number(point.items[0], "the radius of a point", not_negative("m"));
+    const auto height = reader.as_number(point.items[1], "the height of a point", coordinate());
+    if (!radius || !height) return lathe;
+    lathe.profile.emplace_back(*radius, *height);
+  }
+  if (const auto fault = geometry::find_fault(lathe)) return refuse(value->place, *fault);
+  return lathe;
+}
+
 FigureShape read_figure(TableReader& reader) {
   FigureShape sizes;
   read_size(reader, "height", sizes.height);
@@ -238,6 +277,7 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
   if (shape == "wine_glass") return read_wine_glass(reader);
   if (shape == "figure") return read_figure(reader);
   if (shape == "egg") return read_egg(reader);
+  if (shape == "lathe") return read_lathe(reader, is_sheet);
   SphereShape sizes;
   read_size(reader, "radius", sizes.radius);
   return sizes;

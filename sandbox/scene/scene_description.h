@@ -54,10 +54,10 @@ struct FigureShape {
 struct BottleSheet {
   geometry::BottleSizes sizes;
 };
-using MeshShape =
-    std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes, PaneShape,
-                 geometry::BoatSizes, SlabShape, geometry::VaseSizes, geometry::BottleSizes,
-                 geometry::EggSizes, FigureShape, BottleSheet, geometry::WineGlassSizes>;
+using MeshShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
+                               PaneShape, geometry::BoatSizes, SlabShape, geometry::VaseSizes,
+                               geometry::BottleSizes, geometry::EggSizes, FigureShape, BottleSheet,
+                               geometry::WineGlassSizes, geometry::LatheSizes>;
 
 // Kinds of bodies.
 struct PlaneForm {};

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -99,6 +100,75 @@ TEST_CASE("vase, bottle and egg: closed, facing outwards, of the exact volume") 
 TEST_CASE("vase and bottle: too coarse an edge length does not push the wall through itself") {
   CHECK(mend_solid(make_vase({}, fine(0.1)).value()).diagnosis.findings.empty());
   CHECK(mend_solid(make_bottle({}, fine(0.1)).value()).diagnosis.findings.empty());
+}
+
+TEST_CASE("lathe: closed, facing outwards, of the exact volume, whichever way the profile goes") {
+  LatheSizes column;
+  column.is_closed = true;
+  column.profile = {{0.05, 0.0}, {0.05, 0.03}, {0.035, 0.04}, {0.028, 0.3}, {0.045, 0.34}};
+  double volume = 0.0;
+  for (std::size_t i = 1; i < column.profile.size(); ++i)
+    volume += swept_line(column.profile[i - 1], column.profile[i]);
+  check([&](double h) { return make_lathe(column, fine(h)).value(); }, volume, 0.01);
+  std::reverse(column.profile.begin(), column.profile.end());
+  check([&](double h) { return make_lathe(column, fine(h)).value(); }, volume, 0.01);
+
+  // By Pappus; and the same with its corners rounded, each by a parabola that cuts off a twelfth of a square.
+  LatheSizes ring;
+  ring.is_closed = true;
+  ring.profile = {{0.06, 0.0}, {0.1, 0.0}, {0.1, 0.04}, {0.06, 0.04}, {0.06, 0.0}};
+  const double around = 2.0 * core::kPi * 0.08, side = 0.04;
+  check([&](double h) { return make_lathe(ring, fine(h)).value(); }, around * side * side, 0.006);
+  ring.is_smooth = true;
+  check([&](double h) { return make_lathe(ring, fine(h)).value(); },
+        around * side * side * (1.0 - 4.0 / 24.0), 0.006);
+
+  // From the axis and to it, smooth: its ends are where the points are, along the lines there.
+  LatheSizes drop;
+  drop.is_closed = drop.is_smooth = true;
+  drop.profile = {{0.0, 0.0}, {0.05, 0.0}, {0.05, 0.08}, {0.0, 0.12}};
+  check([&](double h) { return make_lathe(drop, fine(h)).value(); },
+        swept({0.0, 0.0}, {0.05, 0.0}, {0.05, 0.04}) + swept({0.05, 0.04}, {0.05, 0.08}, {0.0, 0.12}), 0.01);
+}
+
+TEST_CASE("lathe: a thin wall is not pushed through itself, and a sheet stays open") {
+  LatheSizes pipe;
+  pipe.is_closed = true;
+  pipe.profile = {{0.047, 0.0}, {0.05, 0.0}, {0.05, 0.2}, {0.047, 0.2}, {0.047, 0.0}};
+  const TriangleMesh wall = make_lathe(pipe, fine(0.1)).value();
+  CHECK(mend_solid(wall).diagnosis.findings.empty());
+  LatheSizes cup;
+  cup.profile = {{0.0, 0.0}, {0.03, 0.0}, {0.04, 0.1}};
+  const TriangleMesh sheet = make_lathe(cup, fine(0.005)).value();
+  const EdgeTopology topology = build_edge_topology(sheet.triangles);
+  double border = 0.0;
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    if (!topology.is_boundary(static_cast<int>(e))) continue;
+    for (const int v : topology.edges[e])
+      CHECK(sheet.positions[static_cast<std::size_t>(v)].y() == Approx(0.1).epsilon(1e-12));
+    border += 1.0;
+  }
+  CHECK(border > 20.0);
+}
+
+TEST_CASE("lathe: profiles that make no sense are refused with a sentence") {
+  const auto fault = [](std::vector<Vec2> points) {
+    LatheSizes sizes;
+    sizes.profile = std::move(points);
+    sizes.is_closed = true;
+    const auto made = make_lathe(sizes, fine(0.01));
+    return made ? std::string() : made.error();
+  };
+  CHECK(fault({{0.1, 0.0}}) == "a lathe's profile needs at least two points");
+  CHECK(fault({{0.1, 0.0}, {-0.1, 0.1}}).find("point 2 of a lathe's profile is on the other side") == 0);
+  CHECK(fault({{0.1, 0.0}, {0.0, 0.1}, {0.1, 0.2}}).find("point 2 of a lathe's profile is on the axis") == 0);
+  CHECK(fault({{0.1, 0.0}, {0.1, 0.0}}) == "point 2 of a lathe's profile is where the one before it is");
+  CHECK(fault({{0.0, 0.0}, {0.0, 1.0}}).find("no radius") != std::string::npos);
+  CHECK(fault({{0.0, 0.0}, {0.1, 0.0}}).find("nothing inside") != std::string::npos);
+  CHECK(fault({{0.1, 0.0}, {0.2, 0.1}, {0.1, 0.1}, {0.2, 0.0}}) ==
+        "a lathe's profile meets itself: its lines from point 1 and from point 3");
+  CHECK(fault({{0.1, 0.0}, {0.1, 0.2}, {0.1, 0.1}}).find("meets itself") != std::string::npos);
+  CHECK(fault({{0.1, 0.0}, {0.1, 0.1}, {0.2, 0.2}}).empty());
 }
 
 TEST_CASE("vase, bottle and egg: sizes that make no sense are refused with a sentence") {
