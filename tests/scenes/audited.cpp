@@ -105,6 +105,7 @@ TEST_CASE("scenes at 60 and 240 and 960 steps a second: nothing crosses and nobo
                                  {"vase", "0.65", true},
                                  {"lintel", "0.55", true},
                                  {"overload", "1", true},
+                                 {"colonnade", "0.7", true},
                                  {"crater", "0.4", true},
                                  {"wall", "0.45", true},
                                  {"brick_wall", "0.6", true},

@@ -87,6 +87,17 @@ TEST_CASE("overload: bears five bricks, though they sleep, and breaks under the 
   CHECK(report["breaks"][0]["time"].get<double>() > 0.9);  // the sixth comes at 0.9 s
 }
 
+TEST_CASE("colonnade: bears its slabs, until a ball takes a column away") {
+  const Folder folder;
+  const auto standing = play(folder, "colonnade --set throw.at=9 --seconds 0.5");
+  CHECK(standing["breaks"].empty());
+  CHECK(standing["conservation"]["kinetic_energy_j"].get<double>() < 0.1);
+  const auto report = play_audited("colonnade --seconds 0.8", {20, 150});
+  CHECK(report["breaks"][0]["body"] == "column[7]");
+  const auto& left = report["conservation"]["potential_energy_j"];
+  CHECK(left.get<double>() < standing["conservation"]["potential_energy_j"].get<double>() - 200.0);
+}
+
 TEST_CASE("brick_wall: the ball breaks some of ninety bricks and takes others along") {
   const auto report = play_audited("brick_wall --seconds 0.5", {20, 150});
   CHECK(count_breaks_of(report, "ball") == 0);
