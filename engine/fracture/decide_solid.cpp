@@ -270,6 +270,7 @@ class SolidDecider {
       setup.centres.push_back({press.contact.point, press.contact.radius});
     setup.least_size = kToldSize * model().mean_edge_length;
     setup.energy_budget = settings_.has_energy_guard ? energy_left() : -1.0;
+    setup.resting_share = force_.resting_share();
     setup.first_id = subject_.first_cut_id + decision_.cracks;
     return setup;
   }
@@ -307,6 +308,7 @@ class SolidDecider {
     decision_.new_area += tracer.area();
     decision_.grain_area += tracer.grain_area();
     decision_.fracture_energy += tracer.energy();
+    decision_.elastic_energy += tracer.given();
     decision_.trace_ms += core::milliseconds_since(start);
     return !tracer.is_out_of_energy() && tracer.area() >= kSolidGrowthThatCounts * decision_.new_area;
   }

@@ -100,6 +100,8 @@ class SolidForce {
   const std::vector<SolidPress>& presses() const { return presses_; }
   const SolidPress& hardest() const { return presses_[hardest_]; }
   double duration() const { return duration_; }  // s
+  /// Of all forces as they press on the intact body, what rests on it or bears it.
+  double resting_share() const;
 
  private:
   double spin_stress() const;

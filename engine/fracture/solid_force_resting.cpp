@@ -20,6 +20,15 @@ bool SolidForce::is_resting(const SolidPress& press) const {
   return !impact_.given_duration && press.load->is_resting && !is_collision(*press.load);
 }
 
+double SolidForce::resting_share() const {
+  double resting = 0.0, all = 0.0;
+  for (const SolidPress& press : presses_) {
+    all += press.first_force;
+    if (is_resting(press)) resting += press.first_force;
+  }
+  return all > 0.0 ? resting / all : 0.0;
+}
+
 /// N, |dof|, of these as they press on the intact body; empty: nothing does.
 VecX SolidForce::resting_force(const SolidStage& stage, const std::vector<Size>& presses) const {
   VecX sum;

@@ -19,6 +19,7 @@ constexpr double kLeastArea = 0.25;  // of a crack, in squares of the least size
 
 constexpr Size kMostAhead = 8;  // fields that are found at once
 
+constexpr double kMostlyResting = 0.5;     // of the forces: what else there is does not hold the crack back
 constexpr double kNeedsToughness = 1e300;  // Pa: no stress lets a crack run below K_Ic
 
 constexpr double kBesideCosine = 0.7;  // between two cracks that run beside each other
@@ -94,14 +95,19 @@ double SolidTracer::weakness_at(int element) const {
 
 bool SolidTracer::pay(double area, double weakness) {
   const double cost = weakness * setup_.fracture_energy * area;
-  if (setup_.energy_budget >= 0.0 && energy_ + cost > setup_.energy_budget) {
+  if (setup_.energy_budget >= 0.0 && energy_ + cost > setup_.energy_budget + given_) {
     is_out_of_energy_ = true;
     return false;
   }
+  charge(area, weakness);
+  return true;
+}
+
+void SolidTracer::charge(double area, double weakness) {
+  const double cost = weakness * setup_.fracture_energy * area;
   energy_ += cost;
   new_energy_ += cost;
   if (weakness < 1.0) new_grain_area_ += area;
-  return true;
 }
 
 double SolidTracer::tension_across(int cell, const Vec3& gradient) const {
@@ -111,14 +117,17 @@ double SolidTracer::tension_across(int cell, const Vec3& gradient) const {
 }
 
 /// Takes a cell into the crack; its crossed facets become fronts.
-void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
+void SolidTracer::enter(const Step& step) {
+  const int cell = step.cell;
   entered_[at(cell)] = present_id_ + 1;
   active_.push_back(cell);
-  middles_.push_back(cap.middle);
-  crack_area_ += cap.area;
-  new_area_ += cap.area;
+  middles_.push_back(step.cap.middle);
+  crack_area_ += step.cap.area;
+  new_area_ += step.cap.area;
+  crack_force_ += step.cap.area * step.tension;
+  crack_drive_ += step.cap.area * step.intensity * step.intensity;
+  crack_pull_ += step.cap.area * std::max(0.0, step.tension);
   const Vec3 gradient = field_.gradient(complex_.cells[at(cell)].element);
-  crack_force_ += cap.area * tension_across(cell, gradient);
   const geometry::SolidPart part = complex_.cells[at(cell)];
   for (int f = 0; f < part.facet_count; ++f) {
     const geometry::SolidFacet& facet =
@@ -127,9 +136,32 @@ void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
     if (next < 0 || facet.kind == geometry::FacetKind::crack || entered_[at(next)] == present_id_ + 1 ||
         !field_.crosses(facet))
       continue;
-    fronts_.push_back({tension_across(next, gradient), intensity, next_order_++, next});
+    fronts_.push_back({tension_across(next, gradient), step.solved, next_order_++, next});
     std::push_heap(fronts_.begin(), fronts_.end());
   }
+}
+
+/// Over the most driven front, if the crack has not come there by now and its surface goes on there.
+std::optional<SolidTracer::Step> SolidTracer::next_step() {
+  std::pop_heap(fronts_.begin(), fronts_.end());
+  Step step;
+  step.cell = fronts_.back().cell;
+  step.solved = fronts_.back().intensity;
+  fronts_.pop_back();
+  if (entered_[at(step.cell)] == present_id_ + 1) return std::nullopt;
+  const int element = complex_.cells[at(step.cell)].element;
+  if (!field_.has_all(element)) return std::nullopt;
+  settle_cell(complex_, step.cell);
+  step.cap = field_.cap(step.cell);
+  if (!(step.cap.area > 0.0)) return std::nullopt;
+  if (setup_.grains != nullptr && runs_beside_crack(step.cell, step.cap)) return std::nullopt;
+  step.tension = tension_across(step.cell, field_.gradient(element));
+  const double mean = (crack_force_ + step.cap.area * step.tension) / (new_area_ + step.cap.area);
+  const double area = crack_area_ + step.cap.area;
+  step.intensity =
+      std::max(std::max({0.0, mean, step.tension}) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
+               step.solved * falling(solved_area_ / area));
+  return step;
 }
 
 /// From front to front, the most driven first. What drives a crack is K = tension sqrt(pi / 2 length), of the
@@ -140,59 +172,92 @@ void SolidTracer::enter(int cell, const CrackCap& cap, double intensity) {
 /// criterion of strength and toughness [Leg02]. Else what a crack needs to start would be told by the size of
 /// the element that it starts in.
 void SolidTracer::grow() {
+  halted_.clear();
   while (!fronts_.empty()) {
     core::stop_if_asked();
-    std::pop_heap(fronts_.begin(), fronts_.end());
-    const int cell = fronts_.back().cell;
-    const double solved = fronts_.back().intensity;
-    fronts_.pop_back();
-    if (entered_[at(cell)] == present_id_ + 1) continue;
-    const int element = complex_.cells[at(cell)].element;
-    if (!field_.has_all(element)) continue;
-    settle_cell(complex_, cell);
-    const CrackCap cap = field_.cap(cell);
-    if (!(cap.area > 0.0)) continue;
-    if (setup_.grains != nullptr && runs_beside_crack(cell, cap)) continue;
-    const double tension = tension_across(cell, field_.gradient(element));
-    const double mean = (crack_force_ + cap.area * tension) / (new_area_ + cap.area);
-    const double area = crack_area_ + cap.area;
-    const double intensity =
-        std::max(std::max({0.0, mean, tension}) * core::sqrt(0.5 * core::kPi * core::sqrt(area)),
-                 solved * falling(solved_area_ / area));
+    const std::optional<Step> step = next_step();
+    if (!step) continue;
+    const int element = complex_.cells[at(step->cell)].element;
     const double weakness = weakness_at(element);
-    const double excess = intensity * intensity - weakness * toughness_ * toughness_;
-    if ((excess < 0.0 && !(tension > strength_)) || !pay(cap.area, weakness)) {
+    const double excess = step->intensity * step->intensity - weakness * toughness_ * toughness_;
+    if ((excess < 0.0 && !(step->tension > strength_)) || !pay(step->cap.area, weakness)) {
       rests_.push_back(element);
       if (is_out_of_energy_) break;
+      halted_.push_back({step->tension, step->solved, next_order_++, step->cell});
       continue;
     }
-    enter(cell, cap, solved);
-    balance_ += cap.area * excess;
+    enter(*step);
+    balance_ += step->cap.area * excess;
     if (balance_ >= 0.0) bear_out();
   }
+  if (!is_out_of_energy_ && (!halted_.empty() || active_.size() > borne_out_.cells)) tear();
   fall_back();
+}
+
+/// What is smaller than the zone in which a crack of its material comes to be has no room for one that K_Ic
+/// could tell of: it tears as a whole, where what drives the crack right across has come to what the flaw's
+/// strength all over it would be. What is pulled tears at its strength so, whatever its size, and a bent bar
+/// when its side bears 2.1 times that (by a cohesive crack: 1.8 where it is a fifth of E G_c / strength^2
+/// deep, 3 at most [BP98] ch. 7).
+void SolidTracer::tear() {
+  if (strength_ == kNeedsToughness || !(setup_.resting_share > kMostlyResting)) return;
+  // Of the mean of K^2 over a crack that has grown under an even pull.
+  const auto needed = [&] { return core::kPi / 3.0 * core::sqrt(crack_area_) * strength_ * strength_; };
+  const auto has_room = [&] { return needed() >= toughness_ * toughness_; };
+  const Extent before = extent();
+  fronts_ = halted_;
+  std::make_heap(fronts_.begin(), fronts_.end());
+  while (!fronts_.empty() && !has_room()) {
+    core::stop_if_asked();
+    const std::optional<Step> step = next_step();
+    if (!step) continue;
+    charge(step->cap.area, weakness_at(complex_.cells[at(step->cell)].element));
+    enter(*step);
+  }
+  // The stress does the same work on its opening as the forces outside, which holds up to 2 G / strength; of
+  // a hinge two thirds of that in the middle of what is pulled.
+  const double work = setup_.resting_share * 4.0 / 3.0 * setup_.fracture_energy / strength_ * crack_pull_;
+  const double lacking =
+      setup_.energy_budget >= 0.0 ? std::max(0.0, energy_ - setup_.energy_budget - given_) : 0.0;
+  if (fronts_.empty() && !has_room() && crack_drive_ >= needed() * new_area_ && lacking <= work) {
+    given_ += lacking;
+    bear_out();
+    rests_.clear();
+    return;
+  }
+  take_back(before);
+}
+
+SolidTracer::Extent SolidTracer::extent() const {
+  return {active_.size(), crack_area_,  new_area_,    new_grain_area_,
+          new_energy_,    crack_force_, crack_drive_, crack_pull_};
 }
 
 void SolidTracer::bear_out() {
   balance_ = 0.0;
-  borne_out_ = {active_.size(), crack_area_, new_area_, new_grain_area_, new_energy_, crack_force_};
+  borne_out_ = extent();
+}
+
+void SolidTracer::take_back(const Extent& extent) {
+  for (Size i = extent.cells; i < active_.size(); ++i) entered_[at(active_[i])] = 0;
+  active_.resize(extent.cells);
+  middles_.resize(extent.cells);
+  energy_ += extent.new_energy - new_energy_;
+  crack_area_ = extent.area;
+  new_area_ = extent.new_area;
+  new_grain_area_ = extent.new_grain_area;
+  new_energy_ = extent.new_energy;
+  crack_force_ = extent.force;
+  crack_drive_ = extent.drive;
+  crack_pull_ = extent.pull;
 }
 
 /// To where the present crack was paid for.
 void SolidTracer::fall_back() {
   if (active_.size() > borne_out_.cells) is_out_of_energy_ = false;  // what is given back others may spend
-  for (Size i = borne_out_.cells; i < active_.size(); ++i) {
-    entered_[at(active_[i])] = 0;
+  for (Size i = borne_out_.cells; i < active_.size(); ++i)
     rests_.push_back(complex_.cells[at(active_[i])].element);
-  }
-  active_.resize(borne_out_.cells);
-  middles_.resize(borne_out_.cells);
-  energy_ += borne_out_.new_energy - new_energy_;
-  crack_area_ = borne_out_.area;
-  new_area_ = borne_out_.new_area;
-  new_grain_area_ = borne_out_.new_grain_area;
-  new_energy_ = borne_out_.new_energy;
-  crack_force_ = borne_out_.force;
+  take_back(borne_out_);
 }
 
 /// After it has grown: cuts along the present crack, unless it is so small that the elements cannot tell of
@@ -223,7 +288,7 @@ void SolidTracer::begin(int id, double area, double strength) {
   next_order_ = 0;
   present_id_ = id;
   crack_area_ = solved_area_ = area;
-  new_area_ = new_grain_area_ = new_energy_ = crack_force_ = 0.0;
+  new_area_ = new_grain_area_ = new_energy_ = crack_force_ = crack_drive_ = crack_pull_ = 0.0;
   strength_ = strength;
   bear_out();
   if (lengths_.size() <= at(id)) lengths_.resize(at(id) + 1, 0.0);
@@ -362,7 +427,9 @@ bool SolidTracer::start(const SolidCandidate& candidate, CrackValues field, std:
     return false;
   }
   if (!pay(cap.area, weakness_at(element))) return false;
-  enter(cell, cap, 0.0);
+  const double tension = tension_across(cell, field_.gradient(element));
+  enter(
+      {cell, cap, tension, 0.0, std::max(0.0, tension) * core::sqrt(0.5 * core::kPi * core::sqrt(cap.area))});
   bear_out();
   grow();
   if (!take()) {

@@ -54,6 +54,7 @@ struct SolidTracerSetup {
   std::vector<SolidLoadCentre> centres;
   double least_size = 0.0;     // m, of a crack, and of what is between two: what the elements can tell
   double energy_budget = 0.0;  // J, for this generation; below zero: no guard
+  double resting_share = 0.0;  // of the forces on it, those that stay while a crack opens
   int first_id = 0;            // tag of the first crack's facets
 };
 
@@ -77,6 +78,7 @@ class SolidTracer {
   double area() const { return area_; }              // m2, of the new cracks
   double grain_area() const { return grain_area_; }  // m2 of it, along grain boundaries
   double energy() const { return energy_; }          // J, used
+  double given() const { return given_; }            // J of it, by what rests on what tore as a whole
   bool is_out_of_energy() const { return is_out_of_energy_; }
 
  private:
@@ -92,7 +94,16 @@ class SolidTracer {
   /// How far the present crack has come.
   struct Extent {
     std::size_t cells = 0;
-    double area = 0.0, new_area = 0.0, new_grain_area = 0.0, new_energy = 0.0, force = 0.0;
+    double area = 0.0, new_area = 0.0, new_grain_area = 0.0, new_energy = 0.0, force = 0.0, drive = 0.0,
+           pull = 0.0;
+  };
+  /// A cell that the present crack might enter.
+  struct Step {
+    int cell = 0;
+    CrackCap cap;
+    double tension = 0.0;    // Pa
+    double solved = 0.0;     // Pa sqrt(m), of the front
+    double intensity = 0.0;  // Pa sqrt(m), that drives it there
   };
   bool is_shielded(const SolidCandidate& candidate) const;
   void look_ahead(const std::vector<SolidCandidate>& candidates, std::size_t first, std::size_t most,
@@ -100,16 +111,21 @@ class SolidTracer {
   bool start(const SolidCandidate& candidate, CrackValues field, std::vector<OpenCrack>& cracks);
   void begin(int id, double area, double strength);
   void bear_out();
+  Extent extent() const;
+  void take_back(const Extent& extent);
   void fall_back();
-  void enter(int cell, const CrackCap& cap, double intensity);
+  std::optional<Step> next_step();
+  void enter(const Step& step);
   double opening_of(const geometry::SolidFacet& facet) const;
   void grow();
+  void tear();
   double tension_across(int cell, const Vec3& gradient) const;
   std::optional<double> intensity_beside(int cell);
   bool runs_beside_crack(int cell, const CrackCap& cap) const;
   double boundary_weakness() const;
   double weakness_at(int element) const;
   bool pay(double area, double weakness);
+  void charge(double area, double weakness);
   bool take();
   void add_cells_beyond(std::vector<int>& cells);
   void cut();
@@ -126,19 +142,22 @@ class SolidTracer {
   std::vector<int> active_;    // cells of the present crack
   std::vector<Vec3> middles_;  // m, of its caps in them
   std::vector<Front> fronts_;  // heap
+  std::vector<Front> halted_;  // those where K is below K_Ic
   std::vector<int> rests_;     // elements that the present crack did not enter
   std::vector<SolidCandidate> stillborn_;
   int next_order_ = 0, crack_count_ = 0, present_id_ = 0;
   double crack_area_ = 0.0;      // m2, of the present crack
   double solved_area_ = 0.0;     // m2, of it when it was solved
   double crack_force_ = 0.0;     // N, across what of it is new
+  double crack_drive_ = 0.0;     // Pa2 m3: K^2 over that
+  double crack_pull_ = 0.0;      // N, across what of it is pulled
   double new_area_ = 0.0;        // m2, of that
   double new_grain_area_ = 0.0;  // m2 of that, along grain boundaries
   double new_energy_ = 0.0;      // J, for it
   double strength_ = 0.0;        // Pa, of the flaw where the present crack starts
   double balance_ = 0.0;         // Pa2 m3: K^2 - K_Ic^2 over what of its area is not borne out yet
   Extent borne_out_;             // of it: as far as what drives it pays for all of it
-  double area_ = 0.0, grain_area_ = 0.0, energy_ = 0.0, toughness_ = 0.0;
+  double area_ = 0.0, grain_area_ = 0.0, energy_ = 0.0, given_ = 0.0, toughness_ = 0.0;
   bool is_out_of_energy_ = false;
 };
 

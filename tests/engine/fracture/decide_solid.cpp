@@ -384,22 +384,30 @@ TEST_CASE("a crack's field: a plane stays one, a sphere closes") {
 
 namespace {
 
-/// One generation of cracks under a given uniform stress, from one place.
+using StressField = std::function<stress::SolidStress(const Vec3&)>;
+
+/// One generation of cracks under a given stress, from one place.
 struct Trace {
   double area = 0.0, energy = 0.0;
   bool is_out_of_energy = false;
   std::vector<SolidCandidate> stillborn;
 };
-Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
-            const std::optional<Vec3>& place, int id, double budget, std::vector<OpenCrack>& cracks,
-            double least_size = 0.0, const material::Material& material = {}) {
+Trace trace(geometry::SolidComplex& complex, const StressField& stress, const std::optional<Vec3>& place,
+            int id, double budget, std::vector<OpenCrack>& cracks, double least_size = 0.0,
+            const material::Material& material = {}, double resting_share = 0.0) {
   const auto contacts = find_solid_contacts(complex);
   const geometry::SolidMesh mesh = make_solid_mesh(complex, contacts);
   const VecX displacement = VecX::Zero(mesh.degree_of_freedom_count());
   const CrackTurns turns(complex.elements->mesh.tetrahedra.size());
   const stress::SolidVertexRank rank;
   GuideTrees trees(rank.of(*complex.elements));
-  const std::vector<stress::SolidStress> stresses(complex.cells.size(), stress);
+  std::vector<stress::SolidStress> stresses;
+  for (const geometry::SolidPart& cell : complex.cells) {
+    const geometry::TetMesh& elements = complex.elements->mesh;
+    Vec3 middle = Vec3::Zero();
+    for (const int v : elements.tetrahedra[at(cell.element)]) middle += 0.25 * elements.positions[at(v)];
+    stresses.push_back(stress(middle));
+  }
   const std::vector<int> pieces(complex.cells.size(), 0);
   SolidTracerSetup setup;
   setup.guides = {&stresses, &pieces, &turns, &trees, material.strength};
@@ -408,6 +416,7 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   setup.solved = {&mesh, &displacement};
   setup.centres = {{Vec3(0.0, 0.0, 0.5), 0.1}};
   setup.energy_budget = budget;
+  setup.resting_share = resting_share;
   setup.least_size = least_size;
   setup.first_id = id;
   SolidTracer tracer(complex, setup);
@@ -419,6 +428,13 @@ Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
   }
   settle(complex);
   return {tracer.area(), tracer.energy(), tracer.is_out_of_energy(), tracer.stillborn()};
+}
+
+Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress,
+            const std::optional<Vec3>& place, int id, double budget, std::vector<OpenCrack>& cracks,
+            double least_size = 0.0, const material::Material& material = {}, double resting_share = 0.0) {
+  const StressField even = [&](const Vec3&) { return stress; };
+  return trace(complex, even, place, id, budget, cracks, least_size, material, resting_share);
 }
 
 Trace trace(geometry::SolidComplex& complex, const stress::SolidStress& stress, const Vec3& place, int id,
@@ -459,14 +475,15 @@ TEST_CASE("a solid's crack starts by strength and toughness together, whatever t
   // less over its first element.
   const double tension = 1e7, mean = core::kPi / 3.0 * tension * tension;
   material::Material material;
-  const auto cracked = [&](double element_size, double toughness_share, double strength) {
+  const auto cracked = [&](double element_size, double toughness_share, double strength,
+                           double resting_share) {
     const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), element_size, "glass");
     geometry::SolidComplex complex = *subject.complex;
     material.fracture_energy = toughness_share * mean / material.young;
     material.strength = strength;
     std::vector<OpenCrack> cracks;
-    const Trace traced =
-        trace(complex, pull(2, tension), Vec3(0.03, 0.02, 0.11), 0, -1.0, cracks, element_size, material);
+    const Trace traced = trace(complex, pull(2, tension), Vec3(0.03, 0.02, 0.11), 0, -1.0, cracks,
+                               element_size, material, resting_share);
     CHECK(traced.energy == Approx(material.fracture_energy * traced.area));
     CHECK(traced.stillborn.empty() == (traced.area > 0.0));
     CHECK(cracks.size() == (traced.area > 0.0 ? 1 : 0));
@@ -476,9 +493,48 @@ TEST_CASE("a solid's crack starts by strength and toughness together, whatever t
   for (const double element_size : {0.2, 0.1, 0.07}) {
     if (test::kIsSanitized && element_size < 0.1) continue;
     CAPTURE(element_size);
-    CHECK(cracked(element_size, 0.8, 0.7 * tension));
-    CHECK_FALSE(cracked(element_size, 1.1, 0.7 * tension));  // though K is K_Ic when it is across
-    CHECK_FALSE(cracked(element_size, 0.8, 1.1 * tension));  // the flaw bears it, and one element has no K
+    CHECK(cracked(element_size, 0.8, 0.7 * tension, 0.0));
+    CHECK_FALSE(cracked(element_size, 1.1, 0.7 * tension, 0.0));  // though K is K_Ic when it is across
+    CHECK(cracked(element_size, 1.1, 0.7 * tension, 1.0));  // what rests on it tears it: K_Ic has no room
+    CHECK_FALSE(cracked(element_size, 0.8, 1.1 * tension, 1.0));  // the flaw bears it: no K of one element
+  }
+}
+
+TEST_CASE("a bent solid tears as a whole where it is too small for K_Ic and else asks for K_Ic") {
+  // From `side` at the top to minus that at the bottom. The mean of K^2 over a crack right across, had it all
+  // the strength, would be pi / 3 strength^2.
+  material::Material material;
+  material.strength = 1e7;
+  const double whole = core::kPi / 3.0 * material.strength * material.strength;
+  struct Bent {
+    double area = 0.0;
+    std::size_t pieces = 0;
+  };
+  const auto bend = [&](double element_size, double toughness_share, double side,
+                        double resting_share = 1.0) {
+    const SolidSubject subject = box(Vec3(0.5, 0.5, 0.5), element_size, "glass");
+    geometry::SolidComplex complex = *subject.complex;
+    material.fracture_energy = toughness_share * whole / material.young;
+    std::vector<OpenCrack> cracks;
+    const StressField bent = [&](const Vec3& x) { return pull(0, 2.0 * side * x.z() * material.strength); };
+    const Trace traced =
+        trace(complex, bent, Vec3(0.03, 0.02, 0.47), 0, -1.0, cracks, element_size, material, resting_share);
+    CHECK(traced.energy ==
+          Approx(material.fracture_energy * traced.area).margin(1e-9 * material.fracture_energy));
+    settle(complex);
+    return Bent{traced.area, split_solid(complex).pieces.size()};
+  };
+  for (const double element_size : {0.1, 0.07, 0.05}) {
+    if (test::kIsSanitized && element_size < 0.1) continue;
+    CAPTURE(element_size);
+    for (const double toughness_share : {1.5, 30.0}) {
+      CHECK(bend(element_size, toughness_share, 1.3).area < 0.01);
+      const Bent torn = bend(element_size, toughness_share, 2.5);
+      CHECK(torn.pieces == 2);
+      CHECK(torn.area > 0.3);  // where nothing pulls any more it turns to the side
+    }
+    CHECK(bend(element_size, 30.0, 2.5, 0.0).area < 0.01);  // a hit does not
+    CHECK(bend(element_size, 0.2, 1.3, 0.0).area > 0.1);
   }
 }
 
