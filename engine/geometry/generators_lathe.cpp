@@ -141,8 +141,13 @@ core::Result<TriangleMesh> make_lathe(const LatheSizes& sizes, const Meshing& wa
     if (to.x() > 0.0) profile.push_back(line(to, {0.0, to.y()}));
   }
   Meshing meshing = wanted;
-  if (sizes.is_closed) meshing.edge_length = std::min(meshing.edge_length, 2.0 * find_wall(points));
+  const double wall = sizes.is_closed ? find_wall(points) : 1e300;
+  meshing.edge_length = std::min(meshing.edge_length, 2.0 * wall);
   core::Result<PartedMesh> turned = make_surface_of_revolution(profile, meshing);
+  if (!turned && meshing.edge_length < wanted.edge_length)
+    return core::Error{"a lathe's wall of " + metres(wall) + " would need more than " +
+                       std::to_string(kMostTriangles) +
+                       " triangles: make it thicker, or a shell of that thickness"};
   if (!turned) return core::Error{turned.error()};
   return std::move(turned.value().mesh);
 }

@@ -169,6 +169,8 @@ TEST_CASE("lathe: profiles that make no sense are refused with a sentence") {
         "a lathe's profile meets itself: its lines from point 1 and from point 3");
   CHECK(fault({{0.1, 0.0}, {0.1, 0.2}, {0.1, 0.1}}).find("meets itself") != std::string::npos);
   CHECK(fault({{0.1, 0.0}, {0.1, 0.1}, {0.2, 0.2}}).empty());
+  CHECK(fault({{0.1, 0.0}, {0.10001, 0.0}, {0.10001, 1.0}, {0.1, 1.0}, {0.1, 0.0}})
+            .find("a lathe's wall of 1e-05 m would need more than 4000000 triangles: make it thicker") == 0);
 }
 
 TEST_CASE("vase, bottle and egg: sizes that make no sense are refused with a sentence") {
