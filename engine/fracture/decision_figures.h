@@ -16,9 +16,8 @@ struct DecisionFigures {
   double new_area = 0.0;         // m2, of the cracks (one face)
   double grain_area = 0.0;       // m2 of it, along grain boundaries
   double fracture_energy = 0.0;  // J, used
-  double elastic_energy =
-      0.0;  // J, that was there to be used, or came of what rests on it; 0 unless the body is overloaded
-  int generations = 0;  // solves
+  double elastic_energy = 0.0;   // J, there to be used, or given by loads; 0 unless the body is overloaded
+  int generations = 0;           // solves
   int factorisations = 0;
   double residual = 0.0;  // worst relative residual of the solves
   bool energy_guard_active = false;

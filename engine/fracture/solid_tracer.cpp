@@ -93,9 +93,13 @@ double SolidTracer::weakness_at(int element) const {
   return is_weak ? boundary_weakness() : 1.0;
 }
 
+/// J.
+double SolidTracer::cost_of(double area, double weakness) const {
+  return weakness * setup_.fracture_energy * area;
+}
+
 bool SolidTracer::pay(double area, double weakness) {
-  const double cost = weakness * setup_.fracture_energy * area;
-  if (setup_.energy_budget >= 0.0 && energy_ + cost > setup_.energy_budget + given_) {
+  if (setup_.energy_budget >= 0.0 && energy_ + cost_of(area, weakness) > setup_.energy_budget + given_) {
     is_out_of_energy_ = true;
     return false;
   }
@@ -104,9 +108,8 @@ bool SolidTracer::pay(double area, double weakness) {
 }
 
 void SolidTracer::charge(double area, double weakness) {
-  const double cost = weakness * setup_.fracture_energy * area;
-  energy_ += cost;
-  new_energy_ += cost;
+  energy_ += cost_of(area, weakness);
+  new_energy_ += cost_of(area, weakness);
   if (weakness < 1.0) new_grain_area_ += area;
 }
 

@@ -124,6 +124,7 @@ class SolidTracer {
   bool runs_beside_crack(int cell, const CrackCap& cap) const;
   double boundary_weakness() const;
   double weakness_at(int element) const;
+  double cost_of(double area, double weakness) const;
   bool pay(double area, double weakness);
   void charge(double area, double weakness);
   bool take();

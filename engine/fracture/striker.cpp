@@ -3,15 +3,10 @@
 #include <algorithm>
 
 #include "engine/core/elementary.h"
+#include "engine/geometry/plane_lines.h"
 
 namespace shatterbox::fracture {
-namespace {
-
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-}  // namespace
+using geometry::turn;
 
 StrikerSection section_of(const Striker& striker) {
   StrikerSection section;

@@ -6,28 +6,24 @@
 #include <utility>
 #include <vector>
 
+#include "engine/geometry/closest_points.h"
 #include "engine/geometry/generator_faults.h"
 #include "engine/geometry/generators.h"
+#include "engine/geometry/plane_lines.h"
 
 namespace shatterbox::geometry {
 namespace {
 
 using Points = std::vector<Vec2>;
 
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
 bool is_between(const Vec2& p, const Vec2& a, const Vec2& b) {
   return turn(a, b, p) == 0.0 && (p - a).dot(p - b) <= 0.0;
 }
 
-bool do_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const double ca = turn(c, d, a), cb = turn(c, d, b), ac = turn(a, b, c), ad = turn(a, b, d);
-  if (((ca < 0.0 && cb > 0.0) || (ca > 0.0 && cb < 0.0)) &&
-      ((ac < 0.0 && ad > 0.0) || (ac > 0.0 && ad < 0.0)))
-    return true;
-  return is_between(a, c, d) || is_between(b, c, d) || is_between(c, a, b) || is_between(d, a, b);
+/// Crossed, or touching.
+bool do_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  return do_cross(a, b, c, d) || is_between(a, c, d) || is_between(b, c, d) || is_between(c, a, b) ||
+         is_between(d, a, b);
 }
 
 bool ends_where_it_begins(const Points& points) {
@@ -38,20 +34,20 @@ std::string number(std::size_t i) {
   return std::to_string(i + 1);
 }
 
+/// Whether lines i and j > i, from those points on, meet elsewhere than where one ends and the next begins.
+bool do_lines_meet(const Points& points, std::size_t i, std::size_t j) {
+  if (j == i + 1)
+    return is_between(points[j + 1], points[i], points[j]) || is_between(points[i], points[j], points[j + 1]);
+  const bool close_ring = i == 0 && j + 2 == points.size() && ends_where_it_begins(points);
+  return !close_ring && do_meet(points[i], points[i + 1], points[j], points[j + 1]);
+}
+
 std::optional<std::string> find_crossing(const Points& points) {
-  const std::size_t lines = points.size() - 1;
-  for (std::size_t i = 0; i < lines; ++i) {
-    for (std::size_t j = i + 1; j < lines; ++j) {
-      const bool are_joined = j == i + 1;
-      const bool close = i == 0 && j + 1 == lines && ends_where_it_begins(points);
-      const bool fold_back = are_joined && (is_between(points[j + 1], points[i], points[i + 1]) ||
-                                            is_between(points[i], points[j], points[j + 1]));
-      if (fold_back ||
-          (!are_joined && !close && do_cross(points[i], points[i + 1], points[j], points[j + 1])))
+  for (std::size_t j = 1; j + 1 < points.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      if (do_lines_meet(points, i, j))
         return "a lathe's profile meets itself: its lines from point " + number(i) + " and from point " +
                number(j);
-    }
-  }
   return std::nullopt;
 }
 
@@ -63,19 +59,15 @@ double area_outside(const Points& points) {
   return area;
 }
 
-double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  return (p - a - std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along).norm();
-}
-
 /// How thin it is, m: how near lines are that go the other way. 1e300: no two do.
 double find_wall(const Points& points) {
+  const auto lifted = [](const Vec2& p) { return Vec3(p.x(), p.y(), 0.0); };
   double wall = 1e300;
   for (std::size_t i = 1; i < points.size(); ++i) {
     for (std::size_t j = i + 2; j < points.size(); ++j) {
       const Vec2 &a = points[i - 1], &b = points[i], &c = points[j - 1], &d = points[j];
       if ((b - a).dot(d - c) >= 0.0 || a == d) continue;
-      wall = std::min({wall, distance(a, c, d), distance(b, c, d), distance(c, a, b), distance(d, a, b)});
+      wall = std::min(wall, closest_between_segments(lifted(a), lifted(b), lifted(c), lifted(d)).distance);
     }
   }
   return wall;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/core/index.h"
+#include "engine/geometry/plane_lines.h"
 
 namespace shatterbox::geometry {
 namespace {
@@ -13,10 +14,6 @@ using Size = std::size_t;
 using core::at;
 
 constexpr double kFlatEar = 1e-12;  // of the squared lengths: an ear below that has no area
-
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
 
 /// An ear, and how good it is: those that hold no other corner first, then by shape.
 struct Ear {
@@ -78,11 +75,6 @@ void flip_diagonals(const std::vector<Vec2>& points, std::vector<Triangle>& tria
             has_changed = true;
           }
   }
-}
-
-bool do_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const auto opposite = [](double p, double q) { return (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0); };
-  return opposite(turn(a, b, c), turn(a, b, d)) && opposite(turn(c, d, a), turn(c, d, b));
 }
 
 }  // namespace

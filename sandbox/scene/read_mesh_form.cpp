@@ -34,7 +34,8 @@ constexpr const char* kTumbler =
     "height = 0.1, thickness = 0.0015; or shape = \"wine_glass\"";
 constexpr const char* kTurned = "what is round about an axis is turned on a lathe";
 constexpr const char* kColumn =
-    "write shape = \"lathe\", profile = [[0.1, 0], [0.1, 1]]: a radius and a height in metres for each point";
+    "write shape = \"lathe\", profile = [[0.1, 0], [0.1, 1]]: a radius and a height in metres for each "
+    "point, from one end to the other";
 constexpr const char* kSheet = "a flat sheet is a pane";
 constexpr const char* kPane = "write kind = \"shell\", shape = \"pane\", width = 0.3, height = 0.2";
 constexpr OtherName kOtherNames[] = {
@@ -239,11 +240,7 @@ geometry::LatheSizes read_lathe(TableReader& reader, bool is_sheet) {
   lathe.is_smooth = reader.truth("smooth").value_or(false);
   const TomlValue* value = reader.value("profile");
   const auto refuse = [&](const Place& place, std::string message) {
-    reader.add_problem(
-        place, std::move(message),
-        "write profile = [[0.1, 0], [0.1, 1]]: a radius and a height in metres for each point, "
-        "from one end to the other");
-    lathe.profile = {Vec2(0.1, 0.0), Vec2(0.1, 0.2)};
+    reader.add_problem(place, std::move(message), kColumn);
     return lathe;
   };
   if (value == nullptr) return refuse(reader.table().place, fmt::format("{} has no profile", reader.what()));

@@ -113,7 +113,7 @@ TEST_CASE("lathe: closed, facing outwards, of the exact volume, whichever way th
   std::reverse(column.profile.begin(), column.profile.end());
   check([&](double h) { return make_lathe(column, fine(h)).value(); }, volume, 0.01);
 
-  // By Pappus; and the same with its corners rounded, each by a parabola that cuts off a twelfth of a square.
+  // By Pappus; and the same with its corners rounded, each by a parabola that cuts off a 24th of the square.
   LatheSizes ring;
   ring.is_closed = true;
   ring.profile = {{0.06, 0.0}, {0.1, 0.0}, {0.1, 0.04}, {0.06, 0.04}, {0.06, 0.0}};
