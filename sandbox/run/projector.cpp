@@ -16,7 +16,9 @@ Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& bu
       built_(built),
       recorder_(recorder),
       script_(scene),
-      rig_(scene.camera, view::find_subject(scene, built.plan)),
+      subject_(view::find_subject(scene, built.plan)),
+      reframing_(scene, built, subject_),
+      rig_(scene.camera, subject_),
       inspector_(has_audit, recorder.record),
       frames_per_second_(frames_per_second),
       slots_(slots) {
@@ -37,7 +39,7 @@ double Projector::steps_at(double film) const {
 
 view::Moment Projector::now() const {
   const double time = built_.world.time(), film = script_.clock().film_at(time);
-  return {film, time, script_.clock().factor_at(film), built_.world.bodies()};
+  return {film, time, script_.clock().factor_at(film), built_.world.bodies(), reframing_.shift()};
 }
 
 view::Whereabouts Projector::whereabouts() const {
@@ -74,6 +76,7 @@ bool Projector::step(double film) {
     return false;
   }
   inspector_.end_step(world);
+  reframing_.look();
   throws_.look(world);
   return true;
 }
@@ -99,10 +102,13 @@ std::optional<view::Moment> Projector::next() {
   }
   if (is_over() || wants_to_stop_()) return std::nullopt;
   const script::FilmClock& clock = script_.clock();
-  view::Moment moment{film, clock.simulated_at(film), clock.factor_at(film), world.bodies()};
+  view::Moment moment{film, clock.simulated_at(film), clock.factor_at(film), world.bodies(),
+                      reframing_.shift()};
   if (const double steps = steps_at(film); steps < static_cast<double>(world.steps())) {
-    between_ = script::bodies_between(before_, world, steps - static_cast<double>(steps_before_));
+    const double share = steps - static_cast<double>(steps_before_);
+    between_ = script::bodies_between(before_, world, share);
     moment.bodies = between_;
+    moment.shift = reframing_.shift(share);
   }
   return moment;
 }

@@ -11,6 +11,7 @@
 #include "sandbox/run/throws.h"
 #include "sandbox/scene/build_world.h"
 #include "sandbox/script/script.h"
+#include "sandbox/view/reframing.h"
 #include "sandbox/view/view.h"
 
 namespace shatterbox::sandbox::run {
@@ -55,6 +56,8 @@ class Projector {
   scene::BuiltScene& built_;
   Recorder& recorder_;
   script::Script script_;
+  view::Subject subject_;
+  view::Reframing reframing_;
   view::CameraRig rig_;  // as the script sees it: at step borders, whatever frames there are
   Inspector inspector_;
   Throws throws_;

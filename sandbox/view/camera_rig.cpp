@@ -50,6 +50,10 @@ void CameraRig::apply(Shot& shot, double film, const Whereabouts& where, Viewpoi
 
 Viewpoint CameraRig::view_at(const Moment& moment, const Whereabouts& where) {
   Viewpoint view = cut_ ? *cut_ : viewpoint_at(entry_, subject_, moment.time);
+  if (!cut_) {
+    view.position += moment.shift.position;
+    view.target += moment.shift.target;
+  }
   if (!cut_ && entry_.follow.body >= 0) {
     if (const auto place = where(entry_.follow)) last_seen_ = place;
     if (last_seen_) {

@@ -74,7 +74,7 @@ double even_middle(const std::vector<Vec2>& points, double back) {
 }  // namespace
 
 Viewpoint frame_points(const std::vector<Vec3>& points, const Framing& framing) {
-  const Vec3 up = framing.up.normalized(), away = choose_side(points, up);
+  const Vec3 up = framing.up.normalized(), away = framing.away ? *framing.away : choose_side(points, up);
   const Vec3 right = up.cross(away).normalized(), upwards = away.cross(right);
   const double half = framing.fov * core::kPi / 360.0;
   const double slope = kFilled * core::sin(half) / core::cos(half);

@@ -14,10 +14,20 @@ struct Viewpoint {
   double least_aspect = 0.0;                            // as of render::Camera
 };
 
+/// How far an eye has gone from where it would be, m.
+struct Shift {
+  Vec3 position = Vec3::Zero(), target = Vec3::Zero();
+
+  Shift towards(const Shift& other, double share) const {
+    return {position + share * (other.position - position), target + share * (other.target - target)};
+  }
+};
+
 struct Framing {
   Vec3 up = Vec3::UnitY();
-  double fov = 35.0;           // degrees, vertical
-  std::optional<Vec3> target;  // m; nothing: what shows the points largest
+  double fov = 35.0;                        // degrees, vertical
+  std::optional<Vec3> target;               // m; nothing: what shows the points largest
+  std::optional<Vec3> away = std::nullopt;  // from the target to the eye, unit; nothing: as below
 };
 
 /// From in front of the wider side of the points (m, at least one), a little from the right and from above:

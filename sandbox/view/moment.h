@@ -7,6 +7,7 @@
 
 #include "engine/body/body.h"
 #include "sandbox/scene/body_ref.h"
+#include "sandbox/view/framing.h"
 
 namespace shatterbox::sandbox::view {
 
@@ -15,6 +16,7 @@ struct Moment {
   double time = 0.0;    // s of the world
   double factor = 1.0;  // seconds of the world in a second of the film
   std::span<const body::Body> bodies;
+  Shift shift{};  // of a camera without a place, which goes after what would leave its picture
 };
 
 /// Where a body of the scene is: its centre, or that of its copies and pieces, m; nothing if it is not there.

@@ -12,7 +12,7 @@
 namespace shatterbox::sandbox::view {
 namespace {
 
-constexpr double kRoomForPieces = 2.0;   // times as wide as what fell
+constexpr double kRoomForPieces = 1.6;   // times as wide as what fell further than it is large
 constexpr double kRoomToTip = 1.2;       // of its height, to either side of its middle
 constexpr double kWorthGoing = 1.3;      // times as far the eye would have to be, to see all of the fall
 constexpr double kSideways = 0.5;        // m/s: what goes aside faster does not just fall
@@ -107,7 +107,8 @@ Corners spread_out(const Corners& corners, const std::optional<Vec3>& way, const
   for (const Vec3& corner : corners) middle += corner / 8.0;
   const geometry::Box box = upright(corners, down);
   const Vec3 half = 0.5 * (box.high - box.low);
-  const double wider = way->isZero(0.0) ? 1.0 : kRoomForPieces, to_tip = kRoomToTip * half.y();
+  const double far = std::min(way->norm() / (2.0 * half.maxCoeff()), 1.0);
+  const double wider = 1.0 + (kRoomForPieces - 1.0) * far, to_tip = kRoomToTip * half.y();
   const Vec3 side = std::max(wider * half.x(), to_tip) * aside,
              depth = std::max(wider * half.z(), to_tip) * across;
   Corners room;
@@ -307,6 +308,9 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
       }
     }
   }
+  for (const scene::JointEntry& joint : scene.joints)
+    if (const auto* pivot = std::get_if<world::PivotDescription>(&joint.form); pivot && !joint.is_chain)
+      subject.corners.push_back(pivot->point);
   // They come in from where there is still room.
   const geometry::Box room = room_about(subject.corners);
   for (const Corners& corners : thrown) add_within(room, corners, subject.corners);

@@ -135,7 +135,7 @@ TEST_CASE("what a camera without a place must see reaches down to where bodies w
   CHECK(centre(ball) == Approx(2.0));                    // nothing below
   const double far = 3.0 * std::sqrt(2.0 * 1.4 / 9.81);  // of one that leaves at 3 m/s
   const double middle = look_at(floor + ball + "velocity = [3, 0, 0]\n").subject.centre.x();
-  CHECK(middle == Approx(0.5 * (far + 0.2 - 0.1)));
+  CHECK(middle == Approx(0.5 * (far + 0.16 - 0.1)));
   CHECK(centre(floor + ball + "motion = \"static\"\n") == Approx(2.0));
   const std::string hook =
       "[[body]]\nname = \"hook\"\nkind = \"sphere\"\nradius = 0.1\nposition = [0, 2.2, 0]\n"
