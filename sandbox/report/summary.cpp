@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,9 +50,19 @@ std::string impact_lines(const RunRecord& record) {
   return text;
 }
 
+/// Who cracked looks as before, and would seem not to have been hit.
+std::string unbroken_line(const RunRecord& record) {
+  std::set<std::string> cracked;
+  for (const world::ImpactRow& row : record.world.impacts)
+    if (row.verdict.starts_with("cracked, in one piece")) cracked.insert(row.body);
+  if (cracked.empty()) return "nothing broke\n";
+  return fmt::format("nothing broke into pieces, but {} cracked in one piece, which is not to be seen\n",
+                     cracked.size() == 1 ? *cracked.begin() : fmt::format("{} bodies", cracked.size()));
+}
+
 std::string break_lines(const RunRecord& record) {
   const auto& breaks = record.world.breaks;
-  if (breaks.empty()) return "nothing broke\n";
+  if (breaks.empty()) return unbroken_line(record);
   std::string text = fmt::format("{}{}\n", counted(static_cast<long>(breaks.size()), "break", "breaks"),
                                  breaks.size() > kMostRows ? ", the first:" : ":");
   for (std::size_t i = 0; i < std::min(breaks.size(), kMostRows); ++i) {

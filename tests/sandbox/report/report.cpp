@@ -115,6 +115,22 @@ TEST_CASE("the audit's findings are in the report and in the closing words") {
   CHECK(text.find("cup (7) and plate (8)") != std::string::npos);
 }
 
+TEST_CASE("who cracks in one piece is named where nothing breaks: it looks as before") {
+  RunRecord record = some_record();
+  record.world.breaks.clear();
+  record.world.impacts.clear();
+  CHECK(make_summary(record).find("nothing broke\n") != std::string::npos);
+  for (int i = 0; i < 2; ++i) {
+    record.world.impacts.emplace_back();
+    record.world.impacts.back().body = "vase";
+    record.world.impacts.back().verdict = "cracked, in one piece: 1.53 of its strength";
+  }
+  CHECK(make_summary(record).find("nothing broke into pieces, but vase cracked in one piece") !=
+        std::string::npos);
+  record.world.impacts.back().body = "cup";
+  CHECK(make_summary(record).find("but 2 bodies cracked in one piece") != std::string::npos);
+}
+
 TEST_CASE("who is held back step after step is named in the report and in the closing words") {
   RunRecord record = some_record();
   record.world.contact.longest_cut = 11;
