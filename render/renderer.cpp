@@ -124,7 +124,7 @@ struct Renderer::Rooms {
         occlusion(size.width, size.height, level.occlusion_taps, level.samples_across, level.occlusion_scale,
                   reset),
         light(size.width, size.height, level.shadow_taps, level.samples_across, level.occlusion_scale, reset),
-        glass(level.samples_across),
+        glass(level.samples_across, level.shadow_taps),
         wires(level.samples_across) {
     glDisable(GL_DITHER);
     glDepthRange(0.0, 1.0);

@@ -9,6 +9,14 @@ layout(binding = 7) uniform sampler2D opaque_depth;  // 0..1
 layout(location = 0, index = 0) out vec4 added;
 layout(location = 0, index = 1) out vec4 kept;
 
+#if PATTERNS & 2048  // something in the picture is cloudy
+#include "common/shadow.glsl"
+// How much light a face takes: what keeps the sun off is near, and keeps off some of the sky. Light goes through such a body:
+// no face is dark because it is turned away.
+float light_seen(Surface s, vec3 n) { return s.transmission < 0.9 ? sun_seen_past_bodies(s.position, n) : 1.0; }
+const float kSkyInShadow = 0.6;
+#endif
+
 #ifndef RIMS
 // Two tall windows in each wall of a square room, each of four panes: what clear glass is known by. As a share of the sky.
 float room_windows(vec3 d) {
@@ -36,6 +44,11 @@ void add_face(Surface s, float weight, inout vec3 add, inout vec3 keep) {
   vec3 glance = sun_radiance.rgb * glint(n_dot_l, n_dot_v, max(dot(n, h), 0.0), max(s.roughness, 0.12)) * 0.03;
   // What does not go through scatters, of the sun's light too, from whichever side it comes.
   float dull = 1.0 - s.transmission;
+#if PATTERNS & 2048
+  float lit = light_seen(s, dot(n, sun.xyz) < 0.0 ? -n : n);
+  glance *= lit;
+  dull *= mix(kSkyInShadow, 1.0, lit);
+#endif
   vec3 haze = s.colour * (ambient(n) * (0.05 + dull) + sun_radiance.rgb * (0.22 * dull * (0.4 + abs(dot(n, sun.xyz)))));
   // The way through is longer at a slant; as an exponent of the tint that is 1 to 4, by squaring.
   float slant = min(1.0 / n_dot_v, 4.0) - 1.0;

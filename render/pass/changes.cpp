@@ -205,7 +205,9 @@ void Changes::mark_shadow(const Item& caster, const MeshStore& meshes) {
   }
   const float margin = glm::length(margins[0]) + glm::length(margins[1]);
   for (const Item& receiver : meshes.items()) {
-    if (!receiver.is_on_screen || receiver.is_glass) continue;  // glass is not shaded
+    if (!receiver.is_on_screen) continue;
+    // Clear glass is not shaded, and other glass by no glass.
+    if (receiver.is_glass && (caster.is_glass || !receiver.is_cloudy)) continue;
     auto meeting = find_meeting(caster.box_world, -sun, receiver, margin);
     if (!meeting) continue;
     // Taps for solids follow the receiver's plane, and may find casters behind it; those for glass stay

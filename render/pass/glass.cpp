@@ -4,15 +4,18 @@
 
 #include <string>
 
+#include "render/pass/paint_table.h"
+
 namespace shatterbox::render::pass {
 namespace {
 
-constexpr unsigned kPatterns = 1023U;  // of what a frame shows; glass does not ask whether there are mirrors
+constexpr unsigned kPatterns = ~kMirrors;  // of what a frame shows
 
 }  // namespace
 
-GlassPass::GlassPass(int samples_across)
+GlassPass::GlassPass(int samples_across, int shadow_taps)
     : samples_across_(samples_across),
+      taps_("SHADOW_TAPS " + std::to_string(shadow_taps)),
       side_("SIDE " + std::to_string(samples_across)),
       rims_("tile.vert", "glass.frag", {side_, "RIMS"}) {
   if (samples_across_ > 1) cover_ = gpu::Program("tile.vert", "glass_cover.frag", {side_});
@@ -22,7 +25,8 @@ const gpu::Program& GlassPass::faces(unsigned pattern_kinds) {
   pattern_kinds &= kPatterns;
   gpu::Program& program = faces_[pattern_kinds];
   if (program.name() == 0) {
-    program = gpu::Program("tile.vert", "glass.frag", {side_, "PATTERNS " + std::to_string(pattern_kinds)});
+    program =
+        gpu::Program("tile.vert", "glass.frag", {side_, taps_, "PATTERNS " + std::to_string(pattern_kinds)});
   }
   return program;
 }

@@ -14,8 +14,9 @@ namespace shatterbox::render::pass {
 
 class GlassPass {
  public:
-  explicit GlassPass(int samples_across);
-  // drawn: the lit picture; with several samples a pixel its depth is used for the cover.
+  GlassPass(int samples_across, int shadow_taps);
+  // What is cloudy takes shadows: they must be bound. drawn: the lit picture; with several samples a pixel
+  // its depth is used for the cover.
   void run(const SurfacePass& surface, const gpu::Framebuffer& drawn, const Tiles& tiles,
            unsigned pattern_kinds);
 
@@ -24,7 +25,7 @@ class GlassPass {
   const gpu::Program& faces(unsigned pattern_kinds);  // built when first wanted
 
   int samples_across_;
-  std::string side_;
+  std::string taps_, side_;
   gpu::Program cover_, rims_;
   std::map<unsigned, gpu::Program> faces_;
   std::vector<gpu::Framebuffer> on_faces_;  // the picture with a layer's depth; for one sample a pixel

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "render/pass/paint_table.h"
+
 namespace shatterbox::render::pass {
 namespace {
 
@@ -43,6 +45,7 @@ LightPass::LightPass(int width, int height, int shadow_taps, int samples_across,
 }
 
 const gpu::Program& LightPass::bodies(unsigned pattern_kinds) {
+  pattern_kinds &= ~kCloudy;
   gpu::Program& program = bodies_[pattern_kinds];
   if (program.name() == 0) {
     const std::string patterns = "PATTERNS " + std::to_string(pattern_kinds);

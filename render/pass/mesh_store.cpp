@@ -185,6 +185,10 @@ Item MeshStore::make_item(const Draw& draw, const Frame& frame, const StoredMesh
   item.is_glass = frame.overlay.kind != OverlayKind::pieces &&
                   std::any_of(draw.looks.begin(), draw.looks.end(),
                               [](const Look& look) { return look.transmission > 0.0F; });
+  item.is_cloudy =
+      item.is_glass &&
+      (draw.scalars != nullptr || std::any_of(draw.looks.begin(), draw.looks.end(),
+                                              [](const Look& look) { return look.transmission < kClear; }));
   const bool is_dust = item.radius < kLeastPixels * pixel_slope * item.eye_distance;
   item.is_on_screen = !is_dust;
   item.casts_shadow = draw.casts_shadow && !is_dust;

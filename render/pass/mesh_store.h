@@ -38,7 +38,7 @@ struct Item {
   float radius = 0.0F;        // m, world
   float eye_distance = 0.0F;  // m, to the centre
   float rim_pixels = 0.0F;    // a shell's thickness where it is
-  bool is_glass = false, is_on_screen = false, casts_shadow = false;
+  bool is_glass = false, is_cloudy = false, is_on_screen = false, casts_shadow = false;
   bool is_as_before = false;  // under the same camera it gives the samples and the shadow that it gave
 };
 

@@ -16,8 +16,6 @@ struct PaintRow {
   glm::vec4 paint, finish, pattern, place;
 };
 constexpr float kHeatMap = 8.0F, kGroups = 9.0F;  // pattern kinds of their own
-// As the shaders name what a frame shows, beside the kinds of its patterns.
-constexpr unsigned kMirrors = 1024U;
 constexpr float kMirrorRoughness = 0.3F, kMirrorMetalness = 0.7F;
 constexpr float kScattering = -1.0F;  // in place of a coat: the broken rim of glass, as glass.frag reads it
 constexpr int kRowsAbreast = 256;
@@ -119,6 +117,7 @@ PaintTable::Rows PaintTable::write(const Draw& draw, const Overlay& overlay, std
     lay_over(row, draw, overlay, face);
     if (row.pattern.w >= 1.0F) pattern_kinds_ |= 1U << static_cast<unsigned>(row.pattern.w);
     if (row.paint.w < kMirrorRoughness && row.finish.x > kMirrorMetalness) pattern_kinds_ |= kMirrors;
+    if (row.finish.w > 0.0F && row.finish.w < kClear) pattern_kinds_ |= kCloudy;
     if (rows.is_as_before && std::memcmp(kept, &row, sizeof row) == 0) continue;
     rows.is_as_before = false;
     has_changed_ = true;

@@ -11,6 +11,11 @@
 
 namespace shatterbox::render::pass {
 
+// As the shaders name what a frame shows, beside the kinds of its patterns: what is a mirror, and glass or
+// ice that is not clear.
+constexpr unsigned kMirrors = 1024U, kCloudy = 2048U;
+constexpr float kClear = 0.9F;  // transmission, from which on glass takes no shadow (shaders/glass.frag)
+
 class PaintTable {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffU;

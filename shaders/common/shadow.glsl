@@ -24,7 +24,7 @@ float through_glass(vec3 p, vec2 slope, float bias) {
 
 // p: place in the map, 0..1. slope: depth change per unit of the map along the receiver's plane, which is followed so
 // that a lit plane never shades itself. bias: in depth, of a texel's width.
-float sun_seen_at(vec3 p, vec2 slope, float bias, bool faces_away) {
+float sun_seen_past_bodies_at(vec3 p, vec2 slope, float bias, bool faces_away) {
   if (sun_radiance.w == 0.0) return 1.0;
   vec2 map_size = vec2(textureSize(shadow_map, 0));
   ivec2 tiles = textureSize(shadow_tiles, 0);
@@ -52,19 +52,34 @@ float sun_seen_at(vec3 p, vec2 slope, float bias, bool faces_away) {
     way = kTurn * way;
     sum += texture(shadow_map, vec3(p.xy + shift, min(p.z - bias + dot(slope, shift), 1.0)));
   }
-  float seen = dark ? 0.0 : !inside || lit ? 1.0 : sum / float(most);
-  return seen * through_glass(p, slope, bias);
+  return dark ? 0.0 : !inside || lit ? 1.0 : sum / float(most);
 }
 
-// normal: of the receiver, world.
-float sun_seen(vec3 position_world, vec3 normal) {
+float sun_seen_at(vec3 p, vec2 slope, float bias, bool faces_away) {
+  if (sun_radiance.w == 0.0) return 1.0;
+  return sun_seen_past_bodies_at(p, slope, bias, faces_away) * through_glass(p, slope, bias);
+}
+
+// How depth changes along the plane of a receiver with this normal (world), x and y, and its bias, z: as above.
+vec3 slope_and_bias(vec3 normal) {
   vec3 extent = vec3(shadow_texel.xy * vec2(textureSize(shadow_map, 0)), shadow_texel.z);  // m
   vec3 m = (mat3(shadow_from_world) * normal) * extent;  // unit, in the sun's frame; z away from it
   float depth_part = (m.z < 0.0 ? -1.0 : 1.0) * max(abs(m.z), 0.12);  // grazing planes are followed less far
   vec2 slope = -m.xy / depth_part * extent.xy / extent.z;
   float bias = dot(abs(slope), 1.0 / vec2(textureSize(shadow_map, 0))) +
                0.5 * max(shadow_texel.x, shadow_texel.y) / extent.z;
-  return sun_seen_at(place_in_shadow(position_world), slope, bias, dot(normal, sun.xyz) <= 0.0);
+  return vec3(slope, bias);
+}
+
+// normal: of the receiver, world.
+float sun_seen(vec3 position_world, vec3 normal) {
+  vec3 plane = slope_and_bias(normal);
+  return sun_seen_at(place_in_shadow(position_world), plane.xy, plane.z, dot(normal, sun.xyz) <= 0.0);
+}
+
+float sun_seen_past_bodies(vec3 position_world, vec3 normal) {
+  vec3 plane = slope_and_bias(normal);
+  return sun_seen_past_bodies_at(place_in_shadow(position_world), plane.xy, plane.z, false);
 }
 
 float sun_seen_by_floor(vec3 position_world) {

@@ -19,6 +19,8 @@ Frame still_life() {
   frame.draws.push_back(at(make_sphere(3, 0.25F), {0.3F, 1.1F, 0.6F}, ceramic({0.1F, 0.3F, 0.4F})));
   frame.draws.push_back(at(make_pane(4, 0.8F, 0.6F), {0.9F, 0.7F, 0.4F}, glass()));
   frame.draws.push_back(at(make_pane(5, 0.5F, 0.9F), {0.2F, 0.5F, 1.2F}, glass()));
+  frame.draws.push_back(
+      at(make_box(9, {1.0F, 0.1F, 0.7F}), {-1.2F, 0.05F, 1.3F}, frosted_glass({0.7F, 0.8F, 0.9F})));
   frame.draws.push_back(at(make_pane(6, 0.7F, 0.5F), {1.9F, 0.3F, -0.6F}, stone({0.5F, 0.5F, 0.45F})));
   frame.draws.push_back(at(make_sphere(7, 0.15F), {2.6F, 0.15F, -3.0F}, metal({0.7F, 0.7F, 0.7F}, 0.05F)));
   // About all that moves: the shadow map keeps its place, and what it shows is told apart by who casts it.
@@ -74,7 +76,7 @@ class Change {
         body.looks = {matt({within(0, 1), within(0, 1), within(0, 1)})};
         return;
       case 1:
-        body.looks = {glass()};
+        body.looks = {below(2) == 0 ? glass() : frosted_glass({0.8F, 0.9F, 0.8F})};
         return;
       case 2:
         body.casts_shadow = !body.casts_shadow;
@@ -267,6 +269,20 @@ TEST_CASE("glass that comes into a film without any is seen where it is, and now
       if (i == 1) f.draws.push_back(at(make_pane(2, 3.0F, 0.1F), {0.6F, 0.9F, 0.0F}, glass()));
       f.draws.back().world_from_body = glm::rotate(f.draws.back().world_from_body, -0.3F, glm::vec3(0, 0, 1));
     }));
+  }
+}
+
+TEST_CASE("a shadow that moves over cloudy glass leaves nothing where it was") {
+  for (const Quality quality : kQualities) {
+    Frame frame = plain_frame();
+    frame.lights.sun_direction = {1.0F, 1.0F, 0.0F};
+    frame.draws = {at(make_box(1, {2.0F, 0.2F, 1.0F}), {-0.6F, 0.6F, 0.0F}, frosted_glass(glm::vec3(0.8F))),
+                   at(make_sphere(2, 0.2F), {0.6F, 1.6F, 0.0F})};
+    const auto post = make_sphere(8, 0.05F);
+    for (const float x : {-3.0F, 3.0F}) frame.draws.push_back(at(post, {x, 2.2F, 0.0F}));
+    const double kept = compare_films(kSize, quality, frame, 4,
+                                      [](Frame& f, int) { f.draws[1].world_from_body[3].z += 0.15F; });
+    CHECK(kept > 0.1);
   }
 }
 

@@ -247,6 +247,29 @@ TEST_CASE("the shadow of a pane of glass is even and light") {
   }
 }
 
+TEST_CASE("a shadow lies on cloudy glass, and not on clear glass, through which it falls") {
+  Frame frame = plain_frame();
+  frame.ground.reset();
+  frame.camera = {glm::vec3(0, 6, 3), glm::vec3(0), glm::vec3(0, 0, -1), 40.0F};
+  frame.lights.sun_direction = {1.0F, 1.0F, 0.0F};
+  const auto with_slab = [&frame](const Look& look, float x) {
+    Frame out = frame;
+    out.draws = {at(make_box(1, {4.0F, 0.3F, 2.0F}), glm::vec3(0), look),
+                 at(make_box(2, glm::vec3(0.5F)), {x, 1.0F, 0.0F})};
+    return out;
+  };
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const glm::ivec2 shaded = pixel_of(frame, {-0.3F, 0.15F, 0}), lit = pixel_of(frame, {-1.2F, 0.15F, 0});
+    for (const Look& look : {frosted_glass(glm::vec3(0.8F)), glass()}) {
+      const auto [with, without] = with_and_without_shadow(renderer, with_slab(look, 0.55F));
+      const bool is_cloudy = look.transmission < 0.9F;
+      CHECK((green(with, shaded) < green(without, shaded) - 10) == is_cloudy);
+      CHECK(std::abs(green(with, lit) - green(without, lit)) <= 1);
+    }
+  }
+}
+
 TEST_CASE("a lit plane that casts shadows has none of its own") {
   Frame frame;
   frame.ground.reset();
