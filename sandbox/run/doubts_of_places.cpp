@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
@@ -97,6 +98,49 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
             : "what is solid is brought out slowly, sheets pass each other: move one of them, or give "
               "copies more spacing");
   }
+}
+
+/// m, how far the upper stands above the lower, where both are one open sheet, upright alike, and one stands
+/// in the other; 0 of others.
+double height_in(const Body& upper, const Body& lower, const Vec3& down) {
+  constexpr double kAside = 0.05;  // of the height between them
+  constexpr double kTurned = 1e-6;
+  const body::Shape& shape = *upper.shape;
+  if (shape.kind != ShapeKind::shell || upper.shape != lower.shape || !(shape.thickness > 0.0)) return 0.0;
+  if (!upper.is_dynamic() || upper.pose.rotation.angularDistance(lower.pose.rotation) > kTurned) return 0.0;
+  const Vec3 apart = lower.pose.translation - upper.pose.translation;
+  const double height = apart.dot(down);
+  if (!(height > 0.0) || (apart - height * down).norm() > kAside * height) return 0.0;
+  double top = 1e300, foot = -1e300;
+  for (const Vec3& p : shape.surface.positions) {
+    const double depth = (upper.pose.rotation * p).dot(down);
+    top = std::min(top, depth);
+    foot = std::max(foot, depth);
+  }
+  const auto& topology = shape.topology;
+  for (std::size_t edge = 0; edge < topology.edges.size() && height < foot - top; ++edge)
+    if (topology.is_boundary(static_cast<int>(edge))) return height;
+  return 0.0;
+}
+
+/// Bowls in bowls: sheets have no thickness to each other, so one sinks into the next until they are one.
+void doubt_nests(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+                 scene::Problems& doubts) {
+  if (scene.world.gravity.isZero(0.0)) return;
+  const Vec3 down = scene.world.gravity.normalized();
+  std::set<int> told;  // entries
+  for (const auto& [a, b] : near_pairs(built.world.bodies()))
+    for (const auto& [upper, lower] : {std::pair(a, b), std::pair(b, a)}) {
+      const double height = height_in(*upper, *lower, down);
+      if (height == 0.0 || !told.insert(built.origins.at(upper->id).entry).second) continue;
+      scene::book(
+          doubts, entry_of(scene, built, *upper).place,
+          fmt::format("\"{}\" stands in \"{}\", {:.3g} mm above it, and settles into it: what meets a "
+                      "shell meets a surface, whatever its thickness",
+                      upper->name, lower->name, 1e3 * height),
+          "what is stacked so is a solid: kind = \"solid\", shape = \"lathe\" with both faces in its "
+          "profile");
+    }
 }
 
 geometry::Box bounds_of(const Body& body) {
@@ -241,6 +285,7 @@ void doubt_joints(const scene::SceneDescription& scene, const scene::BuiltScene&
 void doubt_places(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                   scene::Problems& doubts) {
   doubt_room(scene, built, doubts);
+  doubt_nests(scene, built, doubts);
   doubt_tables(scene, built, doubts);
   doubt_camera(scene, built, doubts);
   doubt_joints(scene, built, doubts);

@@ -111,6 +111,7 @@ void read_event(const TomlValue& table, std::size_t index, SceneDescription& sce
   } else if (*verb == "drop") {
     event.who.body = read_thrown_body(reader, event.name, false, scene);
     event.action = Drop{reader.vector("position", coordinate())};
+    reader.foreign({"height", "from", "at_point"}, "what is dropped falls from \"position\", [x, y, z]");
   } else if (*verb == "push") {
     event.who = read_acted_body(reader, scene);
     event.action = read_push(reader, event.who.body, scene);

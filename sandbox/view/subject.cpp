@@ -17,6 +17,7 @@ constexpr double kRoomToTip = 1.2;       // of its height, to either side of its
 constexpr double kWorthGoing = 1.3;      // times as far the eye would have to be, to see all of the fall
 constexpr double kSideways = 0.5;        // m/s: what goes aside faster does not just fall
 constexpr double kRoomForScenery = 1.0;  // on each side, of the size of what moves or breaks
+constexpr double kRoomToComeIn = 0.6;    // the same, for what is thrown or dropped at it
 
 // What neither moves nor breaks, nor comes in later.
 bool is_scenery(const scene::BodyEntry& body) {
@@ -119,10 +120,10 @@ Corners spread_out(const Corners& corners, const std::optional<Vec3>& way, const
 }
 
 // The room about these points, in which others are looked at as well.
-geometry::Box room_about(const std::vector<Vec3>& points) {
+geometry::Box room_about(const std::vector<Vec3>& points, double share) {
   geometry::Box about;
   for (const Vec3& p : points) about.include(p);
-  const Vec3 room = Vec3::Constant(kRoomForScenery * (about.high - about.low).maxCoeff());
+  const Vec3 room = Vec3::Constant(share * (about.high - about.low).maxCoeff());
   return {about.low - room, about.high + room};
 }
 
@@ -137,7 +138,7 @@ void add_about(const std::vector<Corners>& others, std::vector<Vec3>& points) {
     for (const Corners& corners : others) append(corners, points);
     return;
   }
-  const geometry::Box about = room_about(points);
+  const geometry::Box about = room_about(points, kRoomForScenery);
   for (const Corners& corners : others) {
     if (geometry::overlaps(box_about(corners), about)) add_within(about, corners, points);
   }
@@ -274,7 +275,10 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
   const std::vector<char> is_hung = find_hung(scene);
   const Scenery scenery = find_scenery(scene, plan);
   const std::vector<geometry::Box> targets = find_targets(scene, plan);
-  std::vector<Corners> thrown;
+  std::vector<Corners> thrown;  // and dropped upon others
+  const bool has_target = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& body) {
+    return !body.is_held_back && !is_scenery(body) && !std::holds_alternative<scene::PlaneForm>(body.form);
+  });
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const scene::BodyEntry& body = scene.bodies[i];
     const scene::BodyPlan& planned = plan.bodies[i];
@@ -294,7 +298,10 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
           thrown.push_back(corners);
           continue;
         }
-        append(corners, subject.corners);
+        if (body.is_held_back && has_target)
+          thrown.push_back(corners);
+        else
+          append(corners, subject.corners);
         if (body.path) append(corners_on_path(body, planned, pose, scene.seconds), subject.corners);
         if (is_on_axle(body)) append(corners_on_axle(body, planned, pose), subject.corners);
         for (const Vec3& carried : find_carries(scene, i, pose.apply(planned.centre))) {
@@ -312,7 +319,7 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
     if (const auto* pivot = std::get_if<world::PivotDescription>(&joint.form); pivot && !joint.is_chain)
       subject.corners.push_back(pivot->point);
   // They come in from where there is still room.
-  const geometry::Box room = room_about(subject.corners);
+  const geometry::Box room = room_about(subject.corners, kRoomToComeIn);
   for (const Corners& corners : thrown) add_within(room, corners, subject.corners);
   add_about(scenery.corners, subject.corners);
   if (subject.corners.empty())

@@ -126,6 +126,9 @@ const Broken kCorpus[] = {
     {"[[body]]\nkind = \"box\"\n", "t.toml:1:1", "has no size", "size = [x, y, z]"},
     {"[[body]]\nkind = \"capsule\"\nradius = 0.2\nlength = 0.4\n", "t.toml:4:10",
      "is 0.4 m long with its round ends alone", "is a sphere"},
+    {"[[body]]\nname = \"b\"\nkind = \"sphere\"\n[[event]]\nat = 1\ndo = \"drop\"\nbody = \"b\"\nheight = "
+     "2\n",
+     "t.toml:8:1", "\"height\" does not belong here", "falls from \"position\""},
     {"[[body]]\nkind = \"capsule\"\nsize = 1\n", "t.toml:3:1", "\"size\" does not belong here",
      "a radius and a length only"},
     {"[[body]]\nkind = \"sphere\"\nthickness = 1\n", "t.toml:3:1", "\"thickness\" does not belong here",

@@ -195,6 +195,15 @@ TEST_CASE("a camera without a place sees where things are dropped, though nothin
   CHECK(look.subject.centre.x() == Approx(5.0));
   CHECK(look.subject.centre.y() == Approx(1.05));
   CHECK(!look.subject.fall);
+  // Upon something else it comes from above the picture.
+  const std::string table =
+      "[[body]]\nkind = \"plane\"\n[[body]]\nname = \"table\"\nkind = \"box\"\nsize = [1, 0.1, 1]\n"
+      "position = [0, 0.05, 0]\n";
+  const std::string egg =
+      "[[body]]\nname = \"egg\"\nkind = \"sphere\"\nradius = 0.1\n"
+      "[[event]]\nat = 1\ndo = \"drop\"\nbody = \"egg\"\nposition = [0, 9, 0]\n";
+  const auto distance = [](const Look& one) { return (one.at(0.0).position - one.at(0.0).target).norm(); };
+  CHECK(distance(look_at(table + egg)) < 1.8 * distance(look_at(table)));
 }
 
 TEST_CASE("a camera without a place goes down with what falls, and stands where more happens") {
