@@ -290,8 +290,7 @@ std::vector<BreakRow> World::dent_bodies(const MovingState& snapshot) {
         if (solid) leave(*solid, dented->share, dented->moves, left);
         if (dented->torn) left.torn = dented->torn;
         row.born = put_dented(s.moving, body, *dented, s.ancestry);
-        regrip(s.hands, body, {row.born}, s.moving.bodies);
-        rehang(s.moving.contact.joints, body, {row.born}, s.moving.bodies);
+        hang_on(body, {row.born}, end_time);
         inherit_stress(id, {row.born});
         const auto known = s.element_stress.find(row.born);
         if (dented->torn && known != s.element_stress.end())

@@ -24,6 +24,9 @@ constexpr double kFirst = 0.5;
 // there.
 constexpr double kHinge = 1e-3;
 
+// Times a piece's radius, from its centre: no joint holds it from further away.
+constexpr double kHeld = 2.0;
+
 /// The surface as triangles in the world; of a plane as much as lies before `other`.
 geometry::TriangleMesh world_surface(const body::Body& body, const body::Body& other) {
   geometry::TriangleMesh mesh = body::find_polyhedron(*body.shape);
@@ -92,8 +95,9 @@ geometry::FacingArea find_mortar_area(const body::Body& a, const body::Body& b, 
   return geometry::find_facing_area(world_surface(a, b), world_surface(b, a), gap);
 }
 
-void rehang(std::vector<dynamics::Joint>& joints, const body::Body& parent,
-            const std::vector<body::BodyId>& born, const std::vector<body::Body>& bodies) {
+std::vector<int> rehang(std::vector<dynamics::Joint>& joints, const body::Body& parent,
+                        const std::vector<body::BodyId>& born, const std::vector<body::Body>& bodies) {
+  std::vector<int> lost;
   for (dynamics::Joint& joint : joints) {
     const bool is_a = joint.body_a == parent.id;
     if (!is_a && joint.body_b != parent.id) continue;
@@ -103,6 +107,22 @@ void rehang(std::vector<dynamics::Joint>& joints, const body::Body& parent,
     if (piece == nullptr) continue;
     (is_a ? joint.body_a : joint.body_b) = piece->id;
     frame = {piece->pose.rotation.conjugate() * place.rotation, piece->pose.apply_inverse(place.translation)};
+    if (frame.translation.norm() > kHeld * piece->shape->bounding_radius) lost.push_back(joint.number);
+  }
+  std::erase_if(joints, [&](const dynamics::Joint& joint) {
+    return std::find(lost.begin(), lost.end(), joint.number) != lost.end();
+  });
+  return lost;
+}
+
+void World::hang_on(const body::Body& parent, const std::vector<body::BodyId>& born, double time) {
+  State& s = *state_;
+  regrip(s.hands, parent, born, s.moving.bodies);
+  for (const int number : rehang(s.moving.contact.joints, parent, born, s.moving.bodies)) {
+    JointRow& row = s.report.joints[at(number - 1)];
+    row.opened = time;
+    row.verdict = "opened: what it held is in pieces, and none of them reaches it";
+    s.moving.joint_memories.erase(number);
   }
 }
 

@@ -85,8 +85,10 @@ std::vector<int> find_opening(std::span<const JointVerdict> verdicts, double lea
 geometry::FacingArea find_mortar_area(const body::Body& a, const body::Body& b, double gap);
 
 /// Joints of a body that broke, as it was in `parent`, go on with that piece of `born` which is nearest to
-/// them.
-void rehang(std::vector<dynamics::Joint>& joints, const body::Body& parent,
-            const std::vector<body::BodyId>& born, const std::vector<body::Body>& bodies);
+/// them. Taken away and returned, by number, are those from which it is further than it is across: what hung
+/// there was all of the body.
+[[nodiscard]] std::vector<int> rehang(std::vector<dynamics::Joint>& joints, const body::Body& parent,
+                                      const std::vector<body::BodyId>& born,
+                                      const std::vector<body::Body>& bodies);
 
 }  // namespace shatterbox::world

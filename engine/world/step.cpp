@@ -442,8 +442,7 @@ bool World::break_bodies(std::span<const EvaluatedImpact* const> broken, MovingS
       take_plug_along(s.moving, *impact, row, s.log);
       leave_dent(s.moving, *impact, row, keeps_dents);
     }
-    regrip(s.hands, parent, row.born, s.moving.bodies);
-    rehang(s.moving.contact.joints, parent, row.born, s.moving.bodies);
+    hang_on(parent, row.born, end_time);
     row.time = end_time;
     inherit_stress(row.id, row.born);
     s.report.breaks.push_back(std::move(row));

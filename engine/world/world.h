@@ -189,6 +189,8 @@ class World {
   std::vector<JointVerdict> judge_joints(const dynamics::StepPart& part, const body::ImpulseLog& log);
   /// Opens those that are overloaded most. True if the part must be taken again.
   bool open_joints(std::span<const JointVerdict> verdicts, MovingState& snapshot, bool may_go_back);
+  /// What held a body that broke, as it was in `parent`, holds pieces of it from `time` (s) on, or nothing.
+  void hang_on(const body::Body& parent, const std::vector<body::BodyId>& born, double time);
   void inherit_stress(body::BodyId parent, const std::vector<body::BodyId>& born);
   void book_momentum(const std::vector<body::Body>& before, std::span<const body::LoggedImpulse> log,
                      double time_step);

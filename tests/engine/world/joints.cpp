@@ -205,8 +205,11 @@ TEST_CASE("a hit opens mortar about it and not all of it and bits repeat") {
   CHECK(once == again);
 }
 
-TEST_CASE("a joint of a body that broke goes on with the nearest piece in the same place") {
+TEST_CASE(
+    "a joint of a body that broke goes on with the nearest piece in the same place, or ends if that is "
+    "small") {
   const auto shape = std::make_shared<body::Shape>();
+  shape->bounding_radius = 0.05;
   body::Body parent;
   parent.id = 3;
   parent.shape = shape;
@@ -221,13 +224,23 @@ TEST_CASE("a joint of a body that broke goes on with the nearest piece in the sa
   joint.body_b = 3;
   joint.frame_b = {Quat(Eigen::AngleAxisd(0.3, Vec3::UnitY())), Vec3(0.12, 0.05, 0.0)};
   std::vector<dynamics::Joint> joints{joint};
-  world::rehang(joints, parent, {7, 8}, bodies);
+  CHECK(world::rehang(joints, parent, {7, 8}, bodies).empty());
   CHECK(joints[0].body_a == 2);
   REQUIRE(joints[0].body_b == 8);
   const Pose& piece = bodies[1].pose;
   CHECK(piece.apply(joints[0].frame_b.translation).isApprox(parent.pose.apply(joint.frame_b.translation)));
   CHECK((piece.rotation * joints[0].frame_b.rotation)
             .isApprox(parent.pose.rotation * joint.frame_b.rotation, 1e-12));
+  // Pieces of two centimetres that are five from it.
+  shape->bounding_radius = 0.02;
+  dynamics::Joint near = joint;
+  near.number = 4;
+  near.frame_b.translation = Vec3(0.12, 0.0, 0.0);
+  joint.number = 5;
+  joints = {joint, near};
+  CHECK(world::rehang(joints, parent, {7, 8}, bodies) == std::vector<int>{5});
+  REQUIRE(joints.size() == 1);
+  CHECK(joints[0].number == 4);
 }
 
 TEST_CASE("a pivot bears a weight up to its strength and goes with its body") {
