@@ -88,6 +88,9 @@ struct VaseSizes {
 };
 core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& meshing);
 
+/// Outer side and bottom of the same as one sheet, open at its rim on y = height, for shells; without `wall`.
+core::Result<TriangleMesh> make_vase_sheet(const VaseSizes& sizes, const Meshing& meshing);
+
 /// A bottle with a wall: flat bottom with a rounded edge on y = 0, straight body, shoulder, straight neck
 /// with a round lip; closed, for solids. Finer than twice the wall, as a vase.
 struct BottleSizes {

@@ -121,31 +121,52 @@ WallProfile bottle_side(const BottleSizes& sizes, double low, double inset) {
   return profile;
 }
 
+/// `wall`: 0 of a sheet.
+std::optional<std::string> find_vase_fault(const VaseSizes& sizes, double wall) {
+  const char* walls = wall > 0.0 ? "two walls" : "";
+  return find_fault_of(
+      "a vase's", std::array<NamedSize, 5>{
+                      {{"height", sizes.height, 10.0 * wall, wall > 0.0 ? "ten walls" : ""},
+                       {"foot_radius", sizes.foot_radius, 2.0 * wall, walls},
+                       {"neck_radius", sizes.neck_radius, 2.0 * wall, walls},
+                       {"rim_radius", sizes.rim_radius, 2.0 * wall, walls},
+                       {"belly_radius", sizes.belly_radius, std::max(sizes.foot_radius, sizes.neck_radius),
+                        "foot_radius and neck_radius"}}});
+}
+
+std::vector<ProfileSegment> vase_bottom(const VaseSizes& sizes) {
+  return {{ProfileSegment::Kind::line, {0.0, 0.0}, {sizes.foot_radius, 0.0}, Vec2::Zero(), Part::body}};
+}
+
+WallProfile vase_side(const VaseSizes& sizes, double low, double top, double inset) {
+  WallProfile profile({sizes.foot_radius, low}, inset);
+  profile.add_arriving_upright(sizes.belly_radius, 0.33 * top, 0.15 * top);
+  profile.add_shoulder(sizes.neck_radius, 0.8 * top);
+  profile.add_leaving_upright(sizes.rim_radius, top, 0.92 * top);
+  return profile;
+}
+
+core::Result<TriangleMesh> make_sheet(std::vector<ProfileSegment> bottom, const WallProfile& side,
+                                      const Meshing& meshing) {
+  bottom.insert(bottom.end(), side.segments().begin(), side.segments().end());
+  core::Result<PartedMesh> sheet = make_surface_of_revolution(bottom, meshing);
+  if (!sheet) return core::Error{sheet.error()};
+  return std::move(sheet.value().mesh);
+}
+
 }  // namespace
 
 core::Result<TriangleMesh> make_vase(const VaseSizes& sizes, const Meshing& meshing) {
-  const double wall = sizes.wall;
-  if (const auto fault = find_fault_of(
-          "a vase's", std::array<NamedSize, 6>{
-                          {{"wall", wall, 0.0},
-                           {"height", sizes.height, 10.0 * wall, "ten walls"},
-                           {"foot_radius", sizes.foot_radius, 2.0 * wall, "two walls"},
-                           {"neck_radius", sizes.neck_radius, 2.0 * wall, "two walls"},
-                           {"rim_radius", sizes.rim_radius, 2.0 * wall, "two walls"},
-                           {"belly_radius", sizes.belly_radius,
-                            std::max(sizes.foot_radius, sizes.neck_radius), "foot_radius and neck_radius"}}}))
-    return core::Error{*fault};
-  const double top = sizes.height - 0.5 * wall;
-  const auto side = [&](double floor, double inset) {
-    WallProfile profile({sizes.foot_radius, floor}, inset);
-    profile.add_arriving_upright(sizes.belly_radius, 0.33 * top, 0.15 * top);
-    profile.add_shoulder(sizes.neck_radius, 0.8 * top);
-    profile.add_leaving_upright(sizes.rim_radius, top, 0.92 * top);
-    return profile;
-  };
-  std::vector<ProfileSegment> bottom{
-      {ProfileSegment::Kind::line, {0.0, 0.0}, {sizes.foot_radius, 0.0}, Vec2::Zero(), Part::body}};
-  return close_vessel(std::move(bottom), side(0.0, 0.0), side(wall, wall), wall, meshing);
+  const double wall = sizes.wall, top = sizes.height - 0.5 * wall;
+  if (const auto fault = find_size_fault("a vase's wall", wall, 0.0)) return core::Error{*fault};
+  if (const auto fault = find_vase_fault(sizes, wall)) return core::Error{*fault};
+  return close_vessel(vase_bottom(sizes), vase_side(sizes, 0.0, top, 0.0), vase_side(sizes, wall, top, wall),
+                      wall, meshing);
+}
+
+core::Result<TriangleMesh> make_vase_sheet(const VaseSizes& sizes, const Meshing& meshing) {
+  if (const auto fault = find_vase_fault(sizes, 0.0)) return core::Error{*fault};
+  return make_sheet(vase_bottom(sizes), vase_side(sizes, 0.0, sizes.height, 0.0), meshing);
 }
 
 core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& meshing) {
@@ -157,12 +178,7 @@ core::Result<TriangleMesh> make_bottle(const BottleSizes& sizes, const Meshing& 
 
 core::Result<TriangleMesh> make_bottle_sheet(const BottleSizes& sizes, const Meshing& meshing) {
   if (const auto fault = find_bottle_fault(sizes)) return core::Error{*fault};
-  std::vector<ProfileSegment> profile = bottle_bottom(sizes);
-  const WallProfile side = bottle_side(sizes, bottle_edge(sizes), 0.0);
-  profile.insert(profile.end(), side.segments().begin(), side.segments().end());
-  core::Result<PartedMesh> sheet = make_surface_of_revolution(profile, meshing);
-  if (!sheet) return core::Error{sheet.error()};
-  return std::move(sheet.value().mesh);
+  return make_sheet(bottle_bottom(sizes), bottle_side(sizes, bottle_edge(sizes), 0.0), meshing);
 }
 
 core::Result<TriangleMesh> make_wine_glass(const WineGlassSizes& sizes, const Meshing& meshing) {

@@ -62,6 +62,9 @@ struct Generate {
   core::Result<geometry::PartedMesh> operator()(const BottleSheet& sheet) const {
     return with_parts(geometry::make_bottle_sheet(sheet.sizes, meshing));
   }
+  core::Result<geometry::PartedMesh> operator()(const VaseSheet& sheet) const {
+    return with_parts(geometry::make_vase_sheet(sheet.sizes, meshing));
+  }
   core::Result<geometry::PartedMesh> operator()(const geometry::WineGlassSizes& sizes) const {
     return with_parts(geometry::make_wine_glass(sizes, meshing));
   }
@@ -95,6 +98,7 @@ double coarse_edge(const MeshShape& shape) {
   if (const auto* vase = std::get_if<geometry::VaseSizes>(&shape)) return 0.2 * vase->neck_radius;
   if (const auto* bottle = std::get_if<geometry::BottleSizes>(&shape)) return 0.2 * bottle->neck_radius;
   if (const auto* sheet = std::get_if<BottleSheet>(&shape)) return 0.2 * sheet->sizes.neck_radius;
+  if (const auto* sheet = std::get_if<VaseSheet>(&shape)) return 0.2 * sheet->sizes.neck_radius;
   if (const auto* figure = std::get_if<FigureShape>(&shape)) return figure->height / 40.0;
   if (const auto* glass = std::get_if<geometry::WineGlassSizes>(&shape)) return 0.2 * glass->radius;
   if (const auto* egg = std::get_if<geometry::EggSizes>(&shape)) return 0.2 * egg->radius;

@@ -92,12 +92,14 @@ void note_fine_grains(const BodyEntry& body, const world::SolidDescription& soli
 std::string describe_sheet_for(const BodyEntry& body, double wall) {
   const MeshForm* form = find_mesh_form(body.form);
   const char* what = nullptr;
-  if (std::holds_alternative<geometry::BottleSizes>(form->shape)) what = "a sheet (kind = \"shell\"";
+  if (std::holds_alternative<geometry::BottleSizes>(form->shape) ||
+      std::holds_alternative<geometry::VaseSizes>(form->shape))
+    what = "a sheet (kind = \"shell\"";
   if (std::holds_alternative<SlabShape>(form->shape)) what = "a sheet (kind = \"shell\", shape = \"pane\"";
   if (std::holds_alternative<MeshFileShape>(form->shape))
     what = "one side of its wall alone, as a sheet (kind = \"shell\"";
   if (what == nullptr) return {};
-  return fmt::format(", and {}, thickness = {:.2g}) needs none across", what, wall);
+  return fmt::format("{}, thickness = {:.2g}) needs none across and is quick; ", what, wall);
 }
 
 /// Bent across one element it is too stiff. Who tells the size of elements has chosen, up to
@@ -109,8 +111,9 @@ void note_thin_wall(const BodyEntry& body, const world::SolidDescription& solid,
   if (wall >= (solid.element_size > 0.0 ? kThinnestTold : kThinnestWall) * size) return;
   notes.push_back(
       fmt::format("the wall of \"{}\" is {:.2g} m thick and its elements {:.2g} m: its stress is told too "
-                  "low; element_size = {:.2g} is finer{}",
-                  body.name, wall, size, wall / kThinnestWall, describe_sheet_for(body, wall)));
+                  "low; {}element_size = {:.2g} is finer, and takes {:.0f} times as many",
+                  body.name, wall, size, describe_sheet_for(body, wall), wall / kThinnestWall,
+                  std::ceil(std::pow(size * kThinnestWall / wall, 2))));
 }
 
 void measure(const world::SolidDescription& solid, BodyPlan& plan) {

@@ -19,7 +19,7 @@ struct Shapes {
   std::vector<std::string> known;
 };
 const Shapes kShellShapes{
-    "shell", {"ornament", "sphere", "bowl", "wine_glass", "pane", "boat", "bottle", "egg", "lathe"}};
+    "shell", {"ornament", "sphere", "bowl", "wine_glass", "pane", "boat", "vase", "bottle", "egg", "lathe"}};
 const Shapes kSolidShapes{"solid", {"sphere", "slab", "bricks", "vase", "bottle", "egg", "figure", "lathe"}};
 /// What goes by another name here.
 struct OtherName {
@@ -192,15 +192,21 @@ geometry::BoatSizes read_boat(TableReader& reader) {
   return sizes;
 }
 
-geometry::VaseSizes read_vase(TableReader& reader) {
+void refuse_wall(TableReader& reader) {
+  reader.foreign({"wall"}, "how thick the wall of a shell is, is its thickness");
+}
+
+MeshShape read_vase(TableReader& reader, bool is_sheet) {
   geometry::VaseSizes sizes;
-  read_scaled(reader, {"height", &sizes.height},
-              {{"foot_radius", &sizes.foot_radius},
-               {"belly_radius", &sizes.belly_radius},
-               {"neck_radius", &sizes.neck_radius},
-               {"rim_radius", &sizes.rim_radius},
-               {"wall", &sizes.wall}});
-  return sizes;
+  std::vector<NamedSize> others{{"foot_radius", &sizes.foot_radius},
+                                {"belly_radius", &sizes.belly_radius},
+                                {"neck_radius", &sizes.neck_radius},
+                                {"rim_radius", &sizes.rim_radius}};
+  if (!is_sheet) others.push_back({"wall", &sizes.wall});
+  read_scaled(reader, {"height", &sizes.height}, others);
+  if (!is_sheet) return sizes;
+  refuse_wall(reader);
+  return VaseSheet{sizes};
 }
 
 MeshShape read_bottle(TableReader& reader, bool is_sheet) {
@@ -212,6 +218,7 @@ MeshShape read_bottle(TableReader& reader, bool is_sheet) {
   if (!is_sheet) others.push_back({"wall", &sizes.wall});
   read_scaled(reader, {"height", &sizes.height}, others);
   if (!is_sheet) return sizes;
+  refuse_wall(reader);
   sizes.wall = edge;
   return BottleSheet{sizes};
 }
@@ -269,7 +276,7 @@ MeshShape read_shape(TableReader& reader, const std::string& shape, bool is_shee
   if (shape == "bowl") return read_bowl(reader);
   if (shape == "pane") return read_pane(reader);
   if (shape == "boat") return read_boat(reader);
-  if (shape == "vase") return read_vase(reader);
+  if (shape == "vase") return read_vase(reader, is_sheet);
   if (shape == "bottle") return read_bottle(reader, is_sheet);
   if (shape == "wine_glass") return read_wine_glass(reader);
   if (shape == "figure") return read_figure(reader);

@@ -50,13 +50,16 @@ struct SlabShape {
 struct FigureShape {
   double height = 0.5;  // m
 };
-/// The bottle of a shell: one sheet.
+/// The bottle and the vase of a shell: one sheet.
 struct BottleSheet {
   geometry::BottleSizes sizes;
 };
+struct VaseSheet {
+  geometry::VaseSizes sizes;
+};
 using MeshShape = std::variant<MeshFileShape, geometry::OrnamentSizes, SphereShape, geometry::BowlSizes,
                                PaneShape, geometry::BoatSizes, SlabShape, geometry::VaseSizes,
-                               geometry::BottleSizes, geometry::EggSizes, FigureShape, BottleSheet,
+                               geometry::BottleSizes, geometry::EggSizes, FigureShape, BottleSheet, VaseSheet,
                                geometry::WineGlassSizes, geometry::LatheSizes>;
 
 // Kinds of bodies.

@@ -58,12 +58,13 @@ bool has_joint(const scene::SceneDescription& scene, std::size_t number) {
 }
 
 // Of each body of the scene whether the eye goes after it: what can break or hangs, or, where nothing does,
-// whatever can move.
+// whatever is there from the start.
 std::vector<char> find_followed(const scene::SceneDescription& scene) {
   std::vector<char> follows;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     follows.push_back(scene::can_break(scene.bodies[i]) || has_joint(scene, i) ? 1 : 0);
-  if (std::count(follows.begin(), follows.end(), 1) == 0) std::fill(follows.begin(), follows.end(), 1);
+  if (std::count(follows.begin(), follows.end(), 1) == 0)
+    for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = scene.bodies[i].is_held_back ? 0 : 1;
   return follows;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "engine/geometry/closest_points.h"
 #include "engine/geometry/edge_topology.h"
 #include "engine/geometry/generators.h"
 #include "engine/geometry/mass_properties.h"
@@ -280,20 +281,45 @@ TEST_CASE("the figure is one closed surface of the height and about the edges as
   CHECK_FALSE(make_figure(1.0, fine(1e-4)));
 }
 
-TEST_CASE("a bottle's sheet is open at its mouth only") {
-  const TriangleMesh sheet = make_bottle_sheet({}, fine(0.006)).value();
-  const EdgeTopology topology = build_edge_topology(sheet.triangles);
-  int border = 0;
-  double mouth = 0.0;
-  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
-    if (!topology.is_boundary(static_cast<int>(e))) continue;
-    const auto [a, b] = topology.edges[e];
-    const Vec3 &p = sheet.positions[static_cast<std::size_t>(a)],
-               &q = sheet.positions[static_cast<std::size_t>(b)];
-    mouth += (p - q).norm();
-    CHECK(p.y() == Approx(BottleSizes{}.height - 0.5 * BottleSizes{}.wall));
-    ++border;
+TEST_CASE("sheets of bottles and vases are open at their mouths only") {
+  struct Vessel {
+    TriangleMesh sheet;
+    double height, mouth_radius;
+  };
+  for (const Vessel& vessel :
+       {Vessel{make_bottle_sheet({}, fine(0.006)).value(), BottleSizes{}.height - 0.5 * BottleSizes{}.wall,
+               BottleSizes{}.neck_radius},
+        Vessel{make_vase_sheet({}, fine(0.008)).value(), VaseSizes{}.height, VaseSizes{}.rim_radius}}) {
+    const EdgeTopology topology = build_edge_topology(vessel.sheet.triangles);
+    int border = 0;
+    double mouth = 0.0;
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+      if (!topology.is_boundary(static_cast<int>(e))) continue;
+      const auto [a, b] = topology.edges[e];
+      const Vec3 &p = vessel.sheet.positions[static_cast<std::size_t>(a)],
+                 &q = vessel.sheet.positions[static_cast<std::size_t>(b)];
+      mouth += (p - q).norm();
+      CHECK(p.y() == Approx(vessel.height));
+      ++border;
+    }
+    CHECK(border > 5);
+    CHECK(mouth == Approx(2.0 * core::kPi * vessel.mouth_radius).epsilon(0.05));
   }
-  CHECK(border > 5);
-  CHECK(mouth == Approx(2.0 * core::kPi * BottleSizes{}.neck_radius).epsilon(0.05));
+}
+
+TEST_CASE("a vase's sheet lies on the outside of the solid's wall") {
+  const TriangleMesh sheet = make_vase_sheet({}, fine(0.02)).value(),
+                     solid = make_vase({}, fine(0.01)).value();
+  for (const Vec3& p : sheet.positions) {
+    double nearest = 1e300;
+    for (const Triangle& t : solid.triangles)
+      nearest = std::min(nearest, closest_on_triangle(p, solid.positions[static_cast<std::size_t>(t[0])],
+                                                      solid.positions[static_cast<std::size_t>(t[1])],
+                                                      solid.positions[static_cast<std::size_t>(t[2])])
+                                      .distance);
+    CHECK(nearest < 0.6 * VaseSizes{}.wall);  // which is round at the rim
+  }
+  VaseSizes thin;
+  thin.belly_radius = 0.01;
+  CHECK_FALSE(make_vase_sheet(thin, fine(0.02)));
 }

@@ -163,8 +163,13 @@ TEST_CASE("walls of hardly an element are noted, and closed meshes of files that
   CHECK(notes_of(vase + "element_size = 0.014\n").find("element_size = 0.00") != std::string::npos);
   CHECK(notes_of(vase + "element_size = 0.011\n").find("the wall of") == std::string::npos);
   CHECK(notes_of(vase + "breakable = false\n").find("the wall of") == std::string::npos);
-  // What is advised is not refused: no sheet is a vase, a pane and a bottle are.
-  CHECK(notes_of(vase).find("a sheet") == std::string::npos);
+  // What is advised is not refused: sheets are vases, panes and bottles, and no lathe's wall that is not one.
+  CHECK(notes_of(vase).find("a sheet (kind = \"shell\", thickness = 0.00") != std::string::npos);
+  CHECK(notes_of("kind = \"shell\"\nshape = \"vase\"\nthickness = 0.006\n").empty());
+  CHECK(
+      notes_of("kind = \"solid\"\nshape = \"lathe\"\nprofile = [[0.1, 0], [0.1, 0.3], [0.095, 0.3], [0.095, "
+               "0], [0.1, 0]]\nelement_size = 0.02\n")
+          .find("a sheet") == std::string::npos);
   CHECK(notes_of("kind = \"solid\"\nshape = \"slab\"\nsize = [1, 0.01, 0.3]\n").find("shape = \"pane\"") !=
         std::string::npos);
   CHECK(notes_of("kind = \"solid\"\nshape = \"bottle\"\n").find("a sheet (kind = \"shell\"") !=

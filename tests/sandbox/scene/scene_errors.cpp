@@ -83,8 +83,10 @@ const Broken kCorpus[] = {
     {"[[body]]\nname = \"camera\"\nkind = \"sphere\"\n", "t.toml:2:8", "nothing can be named \"camera\"", ""},
     // Choices.
     {"[[body]]\nkind = \"spere\"\n", "t.toml:2:8", "unknown kind \"spere\"", "did you mean \"sphere\"?"},
-    {"[[body]]\nkind = \"shell\"\nshape = \"vase\"\n", "t.toml:3:9", "\"vase\" is the shape of a solid",
+    {"[[body]]\nkind = \"shell\"\nshape = \"slab\"\n", "t.toml:3:9", "\"slab\" is the shape of a solid",
      "write kind = \"solid\""},
+    {"[[body]]\nkind = \"shell\"\nshape = \"vase\"\nwall = 0.01\n", "t.toml:4:1",
+     "\"wall\" does not belong here", "is its thickness"},
     {"[[body]]\nkind = \"shell\"\nshape = \"pane\"\nsize = [0.3, 0.2]\n", "t.toml:4:8",
      "a pane has a width and a height", "write width = 0.3"},
     {"[[body]]\nkind = \"solid\"\nshape = \"bricks\"\n", "t.toml:1:1", "has no size",
