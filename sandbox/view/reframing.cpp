@@ -10,15 +10,15 @@
 namespace shatterbox::sandbox::view {
 namespace {
 
-constexpr double kAhead = 0.3;      // s: so far it foresees where what falls will be
-constexpr double kNext = 0.1;       // s, and what may yet stop
-constexpr double kHaste = 0.12;     // s, of each of two lags, one behind the other
-constexpr double kCalm = 0.5;       // s, of the coming closer
-constexpr double kRoom = 0.15;      // of the longest side of what is followed, about it
-constexpr double kRim = 0.95;       // of the picture's half: beyond it something leaves it
-constexpr double kBigPiece = 0.35;  // times as far across as what it was a piece of: that is looked after
+constexpr double kAhead = 0.3;     // s: so far it foresees where what falls will be
+constexpr double kNext = 0.1;      // s, and what may yet stop
+constexpr double kHaste = 0.12;    // s, of each of two lags, one behind the other
+constexpr double kCalm = 0.5;      // s, of the coming closer
+constexpr double kRoom = 0.15;     // of the longest side of what is followed, about it
+constexpr double kRim = 0.95;      // of the picture's half: beyond it something leaves it
+constexpr double kBigPiece = 0.5;  // times as far across as what it was a piece of: that is looked after
 // Of the longest side of all that there is to see: so far aside, above and below it things are looked after.
-constexpr double kAside = 0.8;
+constexpr double kAside = 0.5;
 constexpr double kBelow = 3.0;
 
 geometry::Box find_room(const std::vector<Vec3>& corners, const Vec3& gravity) {
@@ -79,7 +79,7 @@ struct Reframing::Seen {
   Mat3 axes;
   double slope = 0.0;  // of the picture's upper rim
 
-  explicit Seen(const Viewpoint& eye, const Mat3& along) : view(eye), axes(along) {
+  Seen(const Viewpoint& eye, const Mat3& along) : view(eye), axes(along) {
     const double half = eye.fov * core::kPi / 360.0;
     slope = core::sin(half) / core::cos(half);
   }
@@ -160,7 +160,8 @@ geometry::Box Reframing::survey(const Seen& seen) {
     const bool is_here = seen.holds(box);
     if (is_here) met_.insert(original_of(body));
     if (met_.count(original_of(body)) == 0) continue;
-    is_off_ |= !is_here || !seen.holds(ahead);
+    // An eye that goes down with what falls will be there too.
+    is_off_ |= !is_here || (!subject_.fall && !seen.holds(ahead));
     all.include(box);
     all.include(ahead);
   }
@@ -185,7 +186,7 @@ Shift Reframing::wanted(const Viewpoint& usual) const {
 void Reframing::look() {
   if (follows_.empty()) return;
   const double time = built_.world.time(), step = 1.0 / scene_.world.steps_per_second;
-  const geometry::Box all = survey(Seen(usual_at(time + kAhead), axes_));
+  const geometry::Box all = survey({usual_at(time), axes_});
   if (!is_empty(all)) {
     const bool is_first = is_empty(stage_);
     const double closer = step / (kCalm + step);

@@ -125,6 +125,18 @@ TEST_CASE(
   is_shot.go_on(1.0, [&] { CHECK(is_shot.distance() < 3.0 * (usual.position - usual.target).norm()); });
 }
 
+TEST_CASE("the camera that goes down with what falls goes no other way for that") {
+  Set set(
+      "[[body]]\nkind = \"plane\"\n[[body]]\nname = \"ball\"\nkind = \"sphere\"\nradius = 0.06\n"
+      "position = [0, 3, 0]\n");
+  REQUIRE(set.subject->fall);
+  set.go_on(0.7, [&] {
+    CHECK(set.spread("ball") < 1.0);
+    CHECK(set.reframing->shift().position == Vec3::Zero());
+  });
+  set.go_on(0.8, [&] { CHECK(set.spread("ball") < 1.0); });  // it bounces
+}
+
 TEST_CASE("a camera with a place or a target of its own stays as it is whatever leaves its picture") {
   for (const std::string own : {"position = [0, 1.5, 3]\n", "target = [0, 1.7, 0]\n", "follow = \"hook\"\n",
                                 "path = [{at = 0, position = [0, 1, 4], target = [0, 1.7, 0]}]\n"}) {
