@@ -48,7 +48,7 @@ vec3 mirrored_floor(vec3 p, vec3 d, float roughness) {
               0.65 * (0.012 / seam) * (1.0 - smoothstep(0.0, seam, edge));
     }
   }
-  float foot = away / (away + 0.6 * occlusion_scale.w);
+  float foot = 0.3 + 0.7 * away / (away + 0.6 * occlusion_scale.w);
   float far = away / (away + 1.2 * target_distance.w);
   return mix(share * (floor_sun.rgb * foot * foot + floor_sky.rgb * foot), kWall * sky_radiance.rgb, far);
 }

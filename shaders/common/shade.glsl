@@ -33,8 +33,12 @@ vec3 shade(Surface s, vec2 pixel) {
   vec3 light = diffuse * (sunlight * n_dot_l + ambient(n) * sky_tinted * (1.0 - share.y));
 #if PATTERNS & 1024  // something in the picture is a mirror
   vec3 below = mirrored_floor(s.position, r, s.roughness);
-  below = mix(below, ground_radiance.rgb, smoothstep(0.1, 0.3, max(s.roughness, 1.0 - s.metalness)));
+  float dull = smoothstep(0.1, 0.3, max(s.roughness, 1.0 - s.metalness));
+  below = mix(below, ground_radiance.rgb, dull);
+  // The floor that a mirror shows has its dark foot already.
+  float base_mirrored = mix(1.0, sky_mirrored, max(dull, smoothstep(-0.25, 0.0, r.y)));
 #else
+  float base_mirrored = sky_mirrored;
   vec3 below = ground_radiance.rgb;
 #endif
 #ifdef PREVIEW  // one look at the surroundings instead of two
@@ -45,7 +49,7 @@ vec3 shade(Surface s, vec2 pixel) {
   vec3 around = surroundings(r, s.coat_roughness, ground_radiance.rgb, kCoatLamps);
   vec3 around_base = surroundings(r, s.roughness, below, 1.0);
 #endif
-  light += mirrored * around_base * sky_mirrored;
+  light += mirrored * around_base * base_mirrored;
   light += sunlight * glint(n_dot_l, n_dot_v, n_dot_h, s.roughness) * f0;
 
   float coat = max(s.coat, 0.0) * schlick(0.05, n_dot_v);

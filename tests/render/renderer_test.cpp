@@ -142,6 +142,21 @@ TEST_CASE("a ball of clear glass on a pale ground has a dark outline, one of fro
   CHECK(green(renderer.render(frame), edge) > green(clear, edge) + 15);
 }
 
+TEST_CASE(
+    "a post of chrome is darker at its foot, where it mirrors the floor in its own dark, and not black") {
+  Frame frame = plain_frame();
+  frame.camera = {glm::vec3(0, 1.5F, 4), glm::vec3(0, 0.5F, 0), glm::vec3(0, 1, 0), 30.0F};
+  frame.draws = {at(make_box(1, {0.2F, 1.0F, 0.2F}), {0, 0.5F, 0}, metal(glm::vec3(0.8F), 0.05F))};
+  for (const Quality quality : {Quality::preview, Quality::full}) {
+    Renderer renderer(kSize, quality);
+    const Image image = renderer.render(frame);
+    const int middle = green(image, pixel_of(frame, {0, 0.5F, 0.1F})),
+              foot = green(image, pixel_of(frame, {0, 0.02F, 0.1F}));
+    CHECK(foot < middle);
+    CHECK(foot > middle / 2);
+  }
+}
+
 TEST_CASE("clouds lie between their two colours, fade into the mean far away") {
   Look look = matt(glm::vec3(0.6F));
   look.pattern = Pattern::clouds;
