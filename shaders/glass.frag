@@ -13,7 +13,7 @@ layout(location = 0, index = 1) out vec4 kept;
 #include "common/shadow.glsl"
 // How much light a face takes: what keeps the sun off is near, and keeps off some of the sky. Light goes through such a body:
 // no face is dark because it is turned away.
-float light_seen(Surface s, vec3 n) { return s.transmission < 0.9 ? sun_seen_past_bodies(s.position, n) : 1.0; }
+float light_seen(Surface s, vec3 n) { return s.transmission < CLEAR ? sun_seen_past_bodies(s.position, n) : 1.0; }
 const float kSkyInShadow = 0.6;
 #endif
 

@@ -15,8 +15,8 @@ constexpr unsigned kPatterns = ~kMirrors;  // of what a frame shows
 
 GlassPass::GlassPass(int samples_across, int shadow_taps)
     : samples_across_(samples_across),
-      taps_("SHADOW_TAPS " + std::to_string(shadow_taps)),
       side_("SIDE " + std::to_string(samples_across)),
+      defines_({side_, "SHADOW_TAPS " + std::to_string(shadow_taps), "CLEAR " + std::to_string(kClear)}),
       rims_("tile.vert", "glass.frag", {side_, "RIMS"}) {
   if (samples_across_ > 1) cover_ = gpu::Program("tile.vert", "glass_cover.frag", {side_});
 }
@@ -25,8 +25,9 @@ const gpu::Program& GlassPass::faces(unsigned pattern_kinds) {
   pattern_kinds &= kPatterns;
   gpu::Program& program = faces_[pattern_kinds];
   if (program.name() == 0) {
-    program =
-        gpu::Program("tile.vert", "glass.frag", {side_, taps_, "PATTERNS " + std::to_string(pattern_kinds)});
+    std::vector<std::string> defines = defines_;
+    defines.push_back("PATTERNS " + std::to_string(pattern_kinds));
+    program = gpu::Program("tile.vert", "glass.frag", defines);
   }
   return program;
 }

@@ -25,7 +25,8 @@ class GlassPass {
   const gpu::Program& faces(unsigned pattern_kinds);  // built when first wanted
 
   int samples_across_;
-  std::string taps_, side_;
+  std::string side_;
+  std::vector<std::string> defines_;  // of faces
   gpu::Program cover_, rims_;
   std::map<unsigned, gpu::Program> faces_;
   std::vector<gpu::Framebuffer> on_faces_;  // the picture with a layer's depth; for one sample a pixel

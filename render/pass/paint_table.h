@@ -14,7 +14,7 @@ namespace shatterbox::render::pass {
 // As the shaders name what a frame shows, beside the kinds of its patterns: what is a mirror, and glass or
 // ice that is not clear.
 constexpr unsigned kMirrors = 1024U, kCloudy = 2048U;
-constexpr float kClear = 0.9F;  // transmission, from which on glass takes no shadow (shaders/glass.frag)
+constexpr float kClear = 0.9F;  // transmission, from which on glass takes no shadow
 
 class PaintTable {
  public:

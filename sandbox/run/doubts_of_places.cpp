@@ -24,13 +24,14 @@ constexpr long kMostTriangles = 300000;  // of the pairs that are looked at: a f
 constexpr std::size_t kMostTold = 5;     // pairs
 
 /// Bodies whose bounding balls meet, and of which one at least can move; planes meet everything.
-std::vector<std::pair<const Body*, const Body*>> near_pairs(std::span<const Body> bodies) {
+using Pairs = std::vector<std::pair<const Body*, const Body*>>;
+Pairs near_pairs(std::span<const Body> bodies) {
   std::vector<const Body*> planes, others;
   for (const Body& body : bodies) (body.shape->kind == ShapeKind::plane ? planes : others).push_back(&body);
   const auto low = [](const Body* b) { return b->pose.translation.x() - b->shape->bounding_radius; };
   std::stable_sort(others.begin(), others.end(),
                    [&](const Body* a, const Body* b) { return low(a) < low(b); });
-  std::vector<std::pair<const Body*, const Body*>> pairs;
+  Pairs pairs;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const Body& a = *others[i];
     for (const Body* plane : planes)
@@ -56,7 +57,7 @@ bool are_twins(const Body& a, const Body& b) {
   });
 }
 
-void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& built, const Pairs& pairs,
                 scene::Problems& doubts) {
   struct Inside {
     const Body *a, *b;
@@ -65,7 +66,7 @@ void doubt_room(const scene::SceneDescription& scene, const scene::BuiltScene& b
   };
   long triangles = 0;
   std::map<std::pair<std::string, std::string>, Inside> found;
-  for (const auto& [a, b] : near_pairs(built.world.bodies())) {
+  for (const auto& [a, b] : pairs) {
     triangles += static_cast<long>(a->shape->surface.triangles.size() + b->shape->surface.triangles.size());
     if (triangles > kMostTriangles) break;
     const std::pair names(entry_of(scene, built, *a).name, entry_of(scene, built, *b).name);
@@ -124,12 +125,12 @@ double height_in(const Body& upper, const Body& lower, const Vec3& down) {
 }
 
 /// Bowls in bowls: sheets have no thickness to each other, so one sinks into the next until they are one.
-void doubt_nests(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+void doubt_nests(const scene::SceneDescription& scene, const scene::BuiltScene& built, const Pairs& pairs,
                  scene::Problems& doubts) {
   if (scene.world.gravity.isZero(0.0)) return;
   const Vec3 down = scene.world.gravity.normalized();
   std::set<int> told;  // entries
-  for (const auto& [a, b] : near_pairs(built.world.bodies()))
+  for (const auto& [a, b] : pairs)
     for (const auto& [upper, lower] : {std::pair(a, b), std::pair(b, a)}) {
       const double height = height_in(*upper, *lower, down);
       if (height == 0.0 || !told.insert(built.origins.at(upper->id).entry).second) continue;
@@ -165,7 +166,7 @@ bool lies_on(const Body& upper, const Body& lower) {
 }
 
 /// A box that carries something and lies on nothing: a table that was meant to stay where it is.
-void doubt_tables(const scene::SceneDescription& scene, const scene::BuiltScene& built,
+void doubt_tables(const scene::SceneDescription& scene, const scene::BuiltScene& built, const Pairs& pairs,
                   scene::Problems& doubts) {
   const Vec3& gravity = scene.world.gravity;
   const bool is_down = gravity.y() < 0.0 && gravity.x() == 0.0 && gravity.z() == 0.0;
@@ -180,7 +181,7 @@ void doubt_tables(const scene::SceneDescription& scene, const scene::BuiltScene&
     if (body.shape->kind == ShapeKind::box && body.is_dynamic() && body.velocity.isZero(0.0))
       tables.emplace(body.id, Table{&body});
   if (tables.empty()) return;
-  for (const auto& [a, b] : near_pairs(built.world.bodies()))
+  for (const auto& [a, b] : pairs)
     for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
       const auto found = tables.find(body->id);
       if (found == tables.end()) continue;
@@ -221,10 +222,11 @@ void doubt_camera(const scene::SceneDescription& scene, const scene::BuiltScene&
     }
   };
   const scene::CameraEntry& camera = scene.camera;
-  view::CameraRig rig(camera, view::find_subject(scene, built.plan));
-  const auto where = [&](scene::BodyRef who) { return scene::centre_of(built, built.world.bodies(), who); };
-  if (camera.place.line > 0)  // else nobody has placed it
+  if (camera.place.line > 0) {  // else nobody has placed it
+    view::CameraRig rig(camera, view::find_subject(scene, built.plan));
+    const auto where = [&](scene::BodyRef who) { return scene::centre_of(built, built.world.bodies(), who); };
     look(rig.view_at({0.0, 0.0, 1.0, built.world.bodies()}, where).position, true, camera.place);
+  }
   for (const scene::CameraKey& key : camera.path)
     if (key.at > 0.0) look(key.position, false, camera.place);
   for (const scene::EventEntry& event : scene.events)
@@ -284,9 +286,10 @@ void doubt_joints(const scene::SceneDescription& scene, const scene::BuiltScene&
 
 void doubt_places(const scene::SceneDescription& scene, const scene::BuiltScene& built,
                   scene::Problems& doubts) {
-  doubt_room(scene, built, doubts);
-  doubt_nests(scene, built, doubts);
-  doubt_tables(scene, built, doubts);
+  const Pairs pairs = near_pairs(built.world.bodies());
+  doubt_room(scene, built, pairs, doubts);
+  doubt_nests(scene, built, pairs, doubts);
+  doubt_tables(scene, built, pairs, doubts);
   doubt_camera(scene, built, doubts);
   doubt_joints(scene, built, doubts);
 }

@@ -80,9 +80,8 @@ double bytes_of(const world::World& world) {
 }
 
 bool is_of(const scene::BuiltScene& built, body::BodyId id, int entry) {
-  const body::BodyId original = built.world.ancestry(id).original;
-  const auto origin = built.origins.find(original != 0 ? original : id);
-  return origin != built.origins.end() && origin->second.entry == entry;
+  const scene::Origin* origin = scene::origin_of(built, id);
+  return origin != nullptr && origin->entry == entry;
 }
 
 std::string name_of(std::span<const body::Body> bodies, body::BodyId id) {

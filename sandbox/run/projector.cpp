@@ -16,9 +16,8 @@ Projector::Projector(const scene::SceneDescription& scene, scene::BuiltScene& bu
       built_(built),
       recorder_(recorder),
       script_(scene),
-      subject_(view::find_subject(scene, built.plan)),
-      reframing_(scene, built, subject_),
-      rig_(scene.camera, subject_),
+      rig_(scene.camera, view::find_subject(scene, built.plan)),
+      reframing_(scene, built, rig_.subject()),
       inspector_(has_audit, recorder.record),
       frames_per_second_(frames_per_second),
       slots_(slots) {

@@ -56,9 +56,8 @@ class Projector {
   scene::BuiltScene& built_;
   Recorder& recorder_;
   script::Script script_;
-  view::Subject subject_;
-  view::Reframing reframing_;
   view::CameraRig rig_;  // as the script sees it: at step borders, whatever frames there are
+  view::Reframing reframing_;
   Inspector inspector_;
   Throws throws_;
   core::StopQuestion wants_to_stop_;

@@ -2,13 +2,17 @@
 
 namespace shatterbox::sandbox::scene {
 
+const Origin* origin_of(const BuiltScene& built, body::BodyId id) {
+  const auto found = built.origins.find(built.world.ancestry(id).original);
+  return found == built.origins.end() ? nullptr : &found->second;
+}
+
 std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const body::Body> bodies,
                                         BodyRef who) {
   std::vector<const body::Body*> parts;
   for (const body::Body& body : bodies) {
-    const auto original = built.origins.find(built.world.ancestry(body.id).original);
-    if (original != built.origins.end() && who.includes(original->second.entry, original->second.copy))
-      parts.push_back(&body);
+    const Origin* origin = origin_of(built, body.id);
+    if (origin != nullptr && who.includes(origin->entry, origin->copy)) parts.push_back(&body);
   }
   return parts;
 }

@@ -9,6 +9,9 @@
 
 namespace shatterbox::sandbox::scene {
 
+/// Where a body, or what it is a piece of, came from; null: from nowhere in the scene.
+const Origin* origin_of(const BuiltScene& built, body::BodyId id);
+
 /// Those of `bodies` (of the world of `built`, at some time) that are `who` or came from it.
 std::vector<const body::Body*> parts_of(const BuiltScene& built, std::span<const body::Body> bodies,
                                         BodyRef who);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/dynamics/rest.h"
+#include "sandbox/scene/parts.h"
 
 namespace shatterbox::sandbox::script {
 
@@ -28,9 +29,9 @@ bool is_quiet(const world::World& world) {
 void Conditions::look_for_breaks(const scene::BuiltScene& built) {
   const std::vector<world::BreakRow>& breaks = built.world.report().breaks;
   for (; breaks_seen_ < breaks.size(); ++breaks_seen_) {
-    const auto found = built.origins.find(built.world.ancestry(breaks[breaks_seen_].id).original);
-    if (found == built.origins.end()) continue;
-    const scene::Origin& whose = found->second;
+    const scene::Origin* found = scene::origin_of(built, breaks[breaks_seen_].id);
+    if (found == nullptr) continue;
+    const scene::Origin& whose = *found;
     const bool is_known =
         std::any_of(first_breaks_.begin(), first_breaks_.end(), [&](const FirstBreak& first) {
           return first.whose.entry == whose.entry && first.whose.copy == whose.copy;

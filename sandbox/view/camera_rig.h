@@ -19,6 +19,8 @@ class CameraRig {
   void begin(const scene::CameraChange& change, scene::BodyRef who, double film, const Moment& moment,
              const Whereabouts& where);
 
+  const Subject& subject() const { return subject_; }
+
   Viewpoint view_at(const Moment& moment, const Whereabouts& where);
   /// The same in the picture's terms.
   render::Camera at(const Moment& moment, const Whereabouts& where);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/elementary.h"
+#include "sandbox/scene/parts.h"
 #include "sandbox/view/camera.h"
 #include "sandbox/view/ways.h"
 
@@ -22,13 +23,10 @@ constexpr double kAside = 0.5;
 constexpr double kBelow = 3.0;
 
 geometry::Box find_room(const std::vector<Vec3>& corners, const Vec3& gravity) {
-  geometry::Box box;
-  for (const Vec3& corner : corners) box.include(corner);
-  const double longest = (box.high - box.low).maxCoeff();
-  geometry::Box room;
-  room.include(box.low - Vec3::Constant(kAside * longest));
-  room.include(box.high + Vec3::Constant(kAside * longest));
+  const geometry::Box box = box_about(corners);
+  geometry::Box room = room_about(box, kAside);
   if (gravity.isZero(0.0)) return room;
+  const double longest = (box.high - box.low).maxCoeff();
   room.include(box.low + kBelow * longest * gravity.normalized());
   room.include(box.high + kBelow * longest * gravity.normalized());
   return room;
@@ -49,20 +47,13 @@ geometry::Box moved(const geometry::Box& box, const Vec3& by) {
   return {box.low + by, box.high + by};
 }
 
-bool has_joint(const scene::SceneDescription& scene, std::size_t number) {
-  return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const scene::JointEntry& joint) {
-    return std::any_of(joint.partners.begin(), joint.partners.end(), [&](const scene::BodyRef& partner) {
-      return partner.body == static_cast<int>(number);
-    });
-  });
-}
-
 // Of each body of the scene whether the eye goes after it: what can break or hangs, or, where nothing does,
 // whatever is there from the start.
 std::vector<char> find_followed(const scene::SceneDescription& scene) {
   std::vector<char> follows;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    follows.push_back(scene::can_break(scene.bodies[i]) || has_joint(scene, i) ? 1 : 0);
+  for (const scene::BodyEntry& body : scene.bodies) follows.push_back(scene::can_break(body) ? 1 : 0);
+  for (const scene::JointEntry& joint : scene.joints)
+    for (const scene::BodyRef& partner : joint.partners) follows[static_cast<std::size_t>(partner.body)] = 1;
   if (std::count(follows.begin(), follows.end(), 1) == 0)
     for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = scene.bodies[i].is_held_back ? 0 : 1;
   return follows;
@@ -106,16 +97,11 @@ Reframing::Reframing(const scene::SceneDescription& scene, const scene::BuiltSce
   look();
 }
 
-body::BodyId Reframing::original_of(const body::Body& body) const {
-  const body::BodyId original = built_.world.ancestry(body.id).original;
-  return original != 0 ? original : body.id;
-}
-
 bool Reframing::is_followed(const body::Body& body) const {
   if (!body.is_dynamic()) return false;
-  const auto origin = built_.origins.find(original_of(body));
-  if (origin == built_.origins.end()) return false;
-  const auto entry = static_cast<std::size_t>(origin->second.entry);
+  const scene::Origin* origin = scene::origin_of(built_, body.id);
+  if (origin == nullptr) return false;
+  const auto entry = static_cast<std::size_t>(origin->entry);
   return follows_[entry] != 0 && body.shape->bounding_radius >= kBigPiece * built_.plan.bodies[entry].reach;
 }
 
@@ -158,8 +144,9 @@ geometry::Box Reframing::survey(const Seen& seen) {
     const geometry::Box box = box_of(body);
     const geometry::Box ahead = moved(box, axes_ * (place_ahead(body) - here));
     const bool is_here = seen.holds(box);
-    if (is_here) met_.insert(original_of(body));
-    if (met_.count(original_of(body)) == 0) continue;
+    const body::BodyId original = built_.world.ancestry(body.id).original;
+    if (is_here) met_.insert(original);
+    if (met_.count(original) == 0) continue;
     // An eye that goes down with what falls will be there too.
     is_off_ |= !is_here || (!subject_.fall && !seen.holds(ahead));
     all.include(box);
@@ -186,7 +173,8 @@ Shift Reframing::wanted(const Viewpoint& usual) const {
 void Reframing::look() {
   if (follows_.empty()) return;
   const double time = built_.world.time(), step = 1.0 / scene_.world.steps_per_second;
-  const geometry::Box all = survey({usual_at(time), axes_});
+  const Viewpoint usual = usual_at(time);
+  const geometry::Box all = survey({usual, axes_});
   if (!is_empty(all)) {
     const bool is_first = is_empty(stage_);
     const double closer = step / (kCalm + step);
@@ -197,7 +185,7 @@ void Reframing::look() {
     stage_.include(all);
     if (is_first) least_side_ = (stage_.high - stage_.low).maxCoeff();
   }
-  const Shift goal = wanted(usual_at(time));
+  const Shift goal = wanted(usual);
   const double share = step / (kHaste + step);
   before_ = now_;
   first_ = first_.towards(goal, share);

@@ -28,7 +28,6 @@ class Reframing {
   /// The picture of the usual eye.
   struct Seen;
 
-  body::BodyId original_of(const body::Body& body) const;
   bool is_followed(const body::Body& body) const;
   Vec3 place_ahead(const body::Body& body) const;
   /// About it, in the camera's axes.

@@ -119,14 +119,6 @@ Corners spread_out(const Corners& corners, const std::optional<Vec3>& way, const
   return room;
 }
 
-// The room about these points, in which others are looked at as well.
-geometry::Box room_about(const std::vector<Vec3>& points, double share) {
-  geometry::Box about;
-  for (const Vec3& p : points) about.include(p);
-  const Vec3 room = Vec3::Constant(share * (about.high - about.low).maxCoeff());
-  return {about.low - room, about.high + room};
-}
-
 void add_within(const geometry::Box& room, const Corners& corners, std::vector<Vec3>& points) {
   for (const Vec3& corner : corners) points.push_back(corner.cwiseMax(room.low).cwiseMin(room.high));
 }
@@ -138,15 +130,14 @@ void add_about(const std::vector<Corners>& others, std::vector<Vec3>& points) {
     for (const Corners& corners : others) append(corners, points);
     return;
   }
-  const geometry::Box about = room_about(points, kRoomForScenery);
+  const geometry::Box about = room_about(box_about(points), kRoomForScenery);
   for (const Corners& corners : others) {
     if (geometry::overlaps(box_about(corners), about)) add_within(about, corners, points);
   }
 }
 
 Vec3 middle_of(const std::vector<Vec3>& points) {
-  geometry::Box box;
-  for (const Vec3& p : points) box.include(p);
+  const geometry::Box box = box_about(points);
   return 0.5 * (box.low + box.high);
 }
 
@@ -319,7 +310,7 @@ Subject find_subject(const scene::SceneDescription& scene, const scene::ScenePla
     if (const auto* pivot = std::get_if<world::PivotDescription>(&joint.form); pivot && !joint.is_chain)
       subject.corners.push_back(pivot->point);
   // They come in from where there is still room.
-  const geometry::Box room = room_about(subject.corners, kRoomToComeIn);
+  const geometry::Box room = room_about(box_about(subject.corners), kRoomToComeIn);
   for (const Corners& corners : thrown) add_within(room, corners, subject.corners);
   add_about(scenery.corners, subject.corners);
   if (subject.corners.empty())

@@ -142,10 +142,9 @@ void View::lay_over(const body::Body& body, DrawnShape& drawn, const render::Cam
 }
 
 void View::cut_open(const body::Body& body, DrawnShape& drawn, const Vec3& eye, render::Draw& draw) {
-  const body::BodyId original = built_.world.ancestry(body.id).original;
-  const auto origin = built_.origins.find(original != 0 ? original : body.id);
-  if (origin == built_.origins.end()) return;
-  const auto entry = static_cast<std::size_t>(origin->second.entry);
+  const scene::Origin* origin = scene::origin_of(built_, body.id);
+  if (origin == nullptr) return;
+  const auto entry = static_cast<std::size_t>(origin->entry);
   const auto [space, is_new] = level_set_spaces_.try_emplace(entry);
   if (is_new) space->second = geometry::make_level_set_space(2.0 * built_.plan.bodies[entry].bounding_radius);
   if (!drawn.slices) drawn.slices = std::make_unique<SliceShelf>();

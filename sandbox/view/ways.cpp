@@ -26,10 +26,15 @@ Corners corners_of(const geometry::Box& box, const Pose& pose) {
   return corners;
 }
 
-geometry::Box box_about(const Corners& corners) {
+geometry::Box box_about(std::span<const Vec3> points) {
   geometry::Box box;
-  for (const Vec3& corner : corners) box.include(corner);
+  for (const Vec3& p : points) box.include(p);
   return box;
+}
+
+geometry::Box room_about(const geometry::Box& box, double share) {
+  const Vec3 room = Vec3::Constant(share * (box.high - box.low).maxCoeff());
+  return {box.low - room, box.high + room};
 }
 
 std::vector<Vec3> corners_on_path(const scene::BodyEntry& body, const scene::BodyPlan& plan, const Pose& pose,

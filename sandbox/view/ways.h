@@ -18,7 +18,10 @@ void append(std::span<const Vec3> corners, std::vector<Vec3>& all);
 
 Corners corners_of(const geometry::Box& box, const Pose& pose);
 
-geometry::Box box_about(const Corners& corners);
+geometry::Box box_about(std::span<const Vec3> points);
+
+/// The same, wider on each side by a share of its longest one.
+geometry::Box room_about(const geometry::Box& box, double share);
 
 /// Corners of the body in all the attitudes and places of its path, of the copy that stands at `pose`, up to
 /// the end of the scene (s).

@@ -56,7 +56,6 @@ float sun_seen_past_bodies_at(vec3 p, vec2 slope, float bias, bool faces_away) {
 }
 
 float sun_seen_at(vec3 p, vec2 slope, float bias, bool faces_away) {
-  if (sun_radiance.w == 0.0) return 1.0;
   return sun_seen_past_bodies_at(p, slope, bias, faces_away) * through_glass(p, slope, bias);
 }
 

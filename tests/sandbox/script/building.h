@@ -14,6 +14,7 @@ inline std::optional<scene::BuiltScene> build(const scene::Reading& reading) {
   REQUIRE(reading.scene.has_value());
   scene::Problems problems;
   auto built = scene::build_world(*reading.scene, problems);
+  INFO(scene::describe(problems));
   REQUIRE(built.has_value());
   return built;
 }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "sandbox/view/view.h"
-#include "tests/sandbox/scene/reading.h"
+#include "tests/sandbox/script/building.h"
 
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
@@ -15,12 +15,7 @@ struct Stage {
   std::optional<scene::BuiltScene> built;
   std::optional<view::View> view;
 
-  explicit Stage(const std::string& text) : reading(scene::read(text)) {
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    built = scene::build_world(*reading.scene, problems);
-    REQUIRE(built.has_value());
+  explicit Stage(const std::string& text) : reading(scene::read(text)), built(build(reading)) {
     view.emplace(*reading.scene, *built);
   }
   view::Moment at(double film) const { return {film, built->world.time(), 1.0, built->world.bodies()}; }

@@ -9,7 +9,7 @@
 
 #include "engine/core/elementary.h"
 #include "sandbox/view/camera_rig.h"
-#include "tests/sandbox/scene/reading.h"
+#include "tests/sandbox/script/building.h"
 
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
@@ -24,12 +24,7 @@ struct Set {
   std::optional<view::Reframing> reframing;
   std::optional<view::CameraRig> rig;
 
-  explicit Set(const std::string& text) : reading(scene::read(text)) {
-    INFO(reading.text);
-    REQUIRE(reading.scene.has_value());
-    scene::Problems problems;
-    built = scene::build_world(*reading.scene, problems);
-    REQUIRE(built.has_value());
+  explicit Set(const std::string& text) : reading(scene::read(text)), built(build(reading)) {
     subject = view::find_subject(*reading.scene, built->plan);
     reframing.emplace(*reading.scene, *built, *subject);
     rig.emplace(reading.scene->camera, *subject);

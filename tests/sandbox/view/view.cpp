@@ -8,24 +8,10 @@
 #include "engine/geometry/edge_topology.h"
 #include "sandbox/view/looks.h"
 #include "sandbox/view/wardrobe.h"
-#include "tests/sandbox/scene/reading.h"
+#include "tests/sandbox/script/building.h"
 
 using namespace shatterbox;
 using namespace shatterbox::sandbox;
-
-namespace {
-
-std::optional<scene::BuiltScene> build(const scene::Reading& reading) {
-  INFO(reading.text);
-  REQUIRE(reading.scene.has_value());
-  scene::Problems problems;
-  auto built = scene::build_world(*reading.scene, problems);
-  INFO(scene::describe(problems));
-  REQUIRE(built.has_value());
-  return built;
-}
-
-}  // namespace
 
 TEST_CASE("a body's pose, mesh and look arrive in the frame") {
   const auto reading = scene::read(
